@@ -80,9 +80,9 @@ static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *erro
     hair->kind = k - 1u;
     hair->head_max = hair->near_max = cast->wants.actors;
     hair->in_state = 1;
-    cast->hair_part = noh_actor_hair_part(hair);
-    cast->kinds[hair->kind].parts = &cast->hair_part;
-    cast->kinds[hair->kind].part_count = 1;
+    cast->hair_part = noh_actor_hair_modifier(hair);
+    cast->kinds[hair->kind].modifiers = &cast->hair_part;
+    cast->kinds[hair->kind].modifier_count = 1;
     cast->heads_bytes = (noh_actor_hair_size(hair) + 15u) / 16u * 16u;
     cast->has_hair = 1;
     return NOH_OK;

@@ -35,7 +35,7 @@ typedef struct web_cast {
     noh_gl_light_desc light;
     noh_haircut cut;
     noh_actor_hair_desc hair; /* of all actors of its kind */
-    noh_stage_part hair_part;
+    noh_modifier hair_part;
     int has_hair;                                               /* 0: the pack has none */
     noh_error cannot_fall;                                      /* OK: actors of the first kind can */
     uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */

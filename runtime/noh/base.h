@@ -206,8 +206,8 @@ typedef enum noh_half_mode {
 #define NOH_STAGE_VIEWS_MAX 8u
 #define NOH_ATTACH_DEPTH_MAX 8u             /* length of a chain of attachments */
 #define NOH_LAYERS_MAX 16u                  /* of a kind */
-#define NOH_STAGE_PARTS_MAX 16u             /* of a kind */
-#define NOH_STAGE_PART_BYTES_MAX (1u << 20) /* state of one actor, or scratch of one job */
+#define NOH_MODIFIERS_MAX 16u             /* of a kind */
+#define NOH_MODIFIER_BYTES_MAX (1u << 20) /* state of one actor, or scratch of one job */
 #define NOH_STAGE_GRAPHS_MAX 16u            /* of a kind */
 #define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u             /* of a plan */

@@ -176,7 +176,7 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
  *   noh_walkers_put, noh_walkers_remove  tie an actor to an agent, and untie it
  *   noh_walkers_face                     the direction in which a standing walker turns
  *   noh_walkers_step                     places and clips follow the agents
- *   noh_walkers_feet_part                feet on the ground, for the nearest walkers
+ *   noh_walkers_feet_modifier            feet on the ground, for the nearest walkers
  *   noh_walkers_near                     choose the nearest walkers
  *   noh_walkers_push                     walkers near a point fall, as ragdolls from a pool
  *   noh_walkers_tend                     what fallen walkers do: wait, get up, walk on
@@ -196,8 +196,8 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
  * agent turns or is pushed faster than feet can follow: beyond that the actor is pulled along. Behind an agent slower
  * than a quarter of the walk's speed it makes a step now and then. Above the walk's speed it runs: blended where sync
  * markers show that both clips are in step, by a change of clip otherwise.
- * That wants feet_part, from which soles are known, two legs, a clip to stand by, and a walk in which each leg swings
- * past the other above the ground. Without a clip to stand by it always walks; without soles it turns about its middle,
+ * That wants feet_modifier, from which soles are known, two legs, a clip to stand by, and a walk in which each leg
+ * swings past the other above the ground. Without a clip to stand by it always walks; without soles it turns about its middle,
  * at any time, and below a quarter of the walk's speed takes shorter steps, the walk blended with standing.
  *
  * The kind's clips must not move the actor themselves: set root_axes to NOH_ROOT_X | NOH_ROOT_Z (the heading of a root
@@ -214,8 +214,8 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
 /* Zero is a good value for all but walker_max and walk. */
 typedef struct noh_walkers_desc {
     uint32_t walker_max;    /* 1..NOH_CROWD_AGENTS_MAX; required */
-    uint32_t near_max;      /* how many have their feet put on the ground at once; 0 without feet_part */
-    uint32_t feet_part;     /* 1 + the index of noh_walkers_feet_part in the kind's parts; default 0: it has none */
+    uint32_t near_max;      /* how many have their feet put on the ground at once; 0 without feet_modifier */
+    uint32_t feet_modifier; /* 1 + the index of noh_walkers_feet_modifier in the kind's modifiers; default 0: none */
     uint32_t kind, layer;   /* of the stage; the layer has a track for each clip */
     const char *walk;       /* clips, played as loops: straight on, at an even speed; required */
     const char *idle, *run; /* default (NULL) none */
@@ -230,7 +230,7 @@ size_t noh_walkers_size(const noh_walkers_desc *desc);
 
 /* Without a walker at first.
  * stage   its clips are measured; the pointer is not kept
- * errors  ARG memory NULL or misaligned, a number is out of its range, the kind, layer or part is not one, its root
+ * errors  ARG memory NULL or misaligned, a number is out of its range, the kind, layer or modifier is not one, its root
  *         moves the actor, or a clip moves no root and no speed is given; NOT_FOUND no such clip (where: 0 walk, 1
  * idle, 2 run); LIMIT; MEMORY */
 noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *desc, noh_stage *stage,
@@ -265,10 +265,10 @@ void noh_walkers_shift_origin(noh_walkers *walkers, const float by[3]);
 noh_result noh_walkers_step(noh_walkers *walkers, const noh_crowd *crowd, noh_stage *stage, const noh_ground *ground,
                             uint32_t ticks, noh_error *error);
 
-/* A part of the kind that puts the feet of the walkers that noh_walkers_near chose on the ground. It fades in and out
- * within a quarter of a second. For all other walkers it costs one comparison.
+/* A modifier of the kind that puts the feet of the walkers that noh_walkers_near chose on the ground. It fades in and
+ * out within a quarter of a second. For all other walkers it costs one comparison.
  * feet    must outlive the stage */
-noh_stage_part noh_walkers_feet_part(const noh_kind_feet *feet);
+noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet);
 
 /* Choose the near_max walkers that are nearest to a point. One that was chosen before counts as a tenth nearer, so that
  * two do not take turns. Within a step or a frame it does nothing.

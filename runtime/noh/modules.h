@@ -20,22 +20,22 @@ extern "C" {
 #endif
 
 /* ======== modifiers ========
- * What hangs on an actor between its clips and what is drawn: a gaze, feet on the ground, springs, a ragdoll,
- * blinks.
+ * Functions that change a pose between the clips and what is drawn: look at a point, put feet on the
+ * ground, swing hair.
  *
- * A part is a function that changes a pose: it is given the local pose and the floats that clips and graphs came to,
- * and leaves what is shown. A kind names its parts (noh_kind_desc.parts); they are called one after another in that
- * order, each with what the one before has left. What a part has to remember of an actor lies in the state of the
- * stage, in as many bytes as the part says: saved, restored, hashed and forked with all else. The game reads and writes
- * the same bytes between frames (noh_actor_part), and so tells the part what to do: where to look, what to fear.
+ * A modifier is given the local pose and the floats that clips and graphs made, and changes them. A kind lists its
+ * modifiers (noh_kind_desc.modifiers); they run in that order, each on what the one before left. What a modifier
+ * remembers of an actor is state of the stage, of as many bytes as the modifier asks for: saved, restored, hashed and
+ * forked with everything else. The game reads and writes the same bytes between frames (noh_actor_modifier): where to
+ * look, what to fear.
  *
  *   typedef struct gaze { float target[3], turned; } gaze;
- *   static void look(noh_part_work *w) { gaze *g = w->state; ... w->local[head].rotation ... }
- *   static const noh_stage_part parts[] = { { .name = "gaze", .modify = look, .state_bytes = sizeof(gaze) } };
- *   kind.parts = parts, kind.part_count = 1;
- *   ((gaze *)noh_actor_part(stage, actor, 0))->target[0] = 1.0f;
+ *   static void look(noh_modifier_work *w) { gaze *g = w->state; ... w->local[head].rotation ... }
+ *   static const noh_modifier modifiers[] = { { .name = "gaze", .modify = look, .state_bytes = sizeof(gaze) } };
+ *   kind.modifiers = modifiers, kind.modifier_count = 1;
+ *   ((gaze *)noh_actor_modifier(stage, actor, 0))->target[0] = 1.0f;
  *
- * A part runs in the jobs of a frame, on any thread, so it keeps a contract:
+ * A modifier runs in the jobs of a frame, on any thread, so it keeps a contract:
  *   - it reads the work, its own state and what `user` points to, and writes local, floats, state and scratch alone;
  *   - it calls no function of the stage but those below; the rest of the library's are fine where their own comments
  *     allow it;
@@ -45,23 +45,23 @@ extern "C" {
  * tick that the pose will be shown at. So it moves its state on by `ticks` as they come, not by frames; time that
  * passed out of view comes as one call with `cut`.
  *
- * Threads: as above; noh_actor_part on the stage's thread, outside of steps and frames. */
+ * Threads: as above; noh_actor_modifier on the stage's thread, outside of steps and frames. */
 
-/* What a part is given. */
-typedef struct noh_part_work {
+/* What a modifier is given. */
+typedef struct noh_modifier_work {
     noh_actor actor;
     const noh_skeleton *skeleton; /* joint_count 0 in a kind without one */
     noh_transform *local;         /* [skeleton->joint_count] read and write; parents come before their children */
     uint32_t joint_count;         /* the first so many were sampled at this detail; the others have the bind pose */
     uint32_t level;               /* of the actor, 0 the finest */
-    float pixels_per_metre;       /* at the actor's nearest point; NOH_PART_FULL_DETAIL where all is shown in full */
-    noh_place place;              /* of the actor after the last step. Of one that hangs on another it is the other's:
+    float pixels_per_metre; /* at the actor's nearest point; NOH_MODIFIER_FULL_DETAIL where all is shown in full */
+    noh_place place;        /* of the actor after the last step. Of one that hangs on another it is the other's:
                                    * where the joint is, is not known yet */
-    int64_t clock;                /* tick of the stage's clock that the pose is for: the present one, or a later one */
-    uint32_t ticks;               /* since that of the pose before; 0 after a cut, or where that was for a later tick */
-    uint32_t cut;                 /* 1: nothing to go on from: the actor is new, has leapt, or was out of view */
-    void *state;                  /* [state_bytes] of this part and actor, aligned to 16; zeros when it is spawned */
-    void *scratch;                /* [scratch_bytes] of the job, aligned to 16; undefined */
+    int64_t clock;          /* tick of the stage's clock that the pose is for: the present one, or a later one */
+    uint32_t ticks;         /* since that of the pose before; 0 after a cut, or where that was for a later tick */
+    uint32_t cut;           /* 1: nothing to go on from: the actor is new, has leapt, or was out of view */
+    void *state;            /* [state_bytes] of this modifier and actor, aligned to 16; zeros when it is spawned */
+    void *scratch;          /* [scratch_bytes] of the job, aligned to 16; undefined */
     const void *user;
     const struct noh_stage *stage; /* private, as are all below */
     const void *kind;
@@ -69,58 +69,77 @@ typedef struct noh_part_work {
     double home[3]; /* a point near the actor, and its place from there, which is exact far from the origin */
     float near_place[3];
     float home_moved[3]; /* since the pose before: states count from `home`, and are less by so much */
-} noh_part_work;
+} noh_modifier_work;
 
 /* Model-space matrices of all joints, as the local pose stands now: made anew by each call, and valid until the next
- * one or the end of the part. To get to the world multiply by that of the place.
+ * one or the end of the modifier. To get to the world multiply by that of the place.
  * shapes   [skeleton->joint_count][12]
  * returns  NULL in a kind without a skeleton */
-const float *noh_part_model(noh_part_work *work);
+const float *noh_modifier_model(noh_modifier_work *work);
 
 /* A float as it stands now, and a new value. Floats are counted as noh_stage_find does; one that takes its value from a
  * namesake is the namesake. In a pack without nodes whose kind has clips, weights of targets cannot be set: 0. */
-float noh_part_float(const noh_part_work *work, uint32_t index);
-int noh_part_set_float(noh_part_work *work, uint32_t index, float value);
+float noh_modifier_float(const noh_modifier_work *work, uint32_t index);
+int noh_modifier_set_float(noh_modifier_work *work, uint32_t index, float value);
 
-/* One part of a kind. All but `modify` may be 0. */
-typedef struct noh_stage_part {
+/* One modifier of a kind. All but `modify` may be 0. */
+typedef struct noh_modifier {
     const char *name; /* for messages; borrowed */
-    void (*modify)(noh_part_work *work);
+    void (*modify)(noh_modifier_work *work);
     /* What is wrong with a state that comes from outside (noh_stage_set_state), a constant text; NULL: it is good.
      * Without this function any bytes are good */
     const char *(*check)(const void *user, const void *state);
     const void *user;       /* for all of them; read by jobs at the same time; must outlive the stage */
     uint32_t state_bytes;   /* of each actor */
-    uint32_t scratch_bytes; /* of each job; parts of all kinds share it */
+    uint32_t scratch_bytes; /* of each job; modifiers of all kinds share it */
     /* The world's origin moves by `by` (noh_stage_shift_origin): points of the world in a state become less by it */
     void (*shift)(const void *user, void *state, const float by[3]);
-} noh_stage_part;
+} noh_modifier;
 
-/* The state of a part of an actor, to read and to write; part: its index in noh_kind_desc.parts. Valid until the actor
- * goes. NULL: the actor is gone, has no such part, or a frame has begun. */
-void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part);
+/* The state of a modifier of an actor, to read and to write; modifier: its index in noh_kind_desc.modifiers. Valid
+ * until the actor goes. NULL: the actor is gone, has no such modifier, or a frame has begun. */
+void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier);
 
 /* ======== actor hair ========
  * Hair of the actors of a kind, from one head to a crowd.
  *
- *   noh_actor_hair_desc_make             a haircut on the heads of a kind: finds the joint that carries it
- *   noh_actor_hair_part                  simulates it in the stage, for noh_kind_desc.parts
- *   noh_actor_hair_size, noh_actor_hair_init   the heads, and the hair that moves outside the stage
- *   noh_actor_hair_frame                 after each frame: finds visible heads and chooses whose hair moves
- *   noh_actor_hair_heads                 the visible heads
- *   noh_actor_hair_points                the control hairs of one of them
+ *   noh_wig_make    a haircut and the joint that carries it
+ *   noh_wig_modifier    the modifier that moves it, for noh_kind_desc.modifiers
+ *   noh_wig_points  where its control hairs are
+ *   noh_wig_seen    where its head is, as it was shown
  *
- * Up to near_max heads have hair that moves. If more are visible, those that look largest are chosen; a chosen head is
- * kept until another looks a quarter larger. All other hair hangs at rest and follows its head. There are two ways to
- * simulate it:
+ * Control hairs (low_life.h) are state of the stage like all that modifiers have (modules.h): planned, saved, forked and
+ * hashed, with the same bits for any number of jobs. noh_gl.h draws them.
  *
- *   in_state 1   Every actor of the kind has hair of its own, which noh_actor_hair_part simulates with the stage. It is
- *                saved, forked and hashed like all state of modifiers (modules.h), with the same bits for any number of
- *                jobs. Costs noh_hair_size bytes and time for each actor, visible or not.
- *   in_state 0   noh_actor_hair_frame simulates near_max heads outside the stage. This hair is not part of the stage's
- *                state: a restored stage begins with hair at rest. It begins to move at NOH_HAIR_MOVING_PIXELS pixels
- *                per metre and moves fully from twice that on, so that nothing jumps as an actor approaches. A head
- *                that is no longer chosen is at rest at once.
+ * Threads: as modules.h. `wind` may be changed between frames. */
+
+typedef struct noh_wig {
+    const noh_haircut *cut;
+    uint32_t joint; /* NOH_NONE: the actor itself */
+    float wind[3];  /* as in noh_hair_carrier, world */
+} noh_wig;
+
+/* skeleton  of the kind; in one without, joint_count is 0
+ * errors    NOT_FOUND the skeleton has no such joint */
+noh_result noh_wig_make(const noh_haircut *cut, const noh_pack *pack, uint32_t skeleton, noh_wig *out,
+                        noh_error *error);
+
+/* The modifier; the wig and its haircut must outlive the stage. Of each actor 16 bytes and those of noh_hair_size. */
+noh_modifier noh_wig_modifier(const noh_wig *wig);
+
+/* shapes  state: of noh_actor_modifier; points[hair_count][point_count][3], head space; at rest where none was posed */
+void noh_wig_points(const noh_wig *wig, const void *state, float *points);
+
+/* Where the head of an actor is, as the last frame showed it.
+ * shapes   world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each view that sees
+ *          it
+ * returns  0 if it was not shown; nothing is written then */
+int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
+                 uint32_t *views);
+
+/* ======== hair of a crowd ========
+ * Hair of a whole kind in fixed memory. Hair moves on the actors that look largest; on all others it hangs at
+ * rest and follows the head.
  *
  * noh_gl.h draws it.
  *
@@ -132,7 +151,7 @@ typedef struct noh_actor_hair_desc {
     uint32_t kind;          /* of the stage */
     uint32_t head_max;      /* heads visible at once, 1..NOH_STAGE_ACTORS_MAX; any more have no hair */
     uint32_t near_max;      /* heads whose hair moves at once, 0..NOH_HAIR_NEAR_MAX */
-    int in_state;           /* 1: simulated by noh_actor_hair_part */
+    int in_state;           /* 1: simulated by noh_actor_hair_modifier */
     float wind[3];          /* as in noh_hair_carrier, in the world; may change between frames */
 } noh_actor_hair_desc;
 
@@ -155,13 +174,13 @@ noh_result noh_actor_hair_desc_make(const noh_haircut *cut, const noh_pack *pack
 
 /* The modifier that simulates hair in the stage. `desc` must outlive the stage and stay where it is.
  * memory  16 bytes and noh_hair_size, in each actor */
-noh_stage_part noh_actor_hair_part(const noh_actor_hair_desc *desc);
+noh_modifier noh_actor_hair_modifier(const noh_actor_hair_desc *desc);
 
 /* The exact bytes: about 80 for each head and, with in_state 0, noh_hair_size for each that moves. 0 for an impossible
  * desc. */
 size_t noh_actor_hair_size(const noh_actor_hair_desc *desc);
 
-/* desc    must outlive the hair and stay where it is; with in_state 1 it is the one given to noh_actor_hair_part
+/* desc    must outlive the hair and stay where it is; with in_state 1 it is the one given to noh_actor_hair_modifier
  * errors  ARG memory is NULL or misaligned, or a count of the desc is out of range; MEMORY */
 noh_result noh_actor_hair_init(void *memory, size_t bytes, const noh_actor_hair_desc *desc, noh_actor_hair **hair,
                                noh_error *error);
@@ -181,17 +200,17 @@ const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
 /* ======== feet of actors ========
  * Actors that stand on the ground.
  *
- *   noh_stage_feet_part   a part of a kind (modules.h) that puts its actors' feet on the ground
+ *   noh_feet_modifier   a modifier of a kind (modules.h) that puts its actors' feet on the ground
  *
  *   noh_feet_rig_make(&source, &feet.rig, &error); feet.ground.world = &world;
- *   const noh_stage_part parts[] = { gaze, noh_stage_feet_part(&feet), hands, springs };
- *   kind.parts = parts, kind.part_count = 4;
+ *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
+ *   kind.modifiers = modifiers, kind.modifier_count = 4;
  *
- * The order of parts is that of the frame: what looks comes before feet; hands and springs come after them.
+ * The order of modifiers is that of the frame: what looks comes before feet; hands and springs come after them.
  * The state is a noh_feet: planned, saved, restored, forked and hashed with the stage. The game moves places along the
  * ground as roughly as it likes, from step to step; bodies follow smoothly.
  * At a detail without the feet's joints, and without ground, poses stay as they are. An actor that hangs on another has
- * no place of its own that a part could know: its kind should have no such part.
+ * no place of its own that a modifier could know: its kind should have no such modifier.
  * Threads: the ground is read by jobs at the same time. */
 
 /* What the feet of a kind have in common. */
@@ -201,7 +220,7 @@ typedef struct noh_kind_feet {
 } noh_kind_feet;
 
 /* feet  must outlive the stage */
-noh_stage_part noh_stage_feet_part(const noh_kind_feet *feet);
+noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
 
 /* ======== ragdolls of actors ========
  * Actors that fall.
@@ -355,15 +374,14 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
  *   noh_springs_module                   for noh_kind_desc.springs: those of the mesh's pack (noh build --springs)
  *   noh_springs_of_pack                  what a pack has
  *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors that have it
- *   noh_springs_part                     the part that runs them, for noh_kind_desc.parts
+ *   noh_springs_modifier                 the modifier that runs them, for noh_kind_desc.modifiers
  *
  * noh_springs_module is all that the springs of a pack need: the stage makes them, and runs them after everything else
  * that changes a pose. The other calls are for springs that the game describes itself.
  *
- * All of it is a part (modules.h): what swings is state of the stage, planned, saved, forked and hashed with all else, and
- * has the same bits for any number of jobs. Each chain is a spring of low_life.h, carried by the parent of its first
- * joint as clips, faces and the parts before have posed it. Clips that move a joint of a chain are overruled: its rest
- * is the bind pose.
+ * What swings is state of the stage, planned, saved, forked and hashed with all else, and has the same bits for any
+ * number of jobs. Each chain is a spring of low_life.h, carried by the parent of its first joint as clips, faces and the
+ * modifiers before have posed it. Clips that move a joint of a chain are overruled: its rest is the bind pose.
  *
  * A chain that looks shorter than NOH_SPRINGS_FADE_PIXELS fades into its rest, and stands at rest, at no cost, from
  * half of that length down; it begins anew from rest, and fades in. All chains are at rest after a cut.
@@ -382,6 +400,8 @@ typedef struct noh_springs_desc {
     float restitution;       /* noh_spring_desc.restitution of all chains; 0 of a pack's */
 } noh_springs_desc;
 
+typedef struct noh_springs noh_springs;
+
 /* For noh_kind_desc.springs: the springs that the mesh's pack has for the kind's skeleton swing. At no cost where the
  * pack has none. */
 noh_module noh_springs_module(void);
@@ -390,8 +410,12 @@ noh_module noh_springs_module(void);
  * returns  0: there are none, and *desc is untouched */
 int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc);
 
-/* Bytes of each actor and of each job that their part will have; of a desc that noh_springs_init takes. */
+/* Bytes of each actor and of each job that their modifier will have; of a desc that noh_springs_init takes. */
 void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes);
+
+/* The modifier; the springs must outlive the stage. Of each actor: 4 bytes a chain rounded up to 16, and a noh_spring
+ * each. The kind's skeleton is that of the desc: a kind with fewer joints is not swung. */
+noh_modifier noh_springs_modifier(const noh_springs *springs);
 
 /* ======== faces of actors ========
  * Faces of actors: they blink, look, feel, breathe, and are never still.
@@ -409,7 +433,8 @@ void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size
  *   noh_actor_face            what shows
  *
  * A face moves what the kind has: morph targets by recipes (face.h), and joints of head, neck, chest and eyes by
- * name. It changes the pose before the parts of the game (modules.h) do: over what clips say, below floats that are held. A clip of speech (noh speak) tells it how much of the mouth is taken, by its named floats "speech" and
+ * name. It changes the pose before the modifiers of the game (modules.h) do: over what clips say, below floats that
+ * are held. A clip of speech (noh speak) tells it how much of the mouth is taken, by its named floats "speech" and
  * "lips-shut": an emotion leaves the mouth as far as it says.
  *
  * All of it is state of the stage: 336 bytes an actor (NOH_ACTOR_FACE_BYTES), saved, restored, forked and hashed. A
@@ -486,22 +511,22 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
 /* ======== gaze and reach of actors ========
  * Actors that look at points and reach for them.
  *
- *   noh_stage_gaze_part    a part of a kind (modules.h) that turns spine, neck, head and eyes
- *   noh_stage_reach_part   one that puts hands on points
+ *   noh_gaze_modifier    a modifier of a kind (modules.h) that turns spine, neck, head and eyes
+ *   noh_reach_modifier   one that puts hands on points
  *
  *   noh_gaze_rig_make(&pack, 0, &gaze.rig, &error);
- *   const noh_stage_part parts[] = { noh_stage_gaze_part(&gaze), noh_stage_feet_part(&feet),
- *                                    noh_stage_reach_part(&reach) };
- *   noh_gaze *g = noh_actor_part(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;
- *   noh_reach *r = noh_actor_part(stage, actor, 2);     r->hands[0].point[1] = 1.0f, r->hands[0].wants = 1;
+ *   const noh_modifier modifiers[] = { noh_gaze_modifier(&gaze), noh_feet_modifier(&feet),
+ *                                    noh_reach_modifier(&reach) };
+ *   noh_gaze *g = noh_actor_modifier(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;
+ *   noh_reach *r = noh_actor_modifier(stage, actor, 2);     r->hands[0].point[1] = 1.0f, r->hands[0].wants = 1;
  *
  * Points are the world's: the game sets them whenever they move. What looks comes before feet, hands come after them,
  * because feet move the body. States are a noh_gaze and a noh_reach: planned, saved, restored, forked and hashed with
  * the stage.
  *
- * In a kind with a face the gaze part leaves poses alone: head and eyes are the face's (noh_actor_look_at). At a detail
- * without the rig's joints poses stay as they are. An actor that hangs on another has no place of its own that a part
- * could know: its kind should have no such part. */
+ * In a kind with a face the gaze modifier leaves poses alone: head and eyes are the face's (noh_actor_look_at). At a
+ * detail without the rig's joints poses stay as they are. An actor that hangs on another has no place of its own that a
+ * modifier could know: its kind should have no such modifier. */
 
 /* What the gazes of a kind have in common. */
 typedef struct noh_kind_gaze {
@@ -510,8 +535,8 @@ typedef struct noh_kind_gaze {
 } noh_kind_gaze;
 
 /* They must outlive the stage. */
-noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze);
-noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig);
+noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze);
+noh_modifier noh_reach_modifier(const noh_reach_rig *rig);
 
 #ifdef __cplusplus
 }

@@ -133,7 +133,7 @@ typedef struct noh_texture_set {
     const char *suffix;   /* "_red"; default (NULL) "" */
 } noh_texture_set;
 
-struct noh_stage_part;
+struct noh_modifier;
 struct noh_module_type;
 
 /* What actors of a kind can do beyond layers of clips. A function of the module makes it: noh_graph_module,
@@ -181,11 +181,11 @@ typedef struct noh_kind_desc {
     noh_module ragdoll; /* noh_ragdoll_module (modules.h): actors that fall */
     noh_module springs; /* noh_springs_module (modules.h): what the mesh's pack has springs for swings */
     /* What changes its poses before they are shown (modules.h), in this order; default (NULL) nothing, at no cost */
-    const struct noh_stage_part *parts; /* [part_count] what they point to must outlive the stage */
-    uint32_t part_count;                /* 0..NOH_STAGE_PARTS_MAX */
-    int weight_rules;                   /* 1: how far its targets go, and which exclude each other, is kept as the
+    const struct noh_modifier *modifiers; /* [modifier_count] what they point to must outlive the stage */
+    uint32_t modifier_count;              /* 0..NOH_MODIFIERS_MAX */
+    int weight_rules;                     /* 1: how far its targets go, and which exclude each other, is kept as the
                                          * mesh's pack tells it (low_life.h), whoever says the weights */
-    uint32_t change_count;              /* fades and other changes over time at once; default (0) 3 for each track */
+    uint32_t change_count;                /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * 0 */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
@@ -661,7 +661,7 @@ const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count)
 /* Move the world's origin to `by`: subtracts `by` from every position in the stage. This covers actors (also before the
  * last step), ragdolls, springs, feet and hair, the points that faces, gazes and hands aim at, and joints and spheres
  * of the last frame. The game moves its own data: cameras, lights, the world of ragdolls, the ground, the state of its
- * own modifiers (noh_actor_part). Crowds and walkers have their own calls (noh_crowd_shift_origin,
+ * own modifiers (noh_actor_modifier). Crowds and walkers have their own calls (noh_crowd_shift_origin,
  * noh_walkers_shift_origin). Multiples of 16 are exact.
  * errors  ARG by is not finite or beyond NOH_NUMBER_MAX, or called during a step or a frame */
 noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error *error);

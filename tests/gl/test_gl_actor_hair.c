@@ -32,7 +32,7 @@ typedef struct scene {
     pack_file file;
     noh_haircut cut;
     noh_actor_hair_desc hair_desc;
-    noh_stage_part part;
+    noh_modifier part;
     noh_kind_desc kind;
     noh_stage_desc desc;
     noh_stage_plan plan;
@@ -58,12 +58,12 @@ static void open_stage(scene *s, uint32_t actors, uint32_t near_max, int in_stat
     s->hair_desc.head_max = actors;
     s->hair_desc.near_max = near_max;
     s->hair_desc.in_state = in_state;
-    s->part = noh_actor_hair_part(&s->hair_desc);
+    s->part = noh_actor_hair_modifier(&s->hair_desc);
     s->kind.mesh = &s->file.pack;
     s->kind.skeleton = NOH_NONE;
     s->kind.actor_count = s->kind.near_count = actors;
-    s->kind.parts = &s->part;
-    s->kind.part_count = in_state ? 1 : 0;
+    s->kind.modifiers = &s->part;
+    s->kind.modifier_count = in_state ? 1 : 0;
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
     s->desc.height_px = SIDE;

@@ -36,7 +36,7 @@ typedef struct scene {
     noh_gl_light_desc light;
     noh_lighting lighting;
     noh_haircut cut;
-    noh_stage_part part;
+    noh_modifier part;
     noh_kind_desc kinds[KINDS];
     noh_stage_desc desc;
     noh_stage_plan plan;

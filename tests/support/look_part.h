@@ -41,7 +41,7 @@ static inline look_joint look_joint_of(const noh_pack *pack, const char *name)
 }
 
 /* Where the target is from the head, a unit vector in the space of the head's parent. */
-static inline void look_direction(const noh_part_work *w, const float *models, uint32_t head, float out[3])
+static inline void look_direction(const noh_modifier_work *w, const float *models, uint32_t head, float out[3])
 {
     const look_state *g = w->state;
     const float back[4] = { -w->place.rotation[0], -w->place.rotation[1], -w->place.rotation[2], w->place.rotation[3] };
@@ -57,7 +57,7 @@ static inline void look_direction(const noh_part_work *w, const float *models, u
     for (int i = 0; i < 3; i++) out[i] = length > 0.0f ? out[i] / sqrtf(length) : 0.0f;
 }
 
-static inline void look_modify(noh_part_work *w)
+static inline void look_modify(noh_modifier_work *w)
 {
     const look_joint *j = w->user;
     look_state *g = w->state;
@@ -67,7 +67,7 @@ static inline void look_modify(noh_part_work *w)
     g->cuts += w->cut;
     g->ticks += w->ticks;
     g->turned += (g->wanted - g->turned) * (step < 1.0f ? step : 1.0f);
-    look_direction(w, noh_part_model(w), j->head, d);
+    look_direction(w, noh_modifier_model(w), j->head, d);
     noh_quat_rotate(r, j->forward, f);
     dot = f[0] * d[0] + f[1] * d[1] + f[2] * d[2];
     if (dot < -0.7f) return;

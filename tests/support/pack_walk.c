@@ -132,7 +132,7 @@ static void walk_springs(walk *w)
         eat(w, &state_bytes, sizeof state_bytes);
         if (!bytes) abort(); /* counts are checked */
         if (noh_springs_init(block, bytes, &desc, &springs, NULL) == NOH_OK &&
-            noh_springs_part(springs).state_bytes != state_bytes)
+            noh_springs_modifier(springs).state_bytes != state_bytes)
             abort();
         free(block);
     }

@@ -83,7 +83,7 @@ noh_result noh_actor_hair_desc_make(const noh_haircut *cut, const noh_pack *pack
 /* ---- in the stage ---- */
 
 /* How the joint moved from the bind pose, in metres, and the transform of the actor. */
-static noh_hair_carrier carrier_in_step(const noh_part_work *w, const noh_actor_hair_desc *d)
+static noh_hair_carrier carrier_in_step(const noh_modifier_work *w, const noh_actor_hair_desc *d)
 {
     const noh_stage_kind *kind = w->kind;
     const float metres = d->cut->header->metres;
@@ -108,14 +108,14 @@ static noh_hair_carrier carrier_in_step(const noh_part_work *w, const noh_actor_
     return c;
 }
 
-static void modify(noh_part_work *w)
+static void modify(noh_modifier_work *w)
 {
     const noh_actor_hair_desc *d = w->user;
     const noh_hair_desc *desc = &d->cut->desc;
     hair_state *state = w->state;
     noh_hair *hair = (noh_hair *)(void *)(state + 1);
     const noh_hair_carrier carrier = carrier_in_step(w, d);
-    if (state->begun && noh_part_home_moved(w)) {
+    if (state->begun && noh_modifier_home_moved(w)) {
         float by[3];
         for (int i = 0; i < 3; i++) by[i] = w->home_moved[i] * d->cut->header->metres / w->place.scale;
         noh_hair_shift(hair, by);
@@ -137,24 +137,24 @@ static const char *check(const void *user, const void *state)
     return s->begun ? noh_hair_check((const noh_hair *)(const void *)(s + 1), &d->cut->desc) : NULL;
 }
 
-noh_stage_part noh_actor_hair_part(const noh_actor_hair_desc *desc)
+noh_modifier noh_actor_hair_modifier(const noh_actor_hair_desc *desc)
 {
-    noh_stage_part part;
+    noh_modifier modifier;
     NOH_ASSERT(desc && desc->cut);
-    memset(&part, 0, sizeof part);
-    part.name = "hair";
-    part.modify = modify;
-    part.check = check;
-    part.user = desc;
-    part.state_bytes = (uint32_t)(sizeof(hair_state) + noh_hair_size(&desc->cut->desc));
-    return part;
+    memset(&modifier, 0, sizeof modifier);
+    modifier.name = "hair";
+    modifier.modify = modify;
+    modifier.check = check;
+    modifier.user = desc;
+    modifier.state_bytes = (uint32_t)(sizeof(hair_state) + noh_hair_size(&desc->cut->desc));
+    return modifier;
 }
 
-/* Which part of the kind simulates this hair. */
-static uint32_t part_of(const noh_stage_kind *k, const noh_actor_hair_desc *d)
+/* The kind's modifier that simulates this hair. */
+static uint32_t modifier_of(const noh_stage_kind *k, const noh_actor_hair_desc *d)
 {
     uint32_t i = 0;
-    while (i < k->desc->part_count && k->parts[i].user != d) i++;
+    while (i < k->desc->modifier_count && noh_stage_modifiers_of(k)[i].user != d) i++;
     return i;
 }
 
@@ -356,11 +356,11 @@ static void simulate(noh_actor_hair *h, uint32_t index, const noh_stage *stage, 
 }
 
 /* Refer to the hair that the stage simulates. */
-static void refer(noh_actor_hair *h, uint32_t index, noh_stage *stage, uint32_t part)
+static void refer(noh_actor_hair *h, uint32_t index, noh_stage *stage, uint32_t modifier)
 {
     const noh_actor actor = { h->ranks[index].actor };
     hair_slot *s = &h->slots[h->heads[index].slot];
-    hair_state *state = noh_actor_part(stage, actor, part);
+    hair_state *state = noh_actor_modifier(stage, actor, modifier);
     s->actor = actor.id;
     s->hair = state && state->begun ? (noh_hair *)(void *)(state + 1) : NULL;
 }
@@ -370,8 +370,8 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
     uint32_t count, free_slot = 0;
     NOH_ASSERT(hair && stage && hair->desc->kind < stage->desc.kind_count);
     const noh_actor_hair_desc *d = hair->desc;
-    const uint32_t part = part_of(&stage->kinds[d->kind], d);
-    NOH_ASSERT(!d->in_state || part < stage->kinds[d->kind].desc->part_count);
+    const uint32_t modifier = modifier_of(&stage->kinds[d->kind], d);
+    NOH_ASSERT(!d->in_state || modifier < stage->kinds[d->kind].desc->modifier_count);
     see_all(hair, stage);
     count = choose(hair);
     for (uint32_t i = 0; i < d->near_max; i++) hair->slots[i].is_wanted = 0;
@@ -386,7 +386,7 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
         if (head->slot == NOH_NONE) head->slot = free_slot;
         hair->slots[head->slot].is_wanted = 1;
         if (d->in_state) {
-            refer(hair, hair->chosen[i], stage, part);
+            refer(hair, hair->chosen[i], stage, modifier);
         } else {
             simulate(hair, hair->chosen[i], stage, ticks);
         }

@@ -27,9 +27,9 @@ static noh_result check(const noh_walkers_desc *d, noh_error *error)
         return noh_fail(error, NOH_ERR_LIMIT, "walker_max is 0 or above NOH_CROWD_AGENTS_MAX", 0, d->walker_max);
     }
     if (!(d->walk_speed >= 0.0f && d->walk_speed <= 1e6f) || !(d->run_speed >= 0.0f && d->run_speed <= 1e6f) ||
-        !(d->turn_speed >= 0.0f && d->turn_speed <= 1e3f) || (d->near_max && !d->feet_part)) {
+        !(d->turn_speed >= 0.0f && d->turn_speed <= 1e3f) || (d->near_max && !d->feet_modifier)) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "a speed of the walkers is out of range, or near_max is set without feet_part", 0, 0);
+                        "a speed of walkers is out of its range, or near_max is without feet_modifier", 0, 0);
     }
     return NOH_OK;
 }
@@ -50,7 +50,7 @@ static const noh_stage_kind *kind_of(const noh_stage *stage, const noh_walkers_d
 {
     const noh_stage_kind *k = d->kind < stage->desc.kind_count ? &stage->kinds[d->kind] : NULL;
     const noh_stage_layer *l = k && d->layer < k->layer_count ? &k->layers[d->layer] : NULL;
-    const int has_part = !d->feet_part || (k && d->feet_part <= k->desc->part_count);
+    const int has_part = !d->feet_modifier || (k && d->feet_modifier <= k->desc->modifier_count);
     return l && l->mode == NOH_LAYER_BASE && l->track_count >= clip_count && has_part ? k : NULL;
 }
 
@@ -135,7 +135,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     const noh_stage_kind *k = kind_of(stage, desc, 1u + (desc->idle != NULL) + (desc->run != NULL));
     if (!k || (k->set.roots && !k->desc->root_told)) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "walkers need root_told, a base layer with a track for each clip, and feet_part of their kind",
+                        "walkers need root_told, a base layer with a track for each clip, and feet_modifier of their kind",
                         desc->kind, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
@@ -148,9 +148,11 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     w->near_max = desc->near_max;
     w->kind = desc->kind;
     w->layer = desc->layer;
-    w->feet_part = desc->feet_part;
+    w->feet_modifier = desc->feet_modifier;
     w->turn_speed = desc->turn_speed > 0.0f ? desc->turn_speed : TURN_SPEED;
-    const noh_feet_rig *rig = desc->feet_part ? noh_walkers_rig(&noh_stage_parts_of(k)[desc->feet_part - 1u]) : NULL;
+    const noh_feet_rig *rig = desc->feet_modifier
+                                  ? noh_walkers_rig(&noh_stage_modifiers_of(k)[desc->feet_modifier - 1u])
+                                  : NULL;
     if (rig && stage->phase == NOH_STAGE_IDLE) noh_walkers_measure_soles(w, stage, k, rig);
     *walkers = w;
     return NOH_OK;

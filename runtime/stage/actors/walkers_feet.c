@@ -47,18 +47,18 @@ static void mix(noh_transform *to, const noh_transform *from, float part)
     noh_quat_nlerp(from->rotation, to->rotation, part, to->rotation);
 }
 
-static void put_on_ground(noh_part_work *w, const noh_kind_feet *f, near_feet *n, float seconds)
+static void put_on_ground(noh_modifier_work *w, const noh_kind_feet *f, near_feet *n, float seconds)
 {
     noh_transform before[KEPT];
     uint32_t joints[KEPT];
     const uint32_t count = joints_of(&f->rig, joints);
     for (uint32_t i = 0; i < count; i++) before[i] = w->local[joints[i]];
-    noh_part_feet(w, &n->feet, f, seconds, w->cut || !n->runs || w->ticks > SKIP_TICKS);
+    noh_modifier_feet(w, &n->feet, f, seconds, w->cut || !n->runs || w->ticks > SKIP_TICKS);
     n->runs = 1;
     for (uint32_t i = 0; i < count && n->part < 1.0f; i++) mix(&w->local[joints[i]], &before[i], n->part);
 }
 
-static void modify(noh_part_work *w)
+static void modify(noh_modifier_work *w)
 {
     const noh_kind_feet *f = w->user;
     near_feet *n = w->state;
@@ -83,9 +83,9 @@ static const char *check(const void *user, const void *state)
     return noh_feet_check(&n->feet);
 }
 
-noh_stage_part noh_walkers_feet_part(const noh_kind_feet *feet)
+noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
 {
-    noh_stage_part part;
+    noh_modifier part;
     NOH_ASSERT(feet);
     memset(&part, 0, sizeof part);
     part.name = "feet of those who are near";
@@ -96,15 +96,16 @@ noh_stage_part noh_walkers_feet_part(const noh_kind_feet *feet)
     return part;
 }
 
-const noh_feet_rig *noh_walkers_rig(const noh_stage_part *part)
+const noh_feet_rig *noh_walkers_rig(const noh_modifier *part)
 {
     return part->modify == modify ? &((const noh_kind_feet *)part->user)->rig : NULL;
 }
 
 void noh_walkers_tell_leg(const noh_walkers *w, noh_stage *stage, const walker *r)
 {
-    near_feet *n = r->is_near && w->leg_count ? noh_actor_part(stage, (noh_actor){ r->actor }, w->feet_part - 1u)
-                                              : NULL;
+    near_feet *n = r->is_near && w->leg_count
+                       ? noh_actor_modifier(stage, (noh_actor){ r->actor }, w->feet_modifier - 1u)
+                       : NULL;
     if (n) n->feet.kept = 1u + r->stands / WALKER_PARTS;
 }
 
@@ -128,7 +129,7 @@ static void take(noh_walkers *w, uint32_t index, float square)
 static void set_near(noh_walkers *w, noh_stage *stage, uint32_t index, uint8_t is_near)
 {
     walker *r = noh_walker_at(w, index);
-    near_feet *n = noh_actor_part(stage, (noh_actor){ r->actor }, w->feet_part - 1u);
+    near_feet *n = noh_actor_modifier(stage, (noh_actor){ r->actor }, w->feet_modifier - 1u);
     r->is_near = is_near;
     if (n) n->is_near = is_near;
 }

@@ -72,7 +72,7 @@ typedef struct walker_near {
 /* Walkers and the list of the nearest follow. */
 struct noh_walkers {
     uint32_t bytes, walker_max, near_max, near_count;
-    uint32_t kind, layer, feet_part;
+    uint32_t kind, layer, feet_modifier;
     float turn_speed;
     float forward[2];     /* of the walk: unit x, z, model space */
     uint16_t in_step;     /* 1: walk and run may be blended */
@@ -85,8 +85,8 @@ struct noh_walkers {
 };
 NOH_STATIC_ASSERT(sizeof(noh_walkers) == 8016, walkers);
 
-/* The rig of a modifier made by noh_walkers_feet_part; NULL: another modifier. */
-const noh_feet_rig *noh_walkers_rig(const noh_stage_part *part);
+/* The rig of a noh_walkers_feet_modifier; NULL: the modifier is another one. */
+const noh_feet_rig *noh_walkers_rig(const noh_modifier *part);
 
 /* Measure the soles of all clips. Not during a step or a frame: uses a job's scratch memory. */
 void noh_walkers_measure_soles(noh_walkers *w, noh_stage *stage, const noh_stage_kind *k, const noh_feet_rig *rig);

@@ -35,7 +35,7 @@ struct noh_stage_needs;
 typedef enum noh_module_slot {
     NOH_SLOT_SOURCE, /* what plays on a track as a clip does */
     NOH_SLOT_FACE,
-    NOH_SLOT_PARTS, /* noh_kind_desc.parts */
+    NOH_SLOT_MODIFIERS, /* noh_kind_desc.modifiers */
     NOH_SLOT_BODY,
     NOH_SLOT_SPRINGS,
     NOH_SLOT_COUNT
@@ -97,7 +97,7 @@ typedef struct noh_module_type {
 
     void (*step)(struct noh_stage_kind *k, uint32_t ticks);
     int (*carries)(const struct noh_stage_kind *k, uint32_t index); /* 1: it moves the actor's place, clips do not */
-    void (*modify)(noh_part_work *work);                            /* `state` and `user` are its own: user `shared` */
+    void (*modify)(noh_modifier_work *work);                        /* `state` and `user` are its own: user `shared` */
 
     const struct noh_source_type *source; /* in NOH_SLOT_SOURCE */
 } noh_module_type;

@@ -1,4 +1,4 @@
-/* springs.c: chains of joints that swing, as a part of the stage.
+/* springs.c: chains of joints that swing, as a modifier or a module.
  *
  * They swing in the world, in the model's units and from the model's scale: what a place says is divided by its scale,
  * so an actor of twice the size swings as the small one does, twice as far. */
@@ -336,9 +336,9 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
                         desc->row_count, NOH_JOINTS_MAX);
     }
     noh_result result = check_desc(desc, error);
-    if (!result && state_bytes_of(desc, desc->chain_count) > NOH_STAGE_PART_BYTES_MAX) {
-        result = noh_fail(error, NOH_ERR_LIMIT, "springs: the state of one actor would pass the limit of a part",
-                          desc->chain_count, NOH_STAGE_PART_BYTES_MAX);
+    if (!result && state_bytes_of(desc, desc->chain_count) > NOH_MODIFIER_BYTES_MAX) {
+        result = noh_fail(error, NOH_ERR_LIMIT, "springs: the state of one actor would pass the limit of a modifier",
+                          desc->chain_count, NOH_MODIFIER_BYTES_MAX);
     }
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_springs_size(desc), error);
     if (result) return result;
@@ -356,13 +356,13 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
 /* ---- in a job ---- */
 
 /* From model space to where they swing. */
-static void to_world(const noh_part_work *w, const float model[3], float out[3])
+static void to_world(const noh_modifier_work *w, const float model[3], float out[3])
 {
     noh_quat_rotate(w->place.rotation, model, out);
     noh_madd3(out, 1.0f / w->place.scale, w->near_place, out);
 }
 
-static void follow_home(const noh_part_work *w, const noh_springs *s)
+static void follow_home(const noh_modifier_work *w, const noh_springs *s)
 {
     const uint32_t *begun = w->state;
     float by[3];
@@ -372,7 +372,7 @@ static void follow_home(const noh_part_work *w, const noh_springs *s)
     }
 }
 
-static void pose_capsule(const noh_part_work *w, const noh_spring_capsule *c, noh_spring_collider *out)
+static void pose_capsule(const noh_modifier_work *w, const noh_spring_capsule *c, noh_spring_collider *out)
 {
     float rotation[4], at[3];
     noh_stage_joint_at(w->kind, w->local, c->joint, rotation, at);
@@ -386,7 +386,7 @@ static void pose_capsule(const noh_part_work *w, const noh_spring_capsule *c, no
 }
 
 /* What carries a chain: its first joint's place, and the rotation of that joint's parent. */
-static noh_spring_carrier carrier_of(const noh_part_work *w, uint32_t joint)
+static noh_spring_carrier carrier_of(const noh_modifier_work *w, uint32_t joint)
 {
     noh_spring_carrier c;
     float own[4], at[3];
@@ -400,14 +400,14 @@ static noh_spring_carrier carrier_of(const noh_part_work *w, uint32_t joint)
 }
 
 /* How much of its swing a chain shows, 0..1: none where it looks too short. */
-static float share_of(const noh_part_work *w, const swing *g)
+static float share_of(const noh_modifier_work *w, const swing *g)
 {
     const float pixels = w->pixels_per_metre * g->length / NOH_SPRINGS_FADE_PIXELS;
     return pixels >= 1.0f ? 1.0f : pixels <= 0.5f ? 0.0f : 2.0f * pixels - 1.0f;
 }
 
 /* Into the pose; `share` below 1 leaves the rest of the way to the rotations at rest. */
-static void show(const noh_part_work *w, const noh_springs *s, const swing *g, float share, const float *rotations)
+static void show(const noh_modifier_work *w, const noh_springs *s, const swing *g, float share, const float *rotations)
 {
     for (uint32_t i = 0; i < g->desc.joint_count; i++) {
         float *local = w->local[s->joints[g->first_row + i]].rotation;
@@ -419,7 +419,7 @@ static void show(const noh_part_work *w, const noh_springs *s, const swing *g, f
     }
 }
 
-static void rest(const noh_part_work *w, const noh_springs *s, const swing *g)
+static void rest(const noh_modifier_work *w, const noh_springs *s, const swing *g)
 {
     for (uint32_t i = 0; i < g->desc.joint_count; i++) {
         memcpy(w->local[s->joints[g->first_row + i]].rotation, g->desc.joints[i].rest, 4 * sizeof(float));
@@ -427,7 +427,7 @@ static void rest(const noh_part_work *w, const noh_springs *s, const swing *g)
 }
 
 /* Swing those that were put together, all at once. */
-static void swing_together(const noh_part_work *w, const noh_springs *s, const workspace *space)
+static void swing_together(const noh_modifier_work *w, const noh_springs *s, const workspace *space)
 {
     together *t = space->chains;
     (void)noh_spring_step(t->moves, t->count, w->ticks, space->scratch);
@@ -448,7 +448,7 @@ static const noh_spring_collider *gather(const noh_springs *s, const swing *g, c
 }
 
 /* A chain joins those that are put together, or rests. */
-static void add_chain(const noh_part_work *w, const noh_springs *s, uint32_t chain, const workspace *space)
+static void add_chain(const noh_modifier_work *w, const noh_springs *s, uint32_t chain, const workspace *space)
 {
     const swing *g = &s->swings[chain];
     together *t = space->chains;
@@ -478,7 +478,7 @@ static void add_chain(const noh_part_work *w, const noh_springs *s, uint32_t cha
     t->swings[t->count++] = g;
 }
 
-static void modify(noh_part_work *w)
+static void modify(noh_modifier_work *w)
 {
     const noh_springs *s = w->user;
     noh_arena arena;
@@ -488,7 +488,7 @@ static void modify(noh_part_work *w)
     if (noh_arena_open(&arena, w->scratch, s->scratch_bytes, s->scratch_bytes, NULL)) return;
     (void)carve_workspace(&arena, s->collider_count, s->longest, &space);
     space.chains->count = 0;
-    if (noh_part_home_moved(w)) follow_home(w, s);
+    if (noh_modifier_home_moved(w)) follow_home(w, s);
     for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &space.all[i]);
     for (uint32_t i = 0; i < s->chain_count; i++) {
         if (space.chains->count == TOGETHER || s->swings[i].after > first) {
@@ -529,8 +529,8 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
     noh_springs_desc springs;
     (void)desc;
     return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
-                   state_bytes_of(&springs, springs.chain_count) > NOH_STAGE_PART_BYTES_MAX
-               ? "springs of a kind: those of its mesh's pack have more bytes than NOH_STAGE_PART_BYTES_MAX"
+                   state_bytes_of(&springs, springs.chain_count) > NOH_MODIFIER_BYTES_MAX
+               ? "springs of a kind: those of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"
                : NULL;
 }
 
@@ -582,9 +582,9 @@ noh_module noh_springs_module(void)
     return (noh_module){ &of_pack, NULL };
 }
 
-noh_stage_part noh_springs_part(const noh_springs *springs)
+noh_modifier noh_springs_modifier(const noh_springs *springs)
 {
-    noh_stage_part part;
+    noh_modifier part;
     NOH_ASSERT(springs);
     memset(&part, 0, sizeof part);
     part.name = "springs";

@@ -25,7 +25,7 @@
 /* ---- where it looks ---- */
 
 /* A point, counted from the actor's home, in its model space. */
-static void to_model(const noh_part_work *w, const float point[3], float out[3])
+static void to_model(const noh_modifier_work *w, const float point[3], float out[3])
 {
     float back[4];
     for (int i = 0; i < 3; i++) out[i] = point[i] - w->near_place[i];
@@ -77,12 +77,12 @@ typedef struct neck_space {
     float rotation[4], origin[3];
 } neck_space;
 
-static int turns(const noh_part_work *w, const noh_stage_face_joint *j)
+static int turns(const noh_modifier_work *w, const noh_stage_face_joint *j)
 {
     return j->joint != NOH_NONE && j->joint < w->joint_count;
 }
 
-static void neck_space_of(const noh_stage_kind *k, const noh_part_work *w, neck_space *n)
+static void neck_space_of(const noh_stage_kind *k, const noh_modifier_work *w, neck_space *n)
 {
     const noh_stage_face_joint *head = &noh_stage_face_kind_of(k)->head;
     memset(n, 0, sizeof *n);
@@ -95,7 +95,7 @@ static void neck_space_of(const noh_stage_kind *k, const noh_part_work *w, neck_
 }
 
 /* Turn a joint by a rotation along axes that it knows: local * axes * turn * axes^-1. */
-static void turn(noh_part_work *w, const noh_stage_face_joint *j, const float rotation[4])
+static void turn(noh_modifier_work *w, const noh_stage_face_joint *j, const float rotation[4])
 {
     float *own = w->local[j->joint].rotation, back[4], by[4];
     noh_quat_conjugate(j->axes, back);
@@ -105,7 +105,7 @@ static void turn(noh_part_work *w, const noh_stage_face_joint *j, const float ro
     noh_quat_normalize(own);
 }
 
-static void breathe(noh_part_work *w, const noh_stage_face_kind *f, float breath)
+static void breathe(noh_modifier_work *w, const noh_stage_face_kind *f, float breath)
 {
     float rotation[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     if (!turns(w, &f->chest)) return;
@@ -114,7 +114,7 @@ static void breathe(noh_part_work *w, const noh_stage_face_kind *f, float breath
 }
 
 /* The neck's share, about its own joint, and what that moves the head by, in the neck's space. */
-static void turn_neck(const noh_stage_kind *k, noh_part_work *w, const neck_space *n, const float share[4],
+static void turn_neck(const noh_stage_kind *k, noh_modifier_work *w, const neck_space *n, const float share[4],
                       float moved[3])
 {
     const uint32_t joint = noh_stage_face_kind_of(k)->neck.joint;
@@ -134,7 +134,7 @@ static void turn_neck(const noh_stage_kind *k, noh_part_work *w, const neck_spac
     noh_quat_normalize(w->local[joint].rotation);
 }
 
-static void turn_head(const noh_stage_kind *k, noh_part_work *w, const neck_space *n, const float head[4],
+static void turn_head(const noh_stage_kind *k, noh_modifier_work *w, const neck_space *n, const float head[4],
                       float moved[3])
 {
     static const float none[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
@@ -151,7 +151,7 @@ static void turn_head(const noh_stage_kind *k, noh_part_work *w, const neck_spac
 }
 
 /* Eyes are the face's: what clips do to them is not kept. */
-static void turn_eyes(const noh_stage_kind *k, noh_part_work *w, const noh_face_pose *pose)
+static void turn_eyes(const noh_stage_kind *k, noh_modifier_work *w, const noh_face_pose *pose)
 {
     for (int e = 0; e < 2; e++) {
         const noh_stage_face_joint *j = &noh_stage_face_kind_of(k)->eyes[e];
@@ -167,7 +167,7 @@ static void turn_eyes(const noh_stage_kind *k, noh_part_work *w, const noh_face_
 
 /* ---- targets ---- */
 
-static float float_of(const noh_part_work *w, uint32_t at)
+static float float_of(const noh_modifier_work *w, uint32_t at)
 {
     const float value = at == NOH_NONE ? 0.0f : w->floats[at];
     return value < 0.0f ? 0.0f : value > 1.0f ? 1.0f : value;
@@ -187,7 +187,8 @@ static void shut_lids(const noh_stage_face_kind *k, const noh_stage_face *f, con
     }
 }
 
-static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_part_work *w, const noh_face_pose *pose)
+static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_modifier_work *w,
+                         const noh_face_pose *pose)
 {
     float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
     const float *says = f->says ? f->visemes : NULL;
@@ -219,7 +220,7 @@ static void live(const noh_stage_kind *k, noh_stage_face *f, int64_t clock)
     }
 }
 
-static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, const noh_part_work *w,
+static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, const noh_modifier_work *w,
                  const neck_space *n)
 {
     float point[3], back[4];
@@ -242,7 +243,7 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
     f->fresh = 0;
 }
 
-void noh_stage_run_face(noh_part_work *w)
+void noh_stage_run_face(noh_modifier_work *w)
 {
     const noh_stage_kind *k = w->kind;
     noh_stage_face *f = w->state;

@@ -1,4 +1,4 @@
-/* stage_feet.c: feet on the ground as a part of a kind. */
+/* stage_feet.c: feet on the ground as a modifier of a kind. */
 #include "life/reach/feet.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -26,27 +26,27 @@ static float below_home(const void *user, const float from[3], float depth, floa
     return noh_ground_below(g->ground, at, depth, normal);
 }
 
-void noh_part_feet(noh_part_work *w, noh_feet *feet, const noh_kind_feet *f, float seconds, int cut)
+void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet *f, float seconds, int cut)
 {
     const home_ground from = { &f->ground, w->home };
     const noh_ground near_ground = { NULL, below_home, &from };
     const int is_home = w->home[0] == 0.0 && w->home[1] == 0.0 && w->home[2] == 0.0;
     noh_feet_place place;
-    if (noh_part_home_moved(w)) noh_feet_shift(feet, w->home_moved);
+    if (noh_modifier_home_moved(w)) noh_feet_shift(feet, w->home_moved);
     memcpy(place.position, w->near_place, sizeof place.position);
     memcpy(place.rotation, w->place.rotation, sizeof place.rotation);
     place.scale = w->place.scale;
     noh_feet_step(feet, &f->rig, w->skeleton, w->local, &place, is_home ? &f->ground : &near_ground, seconds, cut);
 }
 
-static void put_on_ground(noh_part_work *w)
+static void put_on_ground(noh_modifier_work *w)
 {
     const noh_kind_feet *f = w->user;
     if (f->rig.last >= w->joint_count || !(f->ground.world || f->ground.below)) {
-        if (noh_part_home_moved(w)) noh_feet_shift(w->state, w->home_moved);
+        if (noh_modifier_home_moved(w)) noh_feet_shift(w->state, w->home_moved);
         return;
     }
-    noh_part_feet(w, w->state, f, (float)w->ticks / (float)NOH_TICKS_PER_SECOND, w->cut || w->ticks > SKIP_TICKS);
+    noh_modifier_feet(w, w->state, f, (float)w->ticks / (float)NOH_TICKS_PER_SECOND, w->cut || w->ticks > SKIP_TICKS);
 }
 
 static const char *check(const void *user, const void *state)
@@ -55,9 +55,9 @@ static const char *check(const void *user, const void *state)
     return noh_feet_check(state);
 }
 
-noh_stage_part noh_stage_feet_part(const noh_kind_feet *feet)
+noh_modifier noh_feet_modifier(const noh_kind_feet *feet)
 {
-    noh_stage_part part;
+    noh_modifier part;
     NOH_ASSERT(feet);
     memset(&part, 0, sizeof part);
     part.name = "feet";

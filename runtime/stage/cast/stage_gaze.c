@@ -1,4 +1,4 @@
-/* stage_gaze.c: gazes and hands as parts of a kind. */
+/* stage_gaze.c: gazes and hands as modifiers of a kind. */
 #include "life/reach/gaze.h"
 #include "life/reach/reach.h"
 #include "noh/base.h"
@@ -17,7 +17,7 @@
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
 
 /* A point of the world in model space. */
-static void to_model(const noh_part_work *w, const float point[3], float out[3])
+static void to_model(const noh_modifier_work *w, const float point[3], float out[3])
 {
     float back[4];
     for (int i = 0; i < 3; i++) out[i] = (float)((double)point[i] - w->home[i]) - w->near_place[i];
@@ -26,14 +26,14 @@ static void to_model(const noh_part_work *w, const float point[3], float out[3])
     for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
 }
 
-static float seconds_of(const noh_part_work *w)
+static float seconds_of(const noh_modifier_work *w)
 {
     return (float)w->ticks / (float)NOH_TICKS_PER_SECOND;
 }
 
 /* ---- gazes ---- */
 
-static void look(noh_part_work *w)
+static void look(noh_modifier_work *w)
 {
     const noh_kind_gaze *shared = w->user;
     const noh_stage_kind *k = w->kind;
@@ -58,9 +58,9 @@ static void shift_gaze(const void *user, void *state, const float by[3])
     noh_sub3(point, by, point);
 }
 
-noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze)
+noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze)
 {
-    noh_stage_part part;
+    noh_modifier part;
     NOH_ASSERT(gaze);
     memset(&part, 0, sizeof part);
     part.name = "gaze";
@@ -74,7 +74,7 @@ noh_stage_part noh_stage_gaze_part(const noh_kind_gaze *gaze)
 
 /* ---- hands ---- */
 
-static void reach_out(noh_part_work *w)
+static void reach_out(noh_modifier_work *w)
 {
     const noh_reach_rig *rig = w->user;
     noh_reach *r = w->state;
@@ -97,9 +97,9 @@ static void shift_reach(const void *user, void *state, const float by[3])
     for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) noh_sub3(hands[i].point, by, hands[i].point);
 }
 
-noh_stage_part noh_stage_reach_part(const noh_reach_rig *rig)
+noh_modifier noh_reach_modifier(const noh_reach_rig *rig)
 {
-    noh_stage_part part;
+    noh_modifier part;
     NOH_ASSERT(rig);
     memset(&part, 0, sizeof part);
     part.name = "hands";

@@ -154,7 +154,7 @@ typedef struct differences {
     float turns[NOH_RAGDOLL_BODIES_MAX][3], offset[3];
 } differences;
 
-static void differ(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds,
+static void differ(const noh_stage_kind *k, const noh_stage_body *b, const noh_modifier_work *w, float seconds,
                    differences *d)
 {
     const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
@@ -188,7 +188,7 @@ static void keep_joints(const noh_ragdoll_fit *fit, const noh_transform *local, 
     for (uint32_t i = 0; i < fit->body_count; i++) kept[i] = local[fit->joints[i]];
 }
 
-static void begin(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w, float seconds)
+static void begin(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w, float seconds)
 {
     const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
     noh_transform kept[NOH_RAGDOLL_BODIES_MAX];
@@ -215,7 +215,7 @@ static void shares(float seconds, float duration, float share[2])
     share[1] = duration * (s - s3 * (6.0f - s * (8.0f - 3.0f * s)));
 }
 
-static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_part_work *w, float seconds)
+static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_modifier_work *w, float seconds)
 {
     const noh_ragdoll_fit *fit = &noh_stage_ragdoll_kind_of(k)->fit;
     float share[2];
@@ -230,7 +230,7 @@ static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_pa
     }
 }
 
-void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w)
+void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w)
 {
     int64_t since = noh_clock_since(w->clock, b->rise_clock);
     if (since < 0) since = 0;

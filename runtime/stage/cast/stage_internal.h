@@ -11,7 +11,7 @@
  *   stage_actor.c    actors come and go, and stand somewhere
  *   stage_play.c     layers
  *   stage_module.c   the slots of a kind's modules (module_internal.h)
- *   stage_part.c     what changes a pose before it is shown
+ *   stage_modifier.c what changes a pose before it is shown
  *   stage_step.c     time, callback keys, root motion
  *   stage_bounds.c   where an actor may be, and where and how near it is
  *   stage_look.c     phase 1: who is seen, how finely
@@ -175,7 +175,7 @@ typedef struct noh_stage_still {
 } noh_stage_still;
 
 typedef struct noh_stage_kind {
-    noh_kind_desc *desc; /* defaults filled in; `layers`, `parts` and modules are empty afterwards */
+    noh_kind_desc *desc; /* defaults filled in; `layers`, `modifiers` and modules are empty afterwards */
     const noh_kind_plan *plan;
     uint32_t first_actor;
     uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
@@ -522,18 +522,19 @@ static inline void noh_stage_joint_at(const noh_stage_kind *k, const noh_transfo
 }
 /* The work of an update of a character for a tick of the stage's clock, between its halves. */
 void noh_stage_begin_modifiers(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k,
-                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_part_work *work);
-extern const noh_module_type noh_stage_parts_type;
-/* [desc->part_count] NULL: none */
-static inline const noh_stage_part *noh_stage_parts_of(const noh_stage_kind *k)
+                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_modifier_work *work);
+extern const noh_module_type noh_stage_modifiers_type;
+/* [desc->modifier_count] NULL: none */
+static inline const noh_modifier *noh_stage_modifiers_of(const noh_stage_kind *k)
 {
-    return k->modules[NOH_SLOT_PARTS].shared;
+    return k->modules[NOH_SLOT_MODIFIERS].shared;
 }
 struct noh_kind_feet;
 struct noh_feet;
 /* A pose is put on the ground: noh_feet_step, from the actor's home. */
-void noh_part_feet(noh_part_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds, int cut);
-int noh_part_home_moved(const noh_part_work *w);
+void noh_modifier_feet(noh_modifier_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds,
+                       int cut);
+int noh_modifier_home_moved(const noh_modifier_work *w);
 
 /* After the radii of joints, floats and meshes are there. */
 void noh_stage_open_bounds(noh_stage_kind *k, noh_character_scratch *scratch);

@@ -254,7 +254,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     s->jobs[0].scratch = blocks->scratch;
     if (result == NOH_OK) result = open_bounds(s, k, error);
     if (result == NOH_OK) result = noh_stage_init_modules(k, error);
-    k->desc->parts = NULL;
+    k->desc->modifiers = NULL;
     k->desc->layers = NULL;
     k->desc->graphs = k->desc->face = k->desc->ragdoll = k->desc->springs = none;
     return result;

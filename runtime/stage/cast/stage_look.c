@@ -4,7 +4,7 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "stage/cast/part.h"
+#include "stage/cast/modifier.h"
 #include "stage/character/character.h"
 #include "stage/character/time_lod.h"
 #include "noh/base.h"
@@ -154,7 +154,7 @@ static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)
     if (a->look.pixels > 0.0f) settings.pixels = a->look.pixels;
     noh_character_set_behind(ch, s->head->behind_ticks);
     /* one that is out of view itself is posed in full for what it carries */
-    asked = a->look.posed || !shown->views || noh_stage_is_full(s, a) ? NOH_PART_FULL_DETAIL : scale;
+    asked = a->look.posed || !shown->views || noh_stage_is_full(s, a) ? NOH_MODIFIER_FULL_DETAIL : scale;
     shown->due = (uint8_t)choose_detail(k, ch, inner, &settings, asked);
     if (shown->due == NOH_DUE_AT_ONCE && was_seen && ch->time.posed) shown->due = NOH_STAGE_DUE_LONG;
     if (noh_stage_is_full(s, a)) {

@@ -7,17 +7,17 @@
 #include "noh/noh.h"
 
 /* States of an actor lie in this order, after a head: as they always have, so that their hashes stay. */
-static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_PARTS, NOH_SLOT_SPRINGS };
+static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_MODIFIERS, NOH_SLOT_SPRINGS };
 
 /* ---- of a desc ---- */
 
 noh_module noh_stage_wanted(const noh_kind_desc *d, uint32_t slot)
 {
-    static const noh_module none, parts = { &noh_stage_parts_type, NULL };
+    static const noh_module none, modifiers = { &noh_stage_modifiers_type, NULL };
     switch (slot) {
     case NOH_SLOT_SOURCE: return d->graphs;
     case NOH_SLOT_FACE: return d->face;
-    case NOH_SLOT_PARTS: return d->part_count ? parts : none;
+    case NOH_SLOT_MODIFIERS: return d->modifier_count ? modifiers : none;
     case NOH_SLOT_BODY: return d->ragdoll;
     default: return d->springs;
     }

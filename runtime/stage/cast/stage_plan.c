@@ -491,12 +491,12 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         hash = mix(hash, d.texture_set_count);
         hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
         hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
-        hash = mix(mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SOURCE)), d.part_count);
+        hash = mix(mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SOURCE)), d.modifier_count);
         hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_FACE));
         hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_BODY));
         if (d.springs.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
         if (d.weight_rules) hash = mix(hash, 2);
-        for (uint32_t p = 0; p < d.part_count; p++) hash = mix(hash, d.parts[p].state_bytes);
+        for (uint32_t p = 0; p < d.modifier_count; p++) hash = mix(hash, d.modifiers[p].state_bytes);
         for (uint32_t l = 0; l < k->level_count; l++) {
             hash = mix(hash, k->levels[l].slot_count);
         }

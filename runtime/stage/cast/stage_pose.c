@@ -59,8 +59,8 @@ void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
 {
     float *floats = k->floats + (size_t)index * k->float_count;
     take_floats(k, noh_stage_character(k, index), floats);
-    hold(k, index, floats); /* the game's word is over clips and modules */
-    noh_weight_rules_keep(k->targets.weight_rules, k->targets.weight_rule_count, floats);
+    hold(k, index, floats); /* held floats override clips and modules */
+    noh_weight_rules_apply(k->targets.weight_rules, k->targets.weight_rule_count, floats);
     if (k->targets.corrective_count) noh_stage_correct(k, index, floats);
 }
 
@@ -111,8 +111,9 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
  * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
 
 /* Over clips and graphs, in the order of the slots: the face, so that eyes, blinks, breath and speech are there; the
- * kind's own parts in the order of its desc, such as look-at, feet, hands and hair; the ragdoll over them; springs. */
-static void modify(const noh_stage_kind *k, uint32_t index, noh_part_work *w)
+ * kind's own modifiers in the order of its desc, such as look-at, feet, hands and hair; the ragdoll over them;
+ * springs. */
+static void modify(const noh_stage_kind *k, uint32_t index, noh_modifier_work *w)
 {
     for (uint32_t slot = NOH_SLOT_FACE; slot < NOH_SLOT_COUNT; slot++) {
         const noh_stage_module *m = &k->modules[slot];
@@ -136,7 +137,7 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     if (type) type->source->sample(s, job, k, i, ahead, 0, &set, &sampler);
     noh_character_update_begin(ch, &set, &p->scratch); /* local poses, blended */
     if (k->modifier_bytes) {
-        noh_part_work w;
+        noh_modifier_work w;
         noh_stage_begin_modifiers(s, job, k, i, clock, &p->scratch, &w);
         modify(k, i, &w);
     }

@@ -140,7 +140,7 @@ static void move_origin(const noh_stage_kind *k, noh_stage_body *b, const noh_pl
 }
 
 /* Where its bodies are now, and where they were in the pose before. */
-static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
+static void remember(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w)
 {
     if (w->cut) b->poses = 0;
     move_origin(k, b, &w->place);
@@ -163,7 +163,7 @@ static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
     return some;
 }
 
-static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part_work *w)
+static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w)
 {
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     float weights[NOH_RAGDOLL_BODIES_MAX];
@@ -174,7 +174,7 @@ static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_part
     noh_ragdoll_to_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
 }
 
-static void modify(noh_part_work *w)
+static void modify(noh_modifier_work *w)
 {
     const noh_stage_kind *k = w->kind;
     noh_stage_body *b = w->state;

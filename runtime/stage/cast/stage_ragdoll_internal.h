@@ -72,7 +72,7 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
 /* A place as bodies that count from `origin` have it. */
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
-void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_part_work *w);
+void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w);
 /* Whether a ragdoll moves its place. */
 static inline int noh_stage_falls_free(const noh_stage_body *b)
 {

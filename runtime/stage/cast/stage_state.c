@@ -126,7 +126,7 @@ static noh_result check_modules(const reader *r, const noh_stage_kind *k, uint32
 {
     const noh_stage_modifier_head *head = in_copy(r, k->modifier_states + index * k->modifier_bytes);
     if (k->modifier_bytes && head->was_posed > 1u) {
-        return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's parts", 0, 0);
+        return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's modifiers", 0, 0);
     }
     return noh_stage_check_modules(k, index, r->s->state, r->state, error);
 }

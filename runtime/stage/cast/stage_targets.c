@@ -47,7 +47,7 @@ static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t 
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats)
 {
     const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
-    noh_correct(k->targets.correctives, k->targets.corrective_count, floats);
+    noh_correctives_apply(k->targets.correctives, k->targets.corrective_count, floats);
     for (uint32_t i = 0; i < k->targets.corrective_count; i++) {
         const uint32_t target = k->targets.correctives[i].target;
         if (i && k->targets.correctives[i - 1u].target == target) continue;

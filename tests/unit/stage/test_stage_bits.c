@@ -30,7 +30,7 @@ typedef struct show {
     noh_stage *stage;
     void *memory;
     look_joint joint;
-    noh_stage_part gaze;
+    noh_modifier gaze;
 } show;
 
 static void path_of(const char *name, char path[1024])
@@ -61,8 +61,8 @@ static void open_show(show *s)
     s->gaze.check = look_check;
     s->gaze.user = &s->joint;
     s->gaze.state_bytes = sizeof(look_state);
-    s->kinds[0].parts = &s->gaze;
-    s->kinds[0].part_count = 1;
+    s->kinds[0].modifiers = &s->gaze;
+    s->kinds[0].modifier_count = 1;
     s->kinds[1].actor_count = MASKS;
     s->desc.kinds = s->kinds;
     s->desc.kind_count = 2;
@@ -107,7 +107,7 @@ static void frames(show *s, uint32_t first, uint32_t end, uint64_t *hashes)
             (void)noh_actor_play_graph(s->stage, actor, 0, "moves", f % 80u == 10u ? NULL : &leap, NULL);
         if (f % 8u == 2u) (void)noh_actor_set_parameter(s->stage, actor, f / 8u % 4u, 0.01f * (float)f, NULL);
         if (f % 16u == 5u) {
-            look_state *gaze = noh_actor_part(s->stage, actor, 0);
+            look_state *gaze = noh_actor_modifier(s->stage, actor, 0);
             gaze->target[0] = 0.1f * (float)(f % 50u);
             gaze->target[1] = 1.5f;
             gaze->wanted = 1.0f;

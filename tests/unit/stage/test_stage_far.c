@@ -208,7 +208,7 @@ typedef struct world {
     float moved[3];
     noh_kind_feet feet;
     noh_kind_gaze gaze;
-    noh_stage_part parts[2];
+    noh_modifier parts[2];
     noh_kind_ragdoll ragdoll;
     noh_actor walks, falls, held;
     cast c;
@@ -230,18 +230,18 @@ static void world_open(world *w)
     assert_int_equal(noh_gaze_rig_make(k->mesh, 0, &w->gaze.rig, NULL), NOH_OK);
     w->feet.ground.below = ground_below;
     w->feet.ground.user = w->moved;
-    w->parts[0] = noh_stage_gaze_part(&w->gaze);
-    w->parts[1] = noh_stage_feet_part(&w->feet);
+    w->parts[0] = noh_gaze_modifier(&w->gaze);
+    w->parts[1] = noh_feet_modifier(&w->feet);
     w->ragdoll.count = 1;
-    k->parts = w->parts;
-    k->part_count = 2;
+    k->modifiers = w->parts;
+    k->modifier_count = 2;
     k->ragdoll = noh_ragdoll_module(&w->ragdoll);
     cast_make(&w->c, NULL);
     w->walks = walker_at(&w->c, 1.0f, 2.0f);
     assert_int_equal(noh_stage_spawn(w->c.stage, PUPPETS, &aside, &w->falls, NULL), NOH_OK);
     assert_int_equal(noh_stage_spawn(w->c.stage, TUBES, &grip, &w->held, NULL), NOH_OK);
     assert_int_equal(noh_actor_attach(w->c.stage, w->held, w->walks, 5, NULL), NOH_OK);
-    noh_gaze *g = noh_actor_part(w->c.stage, w->walks, 0);
+    noh_gaze *g = noh_actor_modifier(w->c.stage, w->walks, 0);
     g->point[0] = 3.0f, g->point[1] = 1.0f, g->point[2] = 7.0f, g->looks = 1;
 }
 

@@ -23,7 +23,7 @@ typedef struct measures {
 typedef struct walk {
     cast cast;
     noh_kind_feet feet;
-    noh_stage_part part;
+    noh_modifier part;
     noh_world world;
     noh_obb boxes[STEPS];
     noh_plane planes[1];
@@ -47,7 +47,7 @@ static void open_walk(walk *w)
     if (noh_feet_rig_make(&source, &w->feet.rig, &said) != NOH_OK) fail_msg("rig: %s", said.what);
     assert_int_equal(w->feet.rig.leg_count, 2);
     w->feet.ground.world = &w->world;
-    w->part = noh_stage_feet_part(&w->feet);
+    w->part = noh_feet_modifier(&w->feet);
     w->planes[0].normal[1] = 1.0f;
     w->world.planes = w->planes;
     w->world.plane_count = 1;
@@ -61,8 +61,8 @@ static void make_walk(walk *w, uint32_t actors, uint32_t jobs)
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].parts = &w->part;
-    c->kinds[0].part_count = 1;
+    c->kinds[0].modifiers = &w->part;
+    c->kinds[0].modifier_count = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     c->desc.job_count = jobs;
@@ -185,7 +185,7 @@ static void measure_slide(walk *w, uint32_t l, const noh_foot *f, float points[N
 
 static void measure_frame(walk *w, noh_actor actor, uint32_t frame, measures *m)
 {
-    const noh_feet *feet = noh_actor_part(w->cast.stage, actor, 0);
+    const noh_feet *feet = noh_actor_modifier(w->cast.stage, actor, 0);
     for (uint32_t l = 0; l < 2; l++) {
         float points[NOH_FEET_POINTS][3];
         sole_at(w, actor, &w->feet.rig.legs[l], points);
@@ -318,7 +318,7 @@ static void feet_are_state_of_the_stage(void **state)
             }
             assert_int_equal(noh_stage_set_state(w.cast.stage, saved, bytes, NULL), NOH_OK);
         }
-        forged = noh_actor_part(w.cast.stage, noh_stage_actor_at(w.cast.stage, 3), 0);
+        forged = noh_actor_modifier(w.cast.stage, noh_stage_actor_at(w.cast.stage, 3), 0);
         forged = (noh_feet *)(void *)(saved +
                                       ((uint8_t *)forged - (const uint8_t *)noh_stage_state(w.cast.stage, &bytes)));
         forged->feet[0].part = 3;

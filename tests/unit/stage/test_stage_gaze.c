@@ -12,7 +12,7 @@ typedef struct scene {
     noh_kind_gaze gaze;
     noh_reach_rig reach;
     noh_kind_face face;
-    noh_stage_part parts[2];
+    noh_modifier parts[2];
     float middle[3], shoulder[3], arm; /* at rest */
 } scene;
 
@@ -43,8 +43,8 @@ static void open_scene(scene *s)
     if (noh_gaze_rig_make(source.pack, 0, &s->gaze.rig, &said) != NOH_OK) fail_msg("gaze: %s", said.what);
     if (noh_reach_rig_make(&source, &s->reach, &said) != NOH_OK) fail_msg("hands: %s", said.what);
     measure_rest(s, &source.joints);
-    s->parts[0] = noh_stage_gaze_part(&s->gaze);
-    s->parts[1] = noh_stage_reach_part(&s->reach);
+    s->parts[0] = noh_gaze_modifier(&s->gaze);
+    s->parts[1] = noh_reach_modifier(&s->reach);
 }
 
 static void make_scene(scene *s, uint32_t actors, uint32_t jobs)
@@ -54,8 +54,8 @@ static void make_scene(scene *s, uint32_t actors, uint32_t jobs)
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].parts = s->parts;
-    c->kinds[0].part_count = 2;
+    c->kinds[0].modifiers = s->parts;
+    c->kinds[0].modifier_count = 2;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     c->desc.job_count = jobs;
@@ -94,8 +94,8 @@ static void frame(scene *s)
 
 static void point_actor(scene *s, noh_actor actor, float time)
 {
-    noh_gaze *g = noh_actor_part(s->cast.stage, actor, 0);
-    noh_reach *r = noh_actor_part(s->cast.stage, actor, 1);
+    noh_gaze *g = noh_actor_modifier(s->cast.stage, actor, 0);
+    noh_reach *r = noh_actor_modifier(s->cast.stage, actor, 1);
     const float eyes[3] = { 1.2f * sinf(time), s->middle[1] + 0.3f * cosf(time), 2.0f };
     const float hand[3] = { s->shoulder[0] + 0.2f * s->arm * sinf(3.0f * time),
                             s->shoulder[1] - 0.2f * s->arm * cosf(3.0f * time), s->shoulder[2] + 0.6f * s->arm };
@@ -112,8 +112,8 @@ static void apply(const float m[12], const float v[3], float w, float out[3])
 /* Degrees off its point, and metres. */
 static void measure(const scene *s, noh_actor actor, float *turned, float *off)
 {
-    const noh_gaze *g = noh_actor_part(s->cast.stage, actor, 0);
-    const noh_reach *r = noh_actor_part(s->cast.stage, actor, 1);
+    const noh_gaze *g = noh_actor_modifier(s->cast.stage, actor, 0);
+    const noh_reach *r = noh_actor_modifier(s->cast.stage, actor, 1);
     const uint32_t head = s->gaze.rig.joints[s->gaze.rig.joint_count - 1u];
     float m[12], at[3], ahead[3], cosine = 0.0f, a = 0.0f, b = 0.0f;
     assert_int_equal(noh_actor_joint(s->cast.stage, actor, head, m, NULL), NOH_OK);
@@ -179,7 +179,7 @@ static void they_are_state_of_the_stage(void **state)
             assert_int_equal(noh_stage_set_state(s.cast.stage, saved, bytes, NULL), NOH_OK);
         }
         for (uint32_t part = 0; part < 2; part++) {
-            const uint8_t *at = noh_actor_part(s.cast.stage, noh_stage_actor_at(s.cast.stage, 3), part);
+            const uint8_t *at = noh_actor_modifier(s.cast.stage, noh_stage_actor_at(s.cast.stage, 3), part);
             float *forged = (float *)(void *)(saved + (at - own)), kept;
             if (part == 0) forged += 8; /* the gaze's point; a hand's comes first */
             kept = *forged;
@@ -212,7 +212,7 @@ static void a_face_owns_head_and_eyes(void **state)
         s.cast.kinds[0].face = noh_face_module(&s.face);
         make_scene(&s, 1, 1);
         if (looks) {
-            noh_gaze *g = noh_actor_part(s.cast.stage, noh_stage_actor_at(s.cast.stage, 0), 0);
+            noh_gaze *g = noh_actor_modifier(s.cast.stage, noh_stage_actor_at(s.cast.stage, 0), 0);
             g->point[0] = 3.0f, g->point[1] = 1.0f, g->point[2] = 2.0f, g->looks = 1;
         }
         for (uint32_t f = 0; f < 60; f++) frame(&s);

@@ -6,7 +6,7 @@
 
 static noh_error said;
 
-static void open_cast(cast *c, uint32_t actors, const noh_stage_part *parts, uint32_t part_count)
+static void open_cast(cast *c, uint32_t actors, const noh_modifier *parts, uint32_t part_count)
 {
     memset(c, 0, sizeof *c);
     cast_map(c, PUPPETS, "demo/puppet_levels.noh");
@@ -15,8 +15,8 @@ static void open_cast(cast *c, uint32_t actors, const noh_stage_part *parts, uin
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].parts = parts;
-    c->kinds[0].part_count = part_count;
+    c->kinds[0].modifiers = parts;
+    c->kinds[0].modifier_count = part_count;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
 }
@@ -28,9 +28,9 @@ static void close_cast(cast *c)
     noh_file_unmap(&c->files[1]);
 }
 
-static noh_stage_part gaze_of(const look_joint *joint)
+static noh_modifier gaze_of(const look_joint *joint)
 {
-    const noh_stage_part part = {
+    const noh_modifier part = {
         .name = "gaze", .modify = look_modify, .check = look_check, .user = joint, .state_bytes = sizeof(look_state)
     };
     return part;
@@ -46,7 +46,7 @@ static noh_actor enter(const cast *c, const char *clip)
 
 static void look_at(const cast *c, noh_actor actor, float x, float y, float z)
 {
-    look_state *g = noh_actor_part(c->stage, actor, 0);
+    look_state *g = noh_actor_modifier(c->stage, actor, 0);
     assert_non_null(g);
     g->target[0] = x, g->target[1] = y, g->target[2] = z;
     g->wanted = 1.0f;
@@ -61,7 +61,7 @@ static void frame(const cast *c, uint32_t number, float distance)
 /* The cosine of the angle between where the head faces and where the target is. */
 static float aim(const cast *c, noh_actor actor, const look_joint *joint)
 {
-    const look_state *g = noh_actor_part(c->stage, actor, 0);
+    const look_state *g = noh_actor_modifier(c->stage, actor, 0);
     float m[12], dot = 0.0f, length = 0.0f, scale = 0.0f;
     assert_int_equal(noh_actor_joint(c->stage, actor, joint->head, m, NULL), NOH_OK);
     for (int i = 0; i < 3; i++) {
@@ -80,7 +80,7 @@ static float aim(const cast *c, noh_actor actor, const look_joint *joint)
 /* The head of a walking puppet turns to what it is told to look at, and with it all that hangs on it; the feet stay. */
 static void a_head_turns_to_a_target(void **state)
 {
-    noh_stage_part gaze;
+    noh_modifier gaze;
     look_joint joint;
     noh_actor actor, other;
     noh_place place;
@@ -97,8 +97,8 @@ static void a_head_turns_to_a_target(void **state)
         assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
         look_at(&c, actor, place.position[0] + 1.5f, 1.9f, place.position[2] + 1.0f);
         look_at(&c, other, place.position[0] + 1.5f, 1.9f, place.position[2] + 1.0f);
-        ((look_state *)noh_actor_part(c.stage, other, 0))->wanted = 0.0f;
-        if (f < 10) ((look_state *)noh_actor_part(c.stage, actor, 0))->wanted = 0.0f;
+        ((look_state *)noh_actor_modifier(c.stage, other, 0))->wanted = 0.0f;
+        if (f < 10) ((look_state *)noh_actor_modifier(c.stage, actor, 0))->wanted = 0.0f;
         frame(&c, f, 4.0f);
         if (f == 15) assert_true(aim(&c, actor, &joint) < 0.9f); /* it takes its time */
     }
@@ -112,20 +112,20 @@ static void a_head_turns_to_a_target(void **state)
 
 /* ---- floats, and the order of parts ---- */
 
-static void set_float(noh_part_work *w)
+static void set_float(noh_modifier_work *w)
 {
     const uint32_t *index = w->user;
-    assert_true(noh_part_set_float(w, *index, 0.25f));
-    assert_false(noh_part_set_float(w, 100000, 1.0f));
-    assert_false(noh_part_set_float(w, *index, NAN));
+    assert_true(noh_modifier_set_float(w, *index, 0.25f));
+    assert_false(noh_modifier_set_float(w, 100000, 1.0f));
+    assert_false(noh_modifier_set_float(w, *index, NAN));
 }
 
-static void double_float(noh_part_work *w)
+static void double_float(noh_modifier_work *w)
 {
     const uint32_t *index = w->user;
     float *notes = w->scratch;
-    notes[3] = noh_part_float(w, *index);
-    assert_true(noh_part_set_float(w, *index, 2.0f * notes[3]));
+    notes[3] = noh_modifier_float(w, *index);
+    assert_true(noh_modifier_set_float(w, *index, 2.0f * notes[3]));
 }
 
 /* Parts run in the order of the desc, each over what the one before has left; what the game holds is over all. */
@@ -133,10 +133,8 @@ static void parts_set_floats_in_their_order(void **state)
 {
     static const noh_look posed = { .posed = 1 };
     uint32_t index = 0;
-    const noh_stage_part parts[2] = {
-        { .name = "set", .modify = set_float, .user = &index },
-        { .name = "double", .modify = double_float, .user = &index, .scratch_bytes = 16 }
-    };
+    const noh_modifier parts[2] = { { .name = "set", .modify = set_float, .user = &index },
+                                    { .name = "double", .modify = double_float, .user = &index, .scratch_bytes = 16 } };
     for (int without_clips = 0; without_clips < 2; without_clips++) {
         noh_pack no_clips;
         noh_actor actor;
@@ -156,7 +154,7 @@ static void parts_set_floats_in_their_order(void **state)
         assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
         assert_true(noh_actor_floats(c.stage, actor)[index] == 0.5f);
-        assert_true(noh_actor_part(c.stage, actor, 0) && !noh_actor_part(c.stage, actor, 2));
+        assert_true(noh_actor_modifier(c.stage, actor, 0) && !noh_actor_modifier(c.stage, actor, 2));
         assert_int_equal(noh_actor_hold_float(c.stage, actor, index, 1.0f, 0.5f, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
         assert_true(noh_actor_floats(c.stage, actor)[index] == 0.75f);
@@ -176,7 +174,7 @@ typedef struct witness_joints {
     uint32_t head, arm;
 } witness_joints;
 
-static void stand_between(noh_part_work *w)
+static void stand_between(noh_modifier_work *w)
 {
     const witness_joints *j = w->user;
     witness *seen = w->state;
@@ -213,7 +211,7 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
     const float aside[3] = { 6.0f, 1.5f, 3.0f };
     noh_kind_face face;
     witness_joints joints;
-    const noh_stage_part part = {
+    const noh_modifier part = {
         .name = "witness", .modify = stand_between, .user = &joints, .state_bytes = sizeof(witness)
     };
     float hand[12] = { 0 }, sleeve[12] = { 0 }, apart = 0.0f;
@@ -234,8 +232,8 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
         .face = noh_face_module(&face),
         .ragdoll = noh_ragdoll_module(&ragdoll),
         .springs = noh_springs_module(),
-        .parts = &part,
-        .part_count = 1,
+        .modifiers = &part,
+        .modifier_count = 1,
     };
     c.desc.kinds = c.kinds;
     c.desc.kind_count = 1;
@@ -253,8 +251,8 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
     assert_int_equal(noh_actor_look_at(c.stage, lies, aside, NULL), NOH_OK);
     frames_of(&c, 90);
     for (int i = 0; i < 4; i++) {
-        apart += fabsf(((witness *)noh_actor_part(c.stage, lies, 0))->head[i] -
-                       ((witness *)noh_actor_part(c.stage, stands, 0))->head[i]);
+        apart += fabsf(((witness *)noh_actor_modifier(c.stage, lies, 0))->head[i] -
+                       ((witness *)noh_actor_modifier(c.stage, stands, 0))->head[i]);
     }
     assert_true(apart > 0.1f);
     assert_int_equal(noh_actor_kill(c.stage, lies, NULL), NOH_OK);
@@ -268,11 +266,11 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
         assert_true(joint_moves(&c, lies, "forearm.L", hand) < 1e-3f); /* it breathes */
         assert_true(joint_moves(&c, lies, "sleeve.L", sleeve) < 2e-3f);
     }
-    ((witness *)noh_actor_part(c.stage, lies, 0))->bends = 1;
+    ((witness *)noh_actor_modifier(c.stage, lies, 0))->bends = 1;
     frames_of(&c, 1);
     assert_true(joint_moves(&c, lies, "forearm.L", hand) < 1e-3f);
     (void)joint_moves(&c, stands, "forearm.L", hand);
-    ((witness *)noh_actor_part(c.stage, stands, 0))->bends = 1;
+    ((witness *)noh_actor_modifier(c.stage, stands, 0))->bends = 1;
     frames_of(&c, 1);
     assert_true(joint_moves(&c, stands, "forearm.L", hand) > 0.1f);
     cast_close_stage(&c);
@@ -286,7 +284,7 @@ typedef struct log_state {
     uint32_t calls, cuts, ticks, reserved;
 } log_state;
 
-static void log_time(noh_part_work *w)
+static void log_time(noh_modifier_work *w)
 {
     log_state *l = w->state;
     assert_true(((uintptr_t)w->state & 15u) == 0 && w->actor.id != 0);
@@ -301,7 +299,7 @@ static void log_time(noh_part_work *w)
  * comes after that is a cut. */
 static void parts_are_told_how_much_time_has_passed(void **state)
 {
-    const noh_stage_part log = { .name = "log", .modify = log_time, .state_bytes = sizeof(log_state) };
+    const noh_modifier log = { .name = "log", .modify = log_time, .state_bytes = sizeof(log_state) };
     const log_state *l;
     uint32_t near_calls, far_calls;
     noh_actor actor;
@@ -310,7 +308,7 @@ static void parts_are_told_how_much_time_has_passed(void **state)
     open_cast(&c, 1, &log, 1);
     cast_make(&c, NULL);
     actor = enter(&c, "walk");
-    l = noh_actor_part(c.stage, actor, 0);
+    l = noh_actor_modifier(c.stage, actor, 0);
     for (uint32_t f = 0; f < 60; f++) frame(&c, 0, 3.0f);
     near_calls = l->calls;
     assert_int_equal(near_calls, 60);
@@ -336,7 +334,7 @@ static void parts_are_told_how_much_time_has_passed(void **state)
 
 static void every_byte_of_parts_is_planned(void **state)
 {
-    noh_stage_part parts[NOH_STAGE_PARTS_MAX + 1u];
+    noh_modifier parts[NOH_MODIFIERS_MAX + 1u];
     noh_stage_bytes list[64];
     uint64_t plain, sum = 0;
     noh_stage *made = NULL;
@@ -346,8 +344,8 @@ static void every_byte_of_parts_is_planned(void **state)
     open_cast(&c, 3, parts, 0);
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
     plain = c.plan.state_bytes;
-    for (uint32_t i = 0; i <= NOH_STAGE_PARTS_MAX; i++) parts[i].modify = log_time, parts[i].state_bytes = 8u + i;
-    c.kinds[0].part_count = 2; /* 8 and 9 bytes, each rounded up, and a head */
+    for (uint32_t i = 0; i <= NOH_MODIFIERS_MAX; i++) parts[i].modify = log_time, parts[i].state_bytes = 8u + i;
+    c.kinds[0].modifier_count = 2; /* 8 and 9 bytes, each rounded up, and a head */
     c.desc.job_count = 3;
     parts[1].scratch_bytes = 1000;
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
@@ -358,9 +356,9 @@ static void every_byte_of_parts_is_planned(void **state)
     assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes - 1u, NULL, &c.desc, &c.plan, &made, NULL),
                      NOH_ERR_MEMORY);
     assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, NULL, &c.desc, &c.plan, &made, NULL), NOH_OK);
-    c.kinds[0].part_count = NOH_STAGE_PARTS_MAX + 1u;
+    c.kinds[0].modifier_count = NOH_MODIFIERS_MAX + 1u;
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
-    c.kinds[0].part_count = 1, parts[0].modify = NULL;
+    c.kinds[0].modifier_count = 1, parts[0].modify = NULL;
     assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, &said), NOH_ERR_ARG);
     assert_non_null(strstr(said.what, "modify"));
     close_cast(&c);
@@ -368,7 +366,7 @@ static void every_byte_of_parts_is_planned(void **state)
 
 #define CAST 9u
 
-static void open_crowd(cast *c, const noh_stage_part *part, uint32_t jobs)
+static void open_crowd(cast *c, const noh_modifier *part, uint32_t jobs)
 {
     open_cast(c, CAST, part, 1);
     c->desc.job_count = jobs;
@@ -393,7 +391,7 @@ static void states_of_parts_are_put_back(void **state)
 {
     static const uint32_t jobs[] = { 1, 4, 7 };
     uint64_t hashes[200];
-    noh_stage_part gaze;
+    noh_modifier gaze;
     look_joint joint;
     cast c;
     (void)state;
@@ -416,7 +414,7 @@ static void states_of_parts_are_put_back(void **state)
             }
             assert_int_equal(noh_stage_set_state(c.stage, saved, bytes, NULL), NOH_OK);
         }
-        forged = noh_actor_part(c.stage, noh_stage_actor_at(c.stage, 4), 0);
+        forged = noh_actor_modifier(c.stage, noh_stage_actor_at(c.stage, 4), 0);
         forged = (look_state *)(void *)(saved +
                                         ((uint8_t *)forged - (const uint8_t *)noh_stage_state(c.stage, &bytes)));
         forged->turned = 2.0f;

@@ -47,7 +47,7 @@ typedef struct show {
     noh_spring_capsule capsule;
     noh_springs *springs;
     void *springs_memory;
-    noh_stage_part parts[PARTS];
+    noh_modifier parts[PARTS];
     noh_kind_ragdoll ragdoll;
     noh_world world;
     noh_obb steps[3];
@@ -115,7 +115,7 @@ static void hang_cloth(show *s, const noh_skeleton *joints)
     assert_true(desc.chain_count >= 2u);
     s->springs_memory = malloc(noh_springs_size(&desc));
     assert_int_equal(noh_springs_init(s->springs_memory, noh_springs_size(&desc), &desc, &s->springs, NULL), NOH_OK);
-    s->parts[SPRINGS] = noh_springs_part(s->springs);
+    s->parts[SPRINGS] = noh_springs_modifier(s->springs);
 }
 
 static void make_parts(show *s)
@@ -129,9 +129,9 @@ static void make_parts(show *s)
     assert_int_equal(noh_feet_rig_make(&source, &s->feet.rig, NULL), NOH_OK);
     assert_int_equal(noh_reach_rig_make(&source, &s->arms, NULL), NOH_OK);
     s->feet.ground.world = &s->world;
-    s->parts[GAZE] = noh_stage_gaze_part(&s->gaze);
-    s->parts[FEET] = noh_stage_feet_part(&s->feet);
-    s->parts[REACH] = noh_stage_reach_part(&s->arms);
+    s->parts[GAZE] = noh_gaze_modifier(&s->gaze);
+    s->parts[FEET] = noh_feet_modifier(&s->feet);
+    s->parts[REACH] = noh_reach_modifier(&s->arms);
     hang_cloth(s, &source.joints);
 }
 
@@ -152,8 +152,8 @@ static void open_show(show *s)
     s->kind.root_axes = NOH_ROOT_GROUND;
     s->kind.root_up = 1;
     s->kind.inertia = 1;
-    s->kind.parts = s->parts;
-    s->kind.part_count = PARTS;
+    s->kind.modifiers = s->parts;
+    s->kind.modifier_count = PARTS;
     s->kind.ragdoll = noh_ragdoll_module(&s->ragdoll);
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
@@ -188,9 +188,9 @@ static void act(show *s, uint32_t f, uint32_t seen[4])
 {
     const noh_actor actor = noh_stage_actor_at(s->stage, f % ACTORS);
     const noh_body_state body = noh_actor_body(s->stage, actor);
-    noh_gaze *gaze = noh_actor_part(s->stage, actor, GAZE);
-    noh_reach *reach = noh_actor_part(s->stage, actor, REACH);
-    const noh_feet *feet = noh_actor_part(s->stage, actor, FEET);
+    noh_gaze *gaze = noh_actor_modifier(s->stage, actor, GAZE);
+    noh_reach *reach = noh_actor_modifier(s->stage, actor, REACH);
+    const noh_feet *feet = noh_actor_modifier(s->stage, actor, FEET);
     noh_place place;
     assert_int_equal(noh_actor_place(s->stage, actor, &place, NULL), NOH_OK);
     for (int i = 0; i < 3; i++) {

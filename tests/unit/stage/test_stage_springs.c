@@ -18,7 +18,7 @@ typedef struct sleeves {
     noh_spring_capsule capsules[SLEEVES];
     noh_springs_desc desc;
     noh_springs *springs;
-    noh_stage_part part;
+    noh_modifier part;
 } sleeves;
 
 static uint32_t joint_of(const noh_pack *pack, const char *name)
@@ -62,7 +62,7 @@ static void sleeves_make(sleeves *s)
     void *memory = test_aligned(NULL, bytes);
     assert_int_equal(noh_springs_init(memory, bytes - 1u, &s->desc, &s->springs, NULL), NOH_ERR_MEMORY);
     if (noh_springs_init(memory, bytes, &s->desc, &s->springs, &said) != NOH_OK) fail_msg("%s", said.what);
-    s->part = noh_springs_part(s->springs);
+    s->part = noh_springs_modifier(s->springs);
 }
 
 static void open_dancers(cast *c, sleeves *s, uint32_t actors, uint32_t jobs, uint32_t colliders)
@@ -75,8 +75,8 @@ static void open_dancers(cast *c, sleeves *s, uint32_t actors, uint32_t jobs, ui
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    c->kinds[0].parts = &s->part;
-    c->kinds[0].part_count = 1;
+    c->kinds[0].modifiers = &s->part;
+    c->kinds[0].modifier_count = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     c->desc.job_count = jobs;
@@ -174,7 +174,7 @@ static void sleeves_stay_out_of_colliders(void **state)
 static uint8_t *forged_part(const cast *c, uint8_t *saved)
 {
     size_t bytes;
-    const uint8_t *live = noh_actor_part(c->stage, noh_stage_actor_at(c->stage, 1), 0);
+    const uint8_t *live = noh_actor_modifier(c->stage, noh_stage_actor_at(c->stage, 1), 0);
     return saved + (live - (const uint8_t *)noh_stage_state(c->stage, &bytes));
 }
 

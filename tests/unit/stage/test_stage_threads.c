@@ -69,7 +69,7 @@ static void run_phases(pool *p)
 static void open_cast(cast *c)
 {
     static look_joint joint;
-    static const noh_stage_part gaze = {
+    static const noh_modifier gaze = {
         .name = "gaze", .modify = look_modify, .check = look_check, .user = &joint, .state_bytes = sizeof(look_state)
     };
     static const uint32_t counts[KINDS] = { 24, 12 };
@@ -84,8 +84,8 @@ static void open_cast(cast *c)
     c->kinds[PUPPETS].root_up = 1;
     c->kinds[PUPPETS].graphs = noh_graph_module("moves");
     joint = look_joint_of(&c->packs[PUPPETS], "head");
-    c->kinds[PUPPETS].parts = &gaze;
-    c->kinds[PUPPETS].part_count = 1;
+    c->kinds[PUPPETS].modifiers = &gaze;
+    c->kinds[PUPPETS].modifier_count = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = KINDS;
     c->desc.job_count = THREADS;
@@ -127,7 +127,7 @@ static void direct(cast *c, test_random *r, uint32_t frame)
         (void)noh_actor_set_parameter(c->stage, actor, frame % 3u, test_random_float(r, 0, 1), NULL);
     }
     if (what == 4 && index < c->kinds[PUPPETS].actor_count && actor.id) {
-        look_state *state = noh_actor_part(c->stage, actor, 0);
+        look_state *state = noh_actor_modifier(c->stage, actor, 0);
         state->target[0] = test_random_float(r, -3, 3);
         state->wanted = 1.0f;
     }

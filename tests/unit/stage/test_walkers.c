@@ -18,7 +18,7 @@
 typedef struct street {
     cast cast;
     noh_kind_feet feet;
-    noh_stage_part part;
+    noh_modifier part;
     noh_world world;
     noh_plane floor;
     noh_crowd *crowd;
@@ -70,7 +70,7 @@ static noh_walkers_desc walkers_desc(const street *s, uint32_t near_max)
     memset(&desc, 0, sizeof desc);
     desc.walker_max = s->count;
     desc.near_max = near_max;
-    desc.feet_part = 1;
+    desc.feet_modifier = 1;
     desc.walk = "walk";
     desc.idle = noh_stage_find(s->cast.stage, 0, NOH_NAME_CLIP, "idle") == NOH_NONE ? NULL : "idle";
     desc.run = noh_stage_find(s->cast.stage, 0, NOH_NAME_CLIP, "run") == NOH_NONE ? NULL : "run";
@@ -90,7 +90,7 @@ static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_
     s->world.plane_count = 1;
     s->world.friction = 0.6f;
     s->feet.ground.world = &s->world;
-    s->part = noh_walkers_feet_part(&s->feet);
+    s->part = noh_walkers_feet_modifier(&s->feet);
     s->count = count;
     noh_kind_desc *k = &s->cast.kinds[0];
     k->mesh = &s->cast.packs[0];
@@ -104,8 +104,8 @@ static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_
     k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     k->root_up = 1;
     k->root_told = 1;
-    k->parts = &s->part;
-    k->part_count = 1;
+    k->modifiers = &s->part;
+    k->modifier_count = 1;
     s->cast.desc.kinds = s->cast.kinds;
     s->cast.desc.kind_count = 1;
     s->cast.desc.job_count = jobs;
@@ -540,12 +540,12 @@ static void the_nearest_have_their_feet_on_the_ground(void **state)
     frame(&s, CAST_STEP);
     assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, eye), 5);
     for (uint32_t i = 0; i < COUNT; i++) {
-        const uint32_t *near_feet = noh_actor_part(s.cast.stage, actors[i], 0);
+        const uint32_t *near_feet = noh_actor_modifier(s.cast.stage, actors[i], 0);
         const uint32_t is_near = near_feet[sizeof(noh_feet) / 4u + 1u];
         assert_int_equal(is_near, i < 3 || i > COUNT - 3u);
     }
     assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, other), 5);
-    assert_int_equal(((const uint32_t *)noh_actor_part(s.cast.stage, actors[0], 0))[sizeof(noh_feet) / 4u + 1u], 0);
+    assert_int_equal(((const uint32_t *)noh_actor_modifier(s.cast.stage, actors[0], 0))[sizeof(noh_feet) / 4u + 1u], 0);
     assert_int_equal(noh_stage_despawn(s.cast.stage, actors[12], NULL), NOH_OK);
     assert_int_equal(noh_walkers_near(s.walkers, s.cast.stage, other), 5);
     for (uint32_t f = 0; f < 30; f++) frame(&s, CAST_STEP); /* one that is gone is let go */
@@ -672,9 +672,9 @@ static void what_walkers_cannot_use_is_refused(void **state)
     desc.layer = 1;
     assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
     desc.layer = 0;
-    desc.feet_part = 2;
+    desc.feet_modifier = 2;
     assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
-    desc.feet_part = 0;
+    desc.feet_modifier = 0;
     assert_int_equal(noh_walkers_size(&desc), 0);
     assert_int_equal(noh_walkers_put(s.walkers, 3, s.cast.stage, (noh_actor){ 0 }, 0, NULL, &said), NOH_ERR_NOT_FOUND);
     close_street(&s);

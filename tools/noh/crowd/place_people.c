@@ -47,7 +47,7 @@ static int find_feet(place_people *p, const pack_file *file)
         return tool_fail(file->path, "a place needs a body that walks: %s", error.what);
     }
     p->feet.ground.world = &p->world;
-    p->parts[0] = noh_walkers_feet_part(&p->feet);
+    p->parts[0] = noh_walkers_feet_modifier(&p->feet);
     return 0;
 }
 
@@ -64,15 +64,15 @@ static void fill_kind(place_people *p, const pack_file *file, uint32_t agents, u
     k->root_told = 1;
     k->unpickable = 1;
     k->springs = noh_springs_module();
-    k->parts = p->parts;
-    k->part_count = 1;
+    k->modifiers = p->parts;
+    k->modifier_count = 1;
     p->ragdoll.count = ragdolls;
     p->ragdoll.world = &p->world;
     if (ragdolls) k->ragdoll = noh_ragdoll_module(&p->ragdoll);
     k->inertia = ragdolls != 0;
     p->walkers.walker_max = agents;
     p->walkers.near_max = agents < PLACE_NEAR ? agents : PLACE_NEAR;
-    p->walkers.feet_part = 1;
+    p->walkers.feet_modifier = 1;
     p->walkers.layer = PLACE_BODY;
     p->walkers.walk = "walk";
 }

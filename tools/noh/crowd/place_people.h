@@ -18,7 +18,7 @@ typedef struct place_people {
     noh_kind_desc kind;
     noh_walkers_desc walkers; /* idle and run are not known yet */
     noh_kind_feet feet;
-    noh_stage_part parts[1];
+    noh_modifier parts[1];
     noh_kind_ragdoll ragdoll;
     noh_world world;
     noh_plane floor;

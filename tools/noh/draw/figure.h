@@ -96,7 +96,7 @@ typedef struct figure {
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
     drawn_hair hair;
-    noh_stage_part hair_parts[NOH_STAGE_PARTS_MAX]; /* of its kind: the others, then the hair */
+    noh_modifier hair_parts[NOH_MODIFIERS_MAX]; /* of its kind: the others, then the hair */
     uint32_t *nodes;                                /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */

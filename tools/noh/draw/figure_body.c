@@ -154,16 +154,16 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
     b->metre = 1.0f / source.metres;
     if (b->looks && (kind->face.type || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k].rig, error) ||
                      add_face(b, kind, k, error))) {
-        b->parts[k][count++] = noh_stage_gaze_part(&b->gazes[k]);
+        b->parts[k][count++] = noh_gaze_modifier(&b->gazes[k]);
     }
     if (b->has_ground && !noh_feet_rig_make(&source, &b->feet[k].rig, error)) {
         b->feet[k].ground.world = &b->world;
-        b->parts[k][count++] = noh_stage_feet_part(&b->feet[k]);
+        b->parts[k][count++] = noh_feet_modifier(&b->feet[k]);
         kind->root_axes = NOH_ROOT_GROUND;
         kind->root_up = 1;
     }
-    kind->parts = count ? b->parts[k] : NULL;
-    kind->part_count = count;
+    kind->modifiers = count ? b->parts[k] : NULL;
+    kind->modifier_count = count;
     return count == (uint32_t)(b->looks + b->has_ground);
 }
 
@@ -194,8 +194,8 @@ int figure_body_place(const figure_body *b, noh_stage *stage, const noh_kind_des
         if (b->looks && kinds[k].face.type && noh_actor_look_at(stage, actors[k], b->point, &error)) {
             return tool_fail_error("--look-at", &error);
         }
-        if (b->looks && !kinds[k].face.type && kinds[k].part_count) {
-            noh_gaze *g = noh_actor_part(stage, actors[k], 0);
+        if (b->looks && !kinds[k].face.type && kinds[k].modifier_count) {
+            noh_gaze *g = noh_actor_modifier(stage, actors[k], 0);
             memcpy(g->point, b->point, sizeof g->point);
             g->looks = 1;
         }

@@ -33,7 +33,7 @@ typedef struct figure_body {
     noh_kind_face faces[NOH_STAGE_KINDS_MAX]; /* where no joint turns: eyes that targets turn */
     int has_faces;
     noh_kind_feet feet[NOH_STAGE_KINDS_MAX];
-    noh_stage_part parts[NOH_STAGE_KINDS_MAX][2];
+    noh_modifier parts[NOH_STAGE_KINDS_MAX][2];
     /* the drawn ground; zeros: none */
     gpu *g;
     GLuint program, vertex_array, buffer;

@@ -16,13 +16,13 @@ int figure_add_hair(figure *f)
         return result ? tool_fail_error(f->desc.file->path, &error) : 0;
     }
     noh_kind_desc *kind = &f->kinds[f->hair.desc.kind];
-    const uint32_t part = kind->part_count;
+    const uint32_t part = kind->modifier_count;
     f->hair.desc.in_state = 1;
     memcpy(f->hair.desc.wind, f->desc.wind, sizeof f->hair.desc.wind);
-    if (part) memcpy(f->hair_parts, kind->parts, part * sizeof *kind->parts);
-    f->hair_parts[part] = noh_actor_hair_part(&f->hair.desc);
-    kind->parts = f->hair_parts;
-    kind->part_count = part + 1u;
+    if (part) memcpy(f->hair_parts, kind->modifiers, part * sizeof *kind->modifiers);
+    f->hair_parts[part] = noh_actor_hair_modifier(&f->hair.desc);
+    kind->modifiers = f->hair_parts;
+    kind->modifier_count = part + 1u;
     return 0;
 }
 

@@ -18,7 +18,7 @@ void info_print_hair(const noh_pack *pack)
            cut.header->strip_count, cut.header->segment_count, cut.joint[0] ? "carried by " : "carried by the actor",
            cut.joint);
     printf("  on a stage %u bytes an actor; drawn with %zu bytes on the CPU, %llu on the GPU\n",
-           noh_actor_hair_part(&one).state_bytes, noh_actor_hair_size(&one) + noh_stage_hair_size(&one),
+           noh_actor_hair_modifier(&one).state_bytes, noh_actor_hair_size(&one) + noh_stage_hair_size(&one),
            (unsigned long long)noh_stage_hair_bytes(&one));
 }
 
@@ -42,7 +42,7 @@ void info_json_hair(json *j, const noh_pack *pack)
     json_integer(j, "spheres", cut.header->sphere_count);
     json_integer(j, "strips", cut.header->strip_count);
     json_integer(j, "segments", cut.header->segment_count);
-    json_integer(j, "actor_bytes", noh_actor_hair_part(&one).state_bytes);
+    json_integer(j, "actor_bytes", noh_actor_hair_modifier(&one).state_bytes);
     json_integer(j, "cpu_bytes", noh_actor_hair_size(&one) + noh_stage_hair_size(&one));
     json_integer(j, "gpu_bytes", noh_stage_hair_bytes(&one));
     json_close(j, '}');

@@ -1,6 +1,6 @@
 /* modules.h: what the library keeps to itself of runtime/noh/modules.h. */
-#ifndef NOH_STAGE_PART_H
-#define NOH_STAGE_PART_H
+#ifndef NOH_STAGE_MODIFIER_H
+#define NOH_STAGE_MODIFIER_H
 
 #include "noh/modules.h"
 
@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-#define NOH_PART_FULL_DETAIL 1e9f
+#define NOH_MODIFIER_FULL_DETAIL 1e9f
 
 #ifdef __cplusplus
 }

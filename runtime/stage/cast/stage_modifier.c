@@ -1,6 +1,6 @@
-/* stage_part.c: the parts of a kind, and what all that change a pose are given. */
+/* stage_modifier.c: the modifiers of a kind, and what all that change a pose are given. */
 #include "core/base/assert.h"
-#include "stage/cast/part.h"
+#include "stage/cast/modifier.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
@@ -20,17 +20,18 @@ static size_t aligned(size_t bytes)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
-/* ---- a kind's parts as a module ---- */
+/* ---- a kind's modifiers as a module ---- */
 
 static const char *bad(const noh_kind_desc *d, const void *desc)
 {
     (void)desc;
-    if (d->part_count > NOH_STAGE_PARTS_MAX) return "part_count of a kind is above NOH_STAGE_PARTS_MAX";
-    if (!d->parts) return "parts of a kind is NULL, and part_count is not 0";
-    for (uint32_t i = 0; i < d->part_count; i++) {
-        if (!d->parts[i].modify) return "a part of a kind: modify is NULL";
-        if (d->parts[i].state_bytes > NOH_STAGE_PART_BYTES_MAX || d->parts[i].scratch_bytes > NOH_STAGE_PART_BYTES_MAX)
-            return "a part of a kind: more bytes than NOH_STAGE_PART_BYTES_MAX";
+    if (d->modifier_count > NOH_MODIFIERS_MAX) return "modifier_count of a kind is above NOH_MODIFIERS_MAX";
+    if (!d->modifiers) return "modifiers of a kind is NULL, and modifier_count is not 0";
+    for (uint32_t i = 0; i < d->modifier_count; i++) {
+        if (!d->modifiers[i].modify) return "a modifier of a kind: modify is NULL";
+        if (d->modifiers[i].state_bytes > NOH_MODIFIER_BYTES_MAX ||
+            d->modifiers[i].scratch_bytes > NOH_MODIFIER_BYTES_MAX)
+            return "a modifier of a kind: more bytes than NOH_MODIFIER_BYTES_MAX";
     }
     return NULL;
 }
@@ -39,10 +40,10 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
                           noh_error *error)
 {
     (void)desc, (void)n, (void)error;
-    needs->kind_bytes = d->part_count * sizeof *d->parts;
-    for (uint32_t i = 0; i < d->part_count; i++) {
-        const size_t scratch = d->parts[i].scratch_bytes;
-        needs->actor_bytes += aligned(d->parts[i].state_bytes);
+    needs->kind_bytes = d->modifier_count * sizeof *d->modifiers;
+    for (uint32_t i = 0; i < d->modifier_count; i++) {
+        const size_t scratch = d->modifiers[i].scratch_bytes;
+        needs->actor_bytes += aligned(d->modifiers[i].state_bytes);
         needs->scratch_bytes = scratch > needs->scratch_bytes ? scratch : needs->scratch_bytes;
     }
     return NOH_OK;
@@ -51,25 +52,26 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
 static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
     (void)desc, (void)error;
-    memcpy(k->modules[NOH_SLOT_PARTS].shared, k->desc->parts, k->desc->part_count * sizeof *k->desc->parts);
+    memcpy(k->modules[NOH_SLOT_MODIFIERS].shared, k->desc->modifiers,
+           k->desc->modifier_count * sizeof *k->desc->modifiers);
     return NOH_OK;
 }
 
 static uint8_t *states_of(const noh_stage_kind *k, uint32_t index)
 {
-    return k->modules[NOH_SLOT_PARTS].states + index * k->modules[NOH_SLOT_PARTS].stride;
+    return k->modules[NOH_SLOT_MODIFIERS].states + index * k->modules[NOH_SLOT_MODIFIERS].stride;
 }
 
-void *noh_actor_part(noh_stage *stage, noh_actor actor, uint32_t part)
+void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier)
 {
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     uint8_t *state;
-    if (!a || part >= k->desc->part_count || stage->phase > NOH_STAGE_STEPPING) {
+    if (!a || modifier >= k->desc->modifier_count || stage->phase > NOH_STAGE_STEPPING) {
         return NULL;
     }
     state = states_of(k, noh_stage_index(k, a));
-    for (uint32_t i = 0; i < part; i++) state += aligned(noh_stage_parts_of(k)[i].state_bytes);
+    for (uint32_t i = 0; i < modifier; i++) state += aligned(noh_stage_modifiers_of(k)[i].state_bytes);
     return state;
 }
 
@@ -78,10 +80,10 @@ static void shift(noh_stage_kind *k, const float by[3])
 {
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
         uint8_t *state = states_of(k, a);
-        for (uint32_t i = 0; i < k->desc->part_count; i++) {
-            const noh_stage_part *part = &noh_stage_parts_of(k)[i];
-            if (k->actors[a].alive && part->shift) part->shift(part->user, state, by);
-            state += aligned(part->state_bytes);
+        for (uint32_t i = 0; i < k->desc->modifier_count; i++) {
+            const noh_modifier *m = &noh_stage_modifiers_of(k)[i];
+            if (k->actors[a].alive && m->shift) m->shift(m->user, state, by);
+            state += aligned(m->state_bytes);
         }
     }
 }
@@ -89,31 +91,31 @@ static void shift(noh_stage_kind *k, const float by[3])
 static noh_result check(const noh_stage_kind *k, const void *states, noh_error *error)
 {
     const uint8_t *state = states;
-    for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        const noh_stage_part *part = &noh_stage_parts_of(k)[i];
-        const char *what = part->check ? part->check(part->user, state) : NULL;
+    for (uint32_t i = 0; i < k->desc->modifier_count; i++) {
+        const noh_modifier *m = &noh_stage_modifiers_of(k)[i];
+        const char *what = m->check ? m->check(m->user, state) : NULL;
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
-        state += aligned(part->state_bytes);
+        state += aligned(m->state_bytes);
     }
     return NOH_OK;
 }
 
-static void modify(noh_part_work *w)
+static void modify(noh_modifier_work *w)
 {
     const noh_stage_kind *k = w->kind;
     uint8_t *state = w->state;
-    for (uint32_t i = 0; i < k->desc->part_count; i++) {
-        const noh_stage_part *part = &noh_stage_parts_of(k)[i];
+    for (uint32_t i = 0; i < k->desc->modifier_count; i++) {
+        const noh_modifier *m = &noh_stage_modifiers_of(k)[i];
         w->state = state;
-        w->user = part->user;
-        part->modify(w);
-        state += aligned(part->state_bytes);
+        w->user = m->user;
+        m->modify(w);
+        state += aligned(m->state_bytes);
     }
 }
 
-const noh_module_type noh_stage_parts_type = {
-    .slot = NOH_SLOT_PARTS,
-    .kind_name = "parts",
+const noh_module_type noh_stage_modifiers_type = {
+    .slot = NOH_SLOT_MODIFIERS,
+    .kind_name = "modifiers",
     .bad = bad,
     .measure = measure,
     .init = init,
@@ -122,9 +124,9 @@ const noh_module_type noh_stage_parts_type = {
     .modify = modify,
 };
 
-/* ---- what a part may ask ---- */
+/* ---- what a modifier may ask ---- */
 
-const float *noh_part_model(noh_part_work *work)
+const float *noh_modifier_model(noh_modifier_work *work)
 {
     NOH_ASSERT(work);
     if (!work->skeleton->joint_count) {
@@ -148,19 +150,19 @@ void noh_stage_joint_in(const noh_skeleton *skeleton, const noh_transform *local
 }
 
 /* Where a float lies in the set; NOH_NONE: behind it. */
-static uint32_t place_of(const noh_part_work *work, uint32_t index)
+static uint32_t place_of(const noh_modifier_work *work, uint32_t index)
 {
     const noh_stage_kind *k = work->kind;
     return index < k->float_count && k->named.sources[index] < k->set.float_count ? k->named.sources[index] : NOH_NONE;
 }
 
-float noh_part_float(const noh_part_work *work, uint32_t index)
+float noh_modifier_float(const noh_modifier_work *work, uint32_t index)
 {
     const uint32_t at = place_of(work, index);
     return at == NOH_NONE ? 0.0f : work->floats[at];
 }
 
-int noh_part_set_float(noh_part_work *work, uint32_t index, float value)
+int noh_modifier_set_float(noh_modifier_work *work, uint32_t index, float value)
 {
     const uint32_t at = place_of(work, index);
     if (at == NOH_NONE || value - value != 0.0f) {
@@ -172,7 +174,7 @@ int noh_part_set_float(noh_part_work *work, uint32_t index, float value)
 
 /* ---- in a job ---- */
 
-static void set_time(noh_part_work *w, noh_stage_modifier_head *head, int64_t clock, int cut)
+static void set_time(noh_modifier_work *w, noh_stage_modifier_head *head, int64_t clock, int cut)
 {
     w->clock = clock;
     w->cut = cut || !head->was_posed;
@@ -186,7 +188,7 @@ static void set_time(noh_part_work *w, noh_stage_modifier_head *head, int64_t cl
 }
 
 /* The place of the one at the end of its attachments. The home stays while the actor is near it. */
-static void set_place(const noh_stage *s, noh_stage_actor *a, noh_part_work *w)
+static void set_place(const noh_stage *s, noh_stage_actor *a, noh_modifier_work *w)
 {
     const noh_stage_actor *on = noh_stage_root_of(s, a);
     w->place = on->place;
@@ -202,13 +204,13 @@ static void set_place(const noh_stage *s, noh_stage_actor *a, noh_part_work *w)
     }
 }
 
-int noh_part_home_moved(const noh_part_work *w)
+int noh_modifier_home_moved(const noh_modifier_work *w)
 {
     return w->home_moved[0] != 0.0f || w->home_moved[1] != 0.0f || w->home_moved[2] != 0.0f;
 }
 
 void noh_stage_begin_modifiers(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k,
-                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_part_work *w)
+                               uint32_t index, int64_t clock, noh_character_scratch *scratch, noh_modifier_work *w)
 {
     const noh_character *ch = noh_stage_character(k, index);
     memset(w, 0, sizeof *w);
@@ -218,7 +220,7 @@ void noh_stage_begin_modifiers(const noh_stage *s, const noh_stage_job_part *job
     w->joint_count = scratch->joint_count;
     w->level = ch->lod.mesh;
     w->pixels_per_metre = k->actors[index].look.posed || noh_stage_is_full(s, &k->actors[index])
-                              ? NOH_PART_FULL_DETAIL
+                              ? NOH_MODIFIER_FULL_DETAIL
                               : ch->lod.pixels_per_metre;
     w->stage = s;
     w->kind = k;
