@@ -36,7 +36,8 @@ static const char *bad_head(const noh_character *ch, size_t bytes, const noh_cli
     if (bytes < sizeof *ch || ch->bytes > bytes) return "character: its size does not match its counts";
     if (ch->joint_count != set->joint_count || ch->float_count != set->float_count)
         return "character: made for another clip set";
-    if (ch->controller_offset != sizeof *ch || ch->palette_offsets[0] < sizeof *ch || ch->palette_offsets[0] > bytes)
+    if (ch->controller_offset != sizeof *ch || ch->palette_offsets[0] < sizeof *ch || ch->palette_offsets[0] > bytes ||
+        ch->palette_offsets[0] % sizeof(float))
         return "character: an offset does not match its counts";
     at = ch->palette_offsets[0];
     for (int i = 0; i < 2; i++) {

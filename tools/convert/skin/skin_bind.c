@@ -20,6 +20,7 @@ static int bind_skeletons(model *m, model_clips *made)
     for (uint32_t s = 0; s < m->skin_count; s++) {
         model_skin *skin = &m->skins[s];
         skin->set = made->skins[s].set;
+        free(skin->skeleton_joints); /* of an earlier binding */
         skin->skeleton_joints = model_zeros(skin->joint_count, sizeof *skin->skeleton_joints);
         if (!skin->skeleton_joints) {
             return 1;
