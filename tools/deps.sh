@@ -42,8 +42,9 @@ libosmesa6:a second GL
 ?clang:a second compiler
 ?cmake:using the installed library
 ?gcc-12-multilib:32 bits
-?libglew-dev:noh_gl.h beside its header
-?python3-glad:noh_gl.h beside its headers
+?libsdl2-dev:the first program of the guide
+?libglew-dev:noh_gl.h with its header
+?python3-glad:noh_gl.h with its headers
 ?libespeak-ng1:noh speak
 ?espeak-ng-data:noh speak
 ?libsndfile1:noh speak on recordings

@@ -104,8 +104,8 @@ for shader in shaders_es/*.glsl; do
     put 644 "$shader" "$DATADIR/noh/shaders/${shader##*/}"
 done
 put 644 shaders_es/README.md "$DATADIR/noh/shaders/README.md"
-for example in tools/examples/*.[ch]; do
-    put 644 "$example" "$DATADIR/noh/examples/${example##*/}"
+for example in tools/examples/*.[ch] tools/examples/window/*.c; do
+    put 644 "$example" "$DATADIR/noh/examples/${example#tools/examples/}"
 done
 for file in template.c platforms.h platform.h README.md; do
     put 644 "platform/$file" "$DATADIR/noh/platform/$file"
