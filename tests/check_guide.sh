@@ -12,11 +12,11 @@ guide=tools/docs/guide
 for page in $guide/*.md; do
     awk -v page="$page" '
         NR == 1 && !/^# / { print page ": does not begin with a title" }
-        NR == 3 && !/^!\[|^```/ && page !~ /add_a_chunk/ { print page ": does not begin with a picture or a program" }
+        NR == 3 && !/^!\[|^```/ { print page ": does not begin with a picture or a program" }
         { words += NF; if (NF) last = $0 }
         END {
             if (words > 1500) print page ": " words " words"
-            if (last !~ /^Next: / && page !~ /add_a_chunk/) print page ": does not end with the next page"
+            if (last !~ /^Next: /) print page ": does not end with the next page"
         }' "$page"
 done >"$work/shape"
 check 'pages begin with a picture or a program, have at most 1,500 words, and end with the next page' \

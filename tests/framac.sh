@@ -91,6 +91,6 @@ END
 prove noh_check_recipe runtime/core/pack/check_recipe.c <"$work/recipe"
 prove noh_check_ragdoll runtime/core/pack/check_ragdoll.c <"$work/ragdoll"
 prove noh_check_terrain runtime/core/pack/check_terrain.c </dev/null
-prove noh_check_materials runtime/core/pack/check_scene.c </dev/null
+prove noh_check_materials runtime/core/pack/check_materials.c </dev/null
 echo "$passed passed, $failed failed, 0 skipped"
 [ $failed = 0 ]

@@ -20,7 +20,7 @@ static int moves(const noh_pack *pack, uint32_t skeleton, uint32_t node)
 /* The nodes whose meshes a skeleton moves, at most NOH_STAGE_MESHES_MAX. */
 static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *nodes)
 {
-    const uint32_t all = pack->node_count ? pack->node_count : pack->mesh_count;
+    const uint32_t all = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
     uint32_t count = 0;
     for (uint32_t i = 0; i < all && count < NOH_STAGE_MESHES_MAX; i++) {
         if (moves(pack, skeleton, i)) nodes[count++] = i;
@@ -48,7 +48,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
 static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *error)
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < pack->skeleton_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_SKELETON].count; i++) {
         uint32_t *nodes = cast->nodes + NOH_STAGE_MESHES_MAX * (size_t)(count % NOH_STAGE_KINDS_MAX);
         const uint32_t node_count = list_nodes(pack, i, nodes);
         if (!node_count) continue;
@@ -102,7 +102,7 @@ static void add_fall(web_cast *cast)
 static uint32_t most_skin_joints(const noh_pack *pack)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < pack->skin_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_SKIN].count; i++) {
         noh_skin skin;
         (void)noh_pack_skin_at(pack, i, &skin, NULL);
         most = skin.header->joint_count > most ? skin.header->joint_count : most;

@@ -186,7 +186,7 @@ EMSCRIPTEN_KEEPALIVE int web_set_light(int environment)
 /* 1: the pack has precomputed light of vertices. */
 EMSCRIPTEN_KEEPALIVE int web_has_transfer(void)
 {
-    for (uint32_t i = 0; i < web.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < web.pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         if (noh_pack_mesh_at(&web.pack, i, &mesh, NULL) == NOH_OK && mesh.transfer) return 1;
     }

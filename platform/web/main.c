@@ -124,7 +124,7 @@ static void add_target(const char *name)
 
 static void list_targets(void)
 {
-    for (uint32_t i = 0; i < web.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < web.pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(&web.pack, i, &mesh, NULL);
         for (uint32_t t = 0; t < mesh.header->target_count; t++) {
@@ -258,7 +258,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_joint_count(void)
 
 EMSCRIPTEN_KEEPALIVE uint32_t web_clip_count(void)
 {
-    return web.pack.clip_count;
+    return web.pack.runs[NOH_CHUNK_CLIP].count;
 }
 EMSCRIPTEN_KEEPALIVE const char *web_clip_name(uint32_t i)
 {

@@ -514,7 +514,7 @@ typedef struct noh_pack_clip {
 } noh_pack_clip;
 
 /* Get a skeleton by index; header (NULL: not wanted) receives its hash and unit.
- * errors  NOT_FOUND index past skeleton_count (where: the index, need: the count) */
+ * errors  NOT_FOUND index past the last skeleton (where: the index, need: the count) */
 noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton,
                                 const noh_skeleton_header **header, noh_error *error);
 
@@ -523,11 +523,11 @@ const char *noh_pack_joint_name(const noh_pack *pack, uint32_t skeleton, uint32_
 
 /* Get the LOD levels of a skeleton as joint counts: each level poses that many of the first joints.
  * shapes   the result [*level_count], descending; the first is the skeleton's joint_count
- * returns  NULL, and a level_count of 0, if index is not below skeleton_count */
+ * returns  NULL, and a level_count of 0, if index is past the last skeleton */
 const uint32_t *noh_pack_joint_levels(const noh_pack *pack, uint32_t skeleton, uint32_t *level_count);
 
 /* Get a clip by index.
- * errors  NOT_FOUND index past clip_count (where: the index, need: the count) */
+ * errors  NOT_FOUND index past the last clip (where: the index, need: the count) */
 noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip *clip, noh_error *error);
 
 /* Find the skeleton in `pack` that a clip of another pack was built for, by hash, and its index (NULL: not wanted).

@@ -25,23 +25,39 @@ extern "C" {
 #define NOH_PACK_VERSION 5u
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
-#define NOH_CHUNK_STRINGS NOH_FOURCC('S', 'T', 'R', 'S')
-#define NOH_CHUNK_MESH NOH_FOURCC('M', 'E', 'S', 'H')
-#define NOH_CHUNK_NODES NOH_FOURCC('N', 'O', 'D', 'E')
-#define NOH_CHUNK_MATERIALS NOH_FOURCC('M', 'A', 'T', 'L')
-#define NOH_CHUNK_TEXTURE NOH_FOURCC('T', 'X', 'T', 'R')
-#define NOH_CHUNK_SKELETON NOH_FOURCC('S', 'K', 'E', 'L')
-#define NOH_CHUNK_CLIP NOH_FOURCC('M', 'O', 'T', 'N')
-#define NOH_CHUNK_SKIN NOH_FOURCC('S', 'K', 'I', 'N')
-#define NOH_CHUNK_GRAPH NOH_FOURCC('G', 'R', 'P', 'H')
-#define NOH_CHUNK_RECIPE NOH_FOURCC('R', 'C', 'P', 'E')
-#define NOH_CHUNK_RAGDOLL NOH_FOURCC('R', 'G', 'D', 'L')
-#define NOH_CHUNK_HAIR NOH_FOURCC('H', 'A', 'I', 'R')
-#define NOH_CHUNK_TRANSFER NOH_FOURCC('T', 'R', 'N', 'S')
-#define NOH_CHUNK_INFLUENCES NOH_FOURCC('I', 'N', 'F', 'L')
-#define NOH_CHUNK_WRINKLES NOH_FOURCC('W', 'R', 'N', 'K')
-#define NOH_CHUNK_SPRINGS NOH_FOURCC('S', 'P', 'R', 'G')
-#define NOH_CHUNK_TERRAIN NOH_FOURCC('T', 'E', 'R', 'R')
+
+/* Every type of chunk, in the order in which they come in a pack, so that no chunk refers to a later one. This list is
+ * all that the reader, the checkers and the converter know of the types: to add one, see the guide, add_a_chunk.md.
+ * X(NAME, name, tag, many): many is 1 where a pack may have several; name is that of the checker, noh_check_name in
+ * pack/check_name.c */
+#define NOH_CHUNKS(X)                                            \
+    X(STRINGS, strings, NOH_FOURCC('S', 'T', 'R', 'S'), 0)       \
+    X(TEXTURE, texture, NOH_FOURCC('T', 'X', 'T', 'R'), 1)       \
+    X(MATERIALS, materials, NOH_FOURCC('M', 'A', 'T', 'L'), 0)   \
+    X(SKELETON, skeleton, NOH_FOURCC('S', 'K', 'E', 'L'), 1)     \
+    X(SKIN, skin, NOH_FOURCC('S', 'K', 'I', 'N'), 1)             \
+    X(MESH, mesh, NOH_FOURCC('M', 'E', 'S', 'H'), 1)             \
+    X(TRANSFER, transfer, NOH_FOURCC('T', 'R', 'N', 'S'), 1)     \
+    X(INFLUENCES, influences, NOH_FOURCC('I', 'N', 'F', 'L'), 1) \
+    X(WRINKLES, wrinkles, NOH_FOURCC('W', 'R', 'N', 'K'), 1)     \
+    X(NODES, nodes, NOH_FOURCC('N', 'O', 'D', 'E'), 0)           \
+    X(CLIP, clip, NOH_FOURCC('M', 'O', 'T', 'N'), 1)             \
+    X(GRAPH, graph, NOH_FOURCC('G', 'R', 'P', 'H'), 1)           \
+    X(RECIPE, recipe, NOH_FOURCC('R', 'C', 'P', 'E'), 0)         \
+    X(RAGDOLL, ragdoll, NOH_FOURCC('R', 'G', 'D', 'L'), 0)       \
+    X(SPRINGS, springs, NOH_FOURCC('S', 'P', 'R', 'G'), 1)       \
+    X(HAIR, hair, NOH_FOURCC('H', 'A', 'I', 'R'), 0)             \
+    X(TERRAIN, terrain, NOH_FOURCC('T', 'E', 'R', 'R'), 0)
+
+/* NOH_CHUNK_STRINGS and so on: a place in the list. */
+#define NOH_CHUNK_TYPE(NAME, name, tag, many) NOH_CHUNK_##NAME,
+typedef enum noh_chunk_type { NOH_CHUNKS(NOH_CHUNK_TYPE) NOH_CHUNK_TYPES } noh_chunk_type;
+#undef NOH_CHUNK_TYPE
+
+/* NOH_TAG_STRINGS and so on: what a pack's chunk table says, noh_pack_chunk.type. */
+#define NOH_CHUNK_TAG(NAME, name, tag, many) NOH_TAG_##NAME = (int)(tag),
+typedef enum noh_chunk_tag { NOH_CHUNKS(NOH_CHUNK_TAG) } noh_chunk_tag;
+#undef NOH_CHUNK_TAG
 
 typedef struct noh_pack_header {
     uint32_t magic;
@@ -54,7 +70,7 @@ typedef struct noh_pack_header {
 } noh_pack_header;
 
 typedef struct noh_pack_chunk {
-    uint32_t type;
+    uint32_t type;      /* noh_chunk_tag */
     uint32_t name;      /* string offset */
     uint32_t name_hash; /* FNV-1a of the name */
     uint32_t offset;    /* from the start of the file, a multiple of 64 */

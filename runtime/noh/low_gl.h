@@ -844,7 +844,7 @@ typedef struct noh_gl_lod {
  * fetches only positions (for alpha-cut materials also uv, colours and texture) and writes no colour. It may precede
  * the other passes with the same framebuffer, or be used alone. A mesh whose variant is not in the renderer's desc
  * asserts, and is not drawn.
- * shapes  world[12] rows of 3 x 4; pictures[texture_count of the pack]
+ * shapes  world[12] rows of 3 x 4; pictures[textures of the pack]
  * morph   its deltas, accumulated for this LOD level or a finer one; NULL: no target is active
  * skin    its palettes; NULL: a rigid mesh, or the bind pose
  * lod     NULL: the finest uploaded level, all pixels */

@@ -394,7 +394,7 @@ typedef struct noh_stage_drawn {
     noh_gl_morph_binding morph;
     noh_gl_skin_binding skin;
     int is_morphed, is_skinned;     /* 0: do not use that binding */
-    const noh_gl_texture *pictures; /* [texture_count of its mesh pack], from the texture set of the actor */
+    const noh_gl_texture *pictures; /* [textures of its mesh pack], from the texture set of the actor */
 } noh_stage_drawn;
 
 /* Get a mesh of an actor, by the index of noh_actor_mesh_at. Valid until the next frame.

@@ -21,36 +21,30 @@ extern "C" {
  *
  * Threads: an open pack is read-only; any number of threads. */
 
+/* The chunks of a type, which are neighbours. */
+typedef struct noh_chunk_run {
+    uint32_t count, first; /* first: chunk index */
+} noh_chunk_run;
+
 typedef struct noh_pack {
     const uint8_t *bytes;
     uint32_t byte_count;
     uint32_t library_version; /* version of noh that wrote it (base.h); 0: before 0.2.0 */
     uint32_t chunk_count;
     const noh_pack_chunk *chunks;
+    noh_chunk_run runs[NOH_CHUNK_TYPES]; /* by noh_chunk_type */
+    /* arrays of chunks that are there once, for those who index them often */
     const char *strings;
     uint32_t string_bytes;
-    uint32_t texture_count, first_texture; /* chunk index of the first texture */
-    uint32_t mesh_count, first_mesh;
-    uint32_t skeleton_count, first_skeleton;
-    uint32_t skin_count, first_skin;
-    uint32_t clip_count, first_clip;
-    uint32_t graph_count, first_graph;
-    uint32_t transfer_count, first_transfer;
-    uint32_t influences_count, first_influences;
-    uint32_t wrinkles_count, first_wrinkles;
-    uint32_t springs_count, first_springs;
     uint32_t material_count;
     const noh_material *materials;
-    uint32_t node_count;
     const noh_node *nodes;
     const float *node_weights;
-    uint32_t node_weight_count;
+    uint32_t node_count;
     uint32_t recipe_row_count; /* of the face recipe; 0: none */
     const noh_recipe_row *recipe_rows;
     uint32_t ragdoll_row_count; /* of the ragdoll table; 0: none */
     const noh_pack_ragdoll_row *ragdoll_rows;
-    const noh_pack_hair_header *hair;       /* NULL: none */
-    const noh_pack_terrain_header *terrain; /* NULL: none */
 } noh_pack;
 
 typedef struct noh_texture {
@@ -76,11 +70,14 @@ noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, n
 /* The string at a stored offset; "" past the strings. */
 const char *noh_pack_string(const noh_pack *pack, uint32_t offset);
 
+/* The bytes of the n-th chunk of a type, which begin with its header; NULL past the last. */
+const void *noh_pack_chunk_at(const noh_pack *pack, noh_chunk_type type, uint32_t index);
+
 /* The name of the n-th chunk; "" past chunk_count. */
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
 
 /* Get the n-th texture.
- * errors  NOT_FOUND past texture_count (where: the index, need: the count); *texture is untouched */
+ * errors  NOT_FOUND past the last texture (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
 /* The bytes of a mip level; format is NOH_TEXTURE_RGBA8 or another of format.h. */
@@ -131,7 +128,7 @@ typedef struct noh_vertex {
 } noh_vertex;
 
 /* Get the n-th mesh at the finest level of the pack: 0, unless levels were stripped (`noh strip`).
- * errors  NOT_FOUND past mesh_count (where: the index, need: the count); *mesh is untouched */
+ * errors  NOT_FOUND past the last mesh (where: the index, need: the count); *mesh is untouched */
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error);
 
 /* The mesh at a LOD level; 0 is the full mesh. Past the last level it returns the coarsest, for a level that the pack
@@ -144,7 +141,7 @@ noh_mesh noh_mesh_at_lod(const noh_mesh *mesh, uint32_t level);
 uint32_t noh_mesh_source(const noh_mesh *mesh);
 
 /* Get the n-th skin; header->skin of a mesh is the index of its skin.
- * errors  NOT_FOUND past skin_count, and so also NOH_NONE, which rigid meshes have (where: the index, need: the
+ * errors  NOT_FOUND past the last skin, and so also NOH_NONE, which rigid meshes have (where: the index, need: the
  *         count) */
 noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin, noh_error *error);
 

@@ -45,12 +45,12 @@ static void write_clip_pack(const char *folder, const char *name, const char *ra
     memset(&options, 0, sizeof options);
     test_write_file(input, bvh, sizeof bvh - 1);
     if (ragdoll) {
-        options.ragdoll = test_path("two.ragdoll");
-        test_write_file(options.ragdoll, ragdoll, strlen(ragdoll));
+        options.texts[NOH_CHUNK_RAGDOLL] = test_path("two.ragdoll");
+        test_write_file(options.texts[NOH_CHUNK_RAGDOLL], ragdoll, strlen(ragdoll));
     }
     if (hair) {
-        options.hair = test_path("short.hair");
-        test_write_file(options.hair, hair, strlen(hair));
+        options.texts[NOH_CHUNK_HAIR] = test_path("short.hair");
+        test_write_file(options.texts[NOH_CHUNK_HAIR], hair, strlen(hair));
     }
     assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
     snprintf(path, sizeof path, "%s/%s.noh", folder, name);
@@ -188,8 +188,8 @@ static void write_terrain(const char *in)
     convert_failure failure;
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&options, 0, sizeof options);
-    options.terrain = test_path("hill.png");
-    test_write_file(options.terrain, png, sizeof png);
+    options.texts[NOH_CHUNK_TERRAIN] = test_path("hill.png");
+    test_write_file(options.texts[NOH_CHUNK_TERRAIN], png, sizeof png);
     assert_int_equal(convert_files(NULL, 0, &options, &out, &failure), 0);
     snprintf(path, sizeof path, "%s/terrain.noh", in);
     test_write_file(path, out.bytes, out.count);

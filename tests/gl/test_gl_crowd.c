@@ -141,7 +141,8 @@ static void measure_caps(void)
             add_cap_errors(&mesh, matrices, errors);
         }
     }
-    headers = (noh_mesh_header *)(void *)(levels.bytes + levels.pack.chunks[levels.pack.first_mesh].offset);
+    headers = (noh_mesh_header *)(void *)(levels.bytes +
+                                          levels.pack.chunks[levels.pack.runs[NOH_CHUNK_MESH].first].offset);
     for (uint32_t k = 0; k < LEVELS; k++) {
         memcpy(headers[k].influence_errors, errors, sizeof errors);
     }

@@ -163,8 +163,8 @@ static void open_head(head *h, model *m)
     desc.meshes = &h->mesh;
     desc.mesh_count = 1;
     assert_int_equal(renderer_create(&device, &desc, &h->renderer, NULL), NOH_OK);
-    assert_in_range(h->pack.texture_count, 1, 16);
-    for (uint32_t i = 0; i < h->pack.texture_count; i++) {
+    assert_in_range(h->pack.runs[NOH_CHUNK_TEXTURE].count, 1, 16);
+    for (uint32_t i = 0; i < h->pack.runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture texture;
         assert_int_equal(noh_pack_texture_at(&h->pack, i, &texture, NULL), NOH_OK);
         assert_int_equal(noh_gl_picture_create(&h->g->gl, &h->g->ledger, &texture, &h->pictures[i], NULL), NOH_OK);
@@ -176,7 +176,7 @@ static void close_head(head *h)
 {
     peel_close(&h->peel);
     noh_gl_renderer_delete(&h->renderer);
-    for (uint32_t i = 0; i < h->pack.texture_count; i++) {
+    for (uint32_t i = 0; i < h->pack.runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_gl_texture_delete(&h->g->gl, &h->g->ledger, &h->pictures[i]);
     }
     free(h->bytes);

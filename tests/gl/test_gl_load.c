@@ -39,8 +39,8 @@ static bytes_of_pack strip(const noh_pack *from, uint32_t level)
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error;
     bytes_of_pack k;
-    assert_true(from->mesh_count <= 64);
-    for (uint32_t i = 0; i < from->mesh_count; i++) {
+    assert_true(from->runs[NOH_CHUNK_MESH].count <= 64);
+    for (uint32_t i = 0; i < from->runs[NOH_CHUNK_MESH].count; i++) {
         const noh_mesh mesh = test_mesh(from, i);
         first[i] = noh_mesh_at_lod(&mesh, level).header->level;
     }
@@ -505,7 +505,7 @@ static void expect_refused(act *a, const noh_pack *pack, noh_result result)
 static bytes_of_pack forge(const noh_pack *from, size_t field, uint32_t value)
 {
     bytes_of_pack k = keep(from->bytes, from->byte_count);
-    uint8_t *mesh = k.bytes + k.pack.chunks[k.pack.first_mesh].offset;
+    uint8_t *mesh = k.bytes + k.pack.chunks[k.pack.runs[NOH_CHUNK_MESH].first].offset;
     memcpy(mesh + field, &value, sizeof value);
     return k;
 }

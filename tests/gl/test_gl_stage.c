@@ -158,7 +158,7 @@ static void the_picture_is_that_of_the_parts(void **state)
         desc.mesh_count = 1;
         assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &mesh, &on_gl, NULL), NOH_OK);
         assert_int_equal(renderer_create(&device, &desc, &renderer, NULL), NOH_OK);
-        for (uint32_t t = 0; t < pack->texture_count; t++) {
+        for (uint32_t t = 0; t < pack->runs[NOH_CHUNK_TEXTURE].count; t++) {
             noh_texture texture;
             assert_int_equal(noh_pack_texture_at(pack, t, &texture, NULL), NOH_OK);
             assert_int_equal(noh_gl_picture_create(&g->gl, &g->ledger, &texture, &pictures[t], NULL), NOH_OK);
@@ -181,7 +181,8 @@ static void the_picture_is_that_of_the_parts(void **state)
         assert_int_equal(canvas_read(&to, (uint8_t *)by_hand), 0);
         noh_gl_renderer_delete(&renderer);
         noh_gl_mesh_delete(&g->gl, &g->ledger, &on_gl);
-        for (uint32_t t = 0; t < pack->texture_count; t++) noh_gl_texture_delete(&g->gl, &g->ledger, &pictures[t]);
+        for (uint32_t t = 0; t < pack->runs[NOH_CHUNK_TEXTURE].count; t++)
+            noh_gl_texture_delete(&g->gl, &g->ledger, &pictures[t]);
         gpu_morph_close(&morph);
     }
     {

@@ -135,8 +135,8 @@ static void load_and_draw(const pack_file *file, const way *w)
     parts_open_as(&p, &g, file, w->path, w->accumulate, w->vertices, 3);
     assert_int_equal(noh_gl_morph_plan_of(p.morph.morph)->vertex_ring != 0, w->vertices);
     bytes = noh_gl_morph_plan_of(p.morph.morph)->gpu_bytes + NOH_GL_RENDERER_BYTES;
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) bytes += noh_gl_mesh_bytes(&p.meshes[i]);
-    for (uint32_t i = 0; i < file->pack.texture_count; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_MESH].count; i++) bytes += noh_gl_mesh_bytes(&p.meshes[i]);
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture texture;
         assert_int_equal(noh_pack_texture_at(&file->pack, i, &texture, NULL), NOH_OK);
         bytes += noh_gl_picture_bytes(&texture, 1);
@@ -219,7 +219,7 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path, int
     parts_open_as(&p, &g, file, path, NOH_ACCUMULATE_AUTO, vertices, 1);
     desc.layers_uint = noh_gl_morph_binding_of(p.morph.morph, 0).is_uint;
     desc.meshes = p.meshes;
-    desc.mesh_count = file->pack.mesh_count;
+    desc.mesh_count = file->pack.runs[NOH_CHUNK_MESH].count;
     desc.fades = 1;
     assert_int_equal(renderer_create(&(noh_gl_device){ &g.gl, NULL, &g.ledger, NULL, 0 }, &desc, &renderer, NULL),
                      NOH_OK);

@@ -105,7 +105,7 @@ void fixture_skin_open(fixture_skin *f, const fixture_skin_desc *desc)
     gpu *g = fixture_gpu();
     memset(f, 0, sizeof *f);
     f->pack = fixture_skinned_pack(desc->asset, &desc->options);
-    f->mesh_count = f->pack->mesh_count;
+    f->mesh_count = f->pack->runs[NOH_CHUNK_MESH].count;
     f->copies = desc->copies ? desc->copies : 1u;
     f->meshes = test_zeros(sizeof *f->meshes * f->mesh_count);
     f->gl_meshes = test_zeros(sizeof *f->gl_meshes * f->mesh_count);

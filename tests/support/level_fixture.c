@@ -360,14 +360,14 @@ void fixture_levels_open(fixture_levels *f, const noh_pack *from, uint32_t level
     byte_buffer out = { NULL, 0, 0, 0 };
     noh_pack_header *header;
     memset(f, 0, sizeof *f);
-    f->orders = test_zeros(sizeof *f->orders * from->mesh_count);
+    f->orders = test_zeros(sizeof *f->orders * from->runs[NOH_CHUNK_MESH].count);
     buffer_append(&out, from->bytes, table);
     for (uint32_t i = 0; i < from->chunk_count; i++) {
         byte_buffer chunk = { NULL, 0, 0, 0 };
         noh_pack_chunk *entry;
         noh_mesh mesh;
-        if (noh_pack_mesh_at(from, i - from->first_mesh, &mesh, NULL) == NOH_OK) {
-            f->orders[i - from->first_mesh] = make_mesh(&mesh, level_count, cell, &chunk);
+        if (noh_pack_mesh_at(from, i - from->runs[NOH_CHUNK_MESH].first, &mesh, NULL) == NOH_OK) {
+            f->orders[i - from->runs[NOH_CHUNK_MESH].first] = make_mesh(&mesh, level_count, cell, &chunk);
         } else {
             buffer_append(&chunk, from->bytes + from->chunks[i].offset, from->chunks[i].bytes);
         }
@@ -390,7 +390,7 @@ void fixture_levels_open(fixture_levels *f, const noh_pack *from, uint32_t level
 
 void fixture_levels_close(fixture_levels *f)
 {
-    for (uint32_t i = 0; i < f->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < f->pack.runs[NOH_CHUNK_MESH].count; i++) {
         free(f->orders[i]);
     }
     free(f->orders);

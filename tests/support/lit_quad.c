@@ -171,7 +171,7 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
     desc.meshes = &mesh;
     desc.mesh_count = 1;
     desc.shaders = q->shaders;
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture texture;
         noh_pack_texture_at(pack, i, &texture, NULL);
         assert_int_equal(noh_gl_picture_create(&g->gl, ledger, &texture, &pictures[i], NULL), NOH_OK);
@@ -184,7 +184,7 @@ static void draw(gpu *g, const lit_quad *q, const noh_pack *pack, noh_gl_ledger 
     noh_gl_draw_end(&renderer);
     noh_gl_renderer_delete(&renderer);
     noh_gl_mesh_delete(&g->gl, ledger, &drawn);
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_gl_texture_delete(&g->gl, ledger, &pictures[i]);
     }
 }

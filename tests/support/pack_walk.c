@@ -120,7 +120,7 @@ static void walk_textures(walk *w)
 /* The stage may refuse what the checker lets through, such as bones too short for it; never more. */
 static void walk_springs(walk *w)
 {
-    for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
+    for (uint32_t i = 0; i < w->pack->runs[NOH_CHUNK_SKELETON].count; i++) {
         noh_springs_desc desc;
         noh_springs *springs;
         size_t state_bytes, scratch_bytes, bytes;
@@ -336,8 +336,8 @@ static void walk_transfer(walk *w, const noh_mesh *mesh)
 
 static void walk_meshes(walk *w)
 {
-    noh_mesh *meshes = memory(sizeof *meshes * w->pack->mesh_count);
-    for (uint32_t i = 0; i < w->pack->mesh_count; i++) {
+    noh_mesh *meshes = memory(sizeof *meshes * w->pack->runs[NOH_CHUNK_MESH].count);
+    for (uint32_t i = 0; i < w->pack->runs[NOH_CHUNK_MESH].count; i++) {
         if (noh_pack_mesh_at(w->pack, i, &meshes[i], NULL) != NOH_OK) {
             abort();
         }
@@ -348,8 +348,8 @@ static void walk_meshes(walk *w)
             walk_transfer(w, &level);
         }
     }
-    if (w->pack->mesh_count) {
-        walk_plans(w, meshes, w->pack->mesh_count);
+    if (w->pack->runs[NOH_CHUNK_MESH].count) {
+        walk_plans(w, meshes, w->pack->runs[NOH_CHUNK_MESH].count);
     }
     free(meshes);
 }
@@ -469,7 +469,7 @@ static void walk_graph(walk *w, const noh_graph_pack_desc *desc)
 
 static void walk_graphs(walk *w, const noh_clip_bank *set, uint32_t skeleton)
 {
-    for (uint32_t i = 0; i < w->pack->graph_count; i++) {
+    for (uint32_t i = 0; i < w->pack->runs[NOH_CHUNK_GRAPH].count; i++) {
         const noh_graph_pack_desc desc = { w->pack, i, &set->clips, NULL, skeleton };
         walk_graph(w, &desc);
     }
@@ -543,7 +543,7 @@ static void walk_clips(walk *w)
             eat_name(w, noh_pack_string(w->pack, clip.markers[k].name));
         }
     }
-    for (uint32_t i = 0; i < w->pack->skeleton_count; i++) {
+    for (uint32_t i = 0; i < w->pack->runs[NOH_CHUNK_SKELETON].count; i++) {
         noh_skeleton skeleton;
         noh_pack_skeleton_at(w->pack, i, &skeleton, NULL, NULL);
         for (uint32_t j = 0; j < skeleton.joint_count; j++) {

@@ -44,8 +44,8 @@ static inline void parts_list(parts *p)
 {
     static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     const noh_pack *pack = &p->file->pack;
-    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
-    assert_true(pack->mesh_count <= PARTS_MAX && pack->texture_count <= PARTS_MAX);
+    const uint32_t count = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
+    assert_true(pack->runs[NOH_CHUNK_MESH].count <= PARTS_MAX && pack->runs[NOH_CHUNK_TEXTURE].count <= PARTS_MAX);
     for (uint32_t i = 0; i < count; i++) {
         part_item *item = &p->items[p->item_count];
         const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
@@ -71,31 +71,31 @@ static inline void parts_open_as(parts *p, gpu *g, const pack_file *file, noh_mo
     p->g = g;
     p->file = file;
     parts_list(p);
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         p->meshes[i] = test_mesh(pack, i);
         p->counts[i] *= instances;
         assert_int_equal(noh_gl_mesh_create(&g->gl, &g->ledger, &p->meshes[i], &p->on_gl[i], NULL), NOH_OK);
     }
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture texture;
         assert_int_equal(noh_pack_texture_at(pack, i, &texture, NULL), NOH_OK);
         assert_int_equal(noh_gl_picture_create(&g->gl, &g->ledger, &texture, &p->pictures[i], NULL), NOH_OK);
     }
     memset(&morph, 0, sizeof morph);
     morph.meshes = p->meshes;
-    morph.mesh_count = pack->mesh_count;
+    morph.mesh_count = pack->runs[NOH_CHUNK_MESH].count;
     morph.instance_counts = p->counts;
     morph.path = path;
     morph.accumulate = accumulate;
     morph.vertices = vertices;
     assert_int_equal(gpu_morph_open(&p->morph, g, &morph, file->path), 0);
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         assert_int_equal(noh_gl_morph_set_mesh(p->morph.morph, i, &p->on_gl[i], NULL), NOH_OK);
     }
     memset(&renderer, 0, sizeof renderer);
     renderer.layers_uint = noh_gl_morph_binding_of(p->morph.morph, 0).is_uint;
     renderer.meshes = p->meshes;
-    renderer.mesh_count = pack->mesh_count;
+    renderer.mesh_count = pack->runs[NOH_CHUNK_MESH].count;
     assert_int_equal(renderer_create(&device, &renderer, &p->renderer, NULL), NOH_OK);
     for (uint32_t i = 0; i < p->item_count; i++) {
         const uint32_t mesh = p->items[i].mesh;
@@ -111,10 +111,10 @@ static inline void parts_open(parts *p, gpu *g, const pack_file *file, noh_morph
 
 static inline void parts_close(parts *p)
 {
-    for (uint32_t i = 0; i < p->file->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < p->file->pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_gl_mesh_delete(&p->g->gl, &p->g->ledger, &p->on_gl[i]);
     }
-    for (uint32_t i = 0; i < p->file->pack.texture_count; i++) {
+    for (uint32_t i = 0; i < p->file->pack.runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_gl_texture_delete(&p->g->gl, &p->g->ledger, &p->pictures[i]);
     }
     noh_gl_renderer_delete(&p->renderer);
@@ -126,16 +126,16 @@ static inline noh_result parts_restore(parts *p)
 {
     const noh_gl_api *gl = &p->g->gl;
     noh_result result = NOH_OK;
-    for (uint32_t i = 0; !result && i < p->file->pack.mesh_count; i++) {
+    for (uint32_t i = 0; !result && i < p->file->pack.runs[NOH_CHUNK_MESH].count; i++) {
         result = noh_gl_mesh_restore(gl, &p->g->ledger, &p->on_gl[i], NULL);
     }
-    for (uint32_t i = 0; !result && i < p->file->pack.texture_count; i++) {
+    for (uint32_t i = 0; !result && i < p->file->pack.runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture texture;
         (void)noh_pack_texture_at(&p->file->pack, i, &texture, NULL);
         result = noh_gl_picture_restore(gl, &p->g->ledger, &texture, &p->pictures[i], NULL);
     }
     if (!result) result = noh_gl_morph_restore(p->morph.morph, NULL, 0, NULL);
-    for (uint32_t i = 0; !result && i < p->file->pack.mesh_count; i++) {
+    for (uint32_t i = 0; !result && i < p->file->pack.runs[NOH_CHUNK_MESH].count; i++) {
         result = noh_gl_morph_set_mesh(p->morph.morph, i, &p->on_gl[i], NULL);
     }
     return result ? result : noh_gl_renderer_restore(&p->renderer, NULL, 0, NULL);

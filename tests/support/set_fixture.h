@@ -12,6 +12,7 @@
 
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
+#include "convert/graph/graph_text.h"
 #include "convert/pack/pack_clips.h"
 #include "noh/pack.h"
 
@@ -68,19 +69,21 @@ static inline void set_fixture_clip(const raw_skeleton *s, raw_clip *c, uint32_t
 }
 
 /* The pack of a raw set, which is freed, and of graphs (NULL: none). */
-static inline set_fixture set_fixture_of_graphs(raw_set *raw, const graph_file *graphs)
+static inline set_fixture set_fixture_of_graphs(raw_set *raw, graph_file *graphs)
 {
     set_fixture x;
     model *empty = model_new();
     clips_settings settings;
     encoded_clips made;
+    void *chunks[NOH_CHUNK_TYPES] = { NULL };
     model_error error;
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&settings, 0, sizeof settings);
     if (clips_encode(&raw, 1, &settings, &made, &error)) {
         fail_msg("%s", error.what);
     }
-    made.extras.graphs = graphs;
+    chunks[NOH_CHUNK_GRAPH] = graphs;
+    made.chunks = chunks;
     if (pack_write(empty, NULL, NULL, &made, &out, &error)) {
         fail_msg("%s", error.what);
     }
@@ -100,7 +103,7 @@ static inline set_fixture set_fixture_of(raw_set *raw)
 
 /* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz; and graphs (NULL: none). */
 static inline set_fixture set_fixture_make_graphs(uint32_t joints, uint32_t clips, const uint32_t *frames,
-                                                  const graph_file *graphs)
+                                                  graph_file *graphs)
 {
     raw_set *raw = raw_set_new(joints, clips);
     set_fixture_joints(&raw->skeleton);

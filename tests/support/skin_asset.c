@@ -154,7 +154,7 @@ static void measure(skin_asset *a)
     double low[3] = { 1e30, 1e30, 1e30 }, high[3] = { -1e30, -1e30, -1e30 };
     oracle_pose(a->o, -1, 0.0, locals);
     oracle_worlds(a->o, locals, worlds);
-    for (uint32_t i = 0; i < a->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < a->pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh = test_mesh(&a->pack, i);
         double *weights = test_zeros(sizeof *weights * (mesh.header->target_count + 1u)),
                *out = test_zeros(sizeof *out * 3 * mesh.header->vertex_count);
@@ -184,7 +184,7 @@ void skin_asset_open(skin_asset *a, const char *name, const skin_options *option
 
 void skin_asset_close(skin_asset *a)
 {
-    for (uint32_t i = 0; i < a->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < a->pack.runs[NOH_CHUNK_MESH].count; i++) {
         free(a->sources[i]);
     }
     free(a->sources);

@@ -47,7 +47,7 @@ static inline uint8_t *springs_fixture_build(const char *const *lines, uint32_t 
     convert_options options;
     uint8_t *bytes;
     memset(&options, 0, sizeof options);
-    options.springs = file;
+    options.texts[NOH_CHUNK_SPRINGS] = file;
     options.spring_lines = lines;
     options.spring_line_count = line_count;
     test_write_file(input, springs_fixture_bvh, sizeof springs_fixture_bvh - 1);

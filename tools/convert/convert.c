@@ -4,26 +4,21 @@
 #include <string.h>
 
 #include "convert/clips/events_read.h"
+#include "convert/chunks/chunk_maker.h"
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/mocap/clean.h"
 #include "convert/model/model_build.h"
-#include "convert/model/recipe_make.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
 #include "convert/model/texture_cut.h"
 #include "convert/model/priority.h"
 #include "convert/model/tint.h"
-#include "convert/pack/pack_graph.h"
 #include "convert/pack/size_warn.h"
-#include "noh/base.h"
-#include "noh/body.h"
-#include "noh/clip.h"
-#include "noh/format.h"
-#include "noh/low_life.h"
-#include "noh/pack.h"
-#include "convert/springs/springs_bind.h"
 #include "convert/texture/texture_trim.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
 #include "sources.h"
 
 /* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
@@ -60,249 +55,6 @@ static int apply_events(const convert_options *options, source *s, model_error *
     failed = events_read(options->events, &list, error) || events_apply(list, s->sets, s->set_count, error);
     events_free(list);
     return failed;
-}
-
-/* The graphs, checked against the inputs; *out NULL: there are none. */
-static int read_graphs(const convert_options *options, const source *s, graph_file **out, convert_failure *failure)
-{
-    const char *model_file = failure->file;
-    *out = NULL;
-    if (!options->graph) {
-        return 0;
-    }
-    failure->file = options->graph;
-    if (graph_text_read(options->graph, out, &failure->line, &failure->error) ||
-        graph_text_bind(*out, s->sets, s->set_count, &failure->line, &failure->error)) {
-        return 1;
-    }
-    if (graph_text_warn(*out, s->sets, s->set_count, options->clip.check_loops, options->graph, s->m)) {
-        return out_of_memory(&failure->error);
-    }
-    failure->file = model_file;
-    return 0;
-}
-
-static int has_target(const model *m, const char *name)
-{
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
-            if (strcmp(m->meshes[i].targets[t].name, name) == 0) return 1;
-        }
-    }
-    return 0;
-}
-
-/* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and missing
- * targets fall back. */
-static int read_recipe_text(const convert_options *options, const source *s, recipe_text **out,
-                            convert_failure *failure)
-{
-    const char *model_file = failure->file;
-    failure->file = options->recipe;
-    if (recipe_read(options->recipe, out, &failure->line, &failure->error)) {
-        return 1;
-    }
-    for (uint32_t i = 0; i < (*out)->count; i++) {
-        const recipe_row *row = &(*out)->rows[i];
-        if (!has_target(s->m, row->target) &&
-            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->target)) {
-            return out_of_memory(&failure->error);
-        }
-        if (row->channel[0] == '+' && !has_target(s->m, row->channel + 1) &&
-            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->channel + 1)) {
-            return out_of_memory(&failure->error);
-        }
-    }
-    for (uint32_t i = 0; i < (*out)->wrinkle_count; i++) {
-        const wrinkle_row *row = &(*out)->wrinkles[i];
-        if (!has_target(s->m, row->target) &&
-            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->recipe, row->line, row->target)) {
-            return out_of_memory(&failure->error);
-        }
-    }
-    failure->line = 0;
-    failure->file = model_file;
-    return 0;
-}
-
-static int has_joint(const source *s, const char *name)
-{
-    for (uint32_t i = 0; i < s->set_count; i++) {
-        const raw_skeleton *k = &s->sets[i]->skeleton;
-        for (uint32_t j = 0; j < k->joint_count; j++) {
-            if (strcmp(k->joints[j].name, name) == 0) return 1;
-        }
-    }
-    return 0;
-}
-
-/* The ragdoll of a text; *out NULL: there is none. A joint that is not there is an error: the body would lack it. */
-static int read_ragdoll(const convert_options *options, const source *s, ragdoll_text **out, convert_failure *failure)
-{
-    const char *model_file = failure->file;
-    *out = NULL;
-    if (!options->ragdoll || options->only == CONVERT_CLIPS) return 0;
-    failure->file = options->ragdoll;
-    if (ragdoll_read(options->ragdoll, out, &failure->line, &failure->error)) return 1;
-    for (uint32_t i = 0; i < (*out)->count; i++) {
-        if (has_joint(s, (*out)->rows[i].joint)) continue;
-        failure->line = (*out)->rows[i].line;
-        (void)snprintf(failure->error.what, sizeof failure->error.what, "no skeleton has the joint '%s'",
-                       (*out)->rows[i].joint);
-        failure->error.where[0] = 0;
-        return 1;
-    }
-    failure->line = 0;
-    failure->file = model_file;
-    return 0;
-}
-
-/* The haircut of a text, grown; *out NULL: there is none. */
-static int read_hair(const convert_options *options, const source *s, hair_text **out, hair_grown *grown,
-                     convert_failure *failure)
-{
-    const char *model_file = failure->file;
-    *out = NULL;
-    memset(grown, 0, sizeof *grown);
-    if (!options->hair || options->only == CONVERT_CLIPS) return 0;
-    failure->file = options->hair;
-    if (hair_read(options->hair, out, &failure->line, &failure->error)) return 1;
-    if ((*out)->joint && !has_joint(s, (*out)->joint)) {
-        (void)snprintf(failure->error.what, sizeof failure->error.what, "no skeleton has the joint '%s'",
-                       (*out)->joint);
-        failure->error.where[0] = 0;
-        return 1;
-    }
-    failure->line = 0;
-    failure->file = model_file;
-    return hair_grow(*out, grown) ? out_of_memory(&failure->error) : 0;
-}
-
-/* The ground; *out NULL: there is none. */
-static int read_terrain(const convert_options *options, terrain *read, const terrain **out, convert_failure *failure)
-{
-    const char *model_file = failure->file;
-    memset(read, 0, sizeof *read);
-    *out = NULL;
-    if (!options->terrain) return 0;
-    failure->file = options->terrain;
-    if (terrain_read(options->terrain, &options->ground, read, &failure->error)) return 1;
-    if (options->report) {
-        fprintf(options->report, "terrain: %u x %u heights, %g x %g m, %.3f to %.3f m, steps of %.3g mm", read->width,
-                read->depth, (double)read->spacing * (read->width - 1u), (double)read->spacing * (read->depth - 1u),
-                (double)read->low, (double)read->high, 1000.0 * (double)read->scale);
-        if (read->hole_count) fprintf(options->report, "; %u without ground, set to the lowest", read->hole_count);
-        fprintf(options->report, "\n");
-    }
-    failure->file = model_file;
-    *out = read;
-    return 0;
-}
-
-/* The recipe: of a text, of extras, of names; *out NULL: there is none. */
-static int read_recipe(const convert_options *options, const source *s, recipe_text **out, convert_failure *failure)
-{
-    uint32_t named = 0;
-    *out = NULL;
-    if (options->only == CONVERT_CLIPS) {
-        return 0;
-    }
-    if (options->recipe && read_recipe_text(options, s, out, failure)) {
-        return 1;
-    }
-    if (!*out) *out = recipe_new();
-    if (!*out || recipe_add_extras(*out, s->m) || recipe_add_lips(*out, s->m) ||
-        (!options->no_correctives && recipe_add_named(*out, s->m, &named))) {
-        (void)snprintf(failure->error.what, sizeof failure->error.what,
-                       "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
-        return 1;
-    }
-    if (named && options->report) {
-        fprintf(options->report, "%u correctives by target names (--no-correctives turns them off)\n", named);
-    }
-    if (!(*out)->count && !(*out)->wrinkle_count) {
-        recipe_free(*out);
-        *out = NULL;
-    }
-    return 0;
-}
-
-/* ---- springs ---- */
-
-/* A line of the command line; it has no number. */
-static int read_spring_line(const char *given, springs_text *text, convert_failure *failure)
-{
-    const uint32_t chains = text->chain_count, colliders = text->collider_count;
-    uint32_t line;
-    if (springs_text_add(text, given, strlen(given), &line, &failure->error)) {
-        failure->file = given;
-        failure->error.where[0] = 0;
-        return 1;
-    }
-    for (uint32_t i = chains; i < text->chain_count; i++) text->chains[i].line = 0;
-    for (uint32_t i = colliders; i < text->collider_count; i++) text->colliders[i].line = 0;
-    return 0;
-}
-
-/* The springs of the file's extras and of its extension. */
-static int bind_own_springs(const source *s, set_springs *out, convert_failure *failure)
-{
-    springs_text *text = springs_text_new();
-    const char *lines = s->m->spring_lines;
-    uint32_t line = 0;
-    int failed = !text;
-    for (; !failed && lines && *lines; lines += strcspn(lines, "\n") + 1u) {
-        const size_t size = strcspn(lines, "\n");
-        if (springs_text_add(text, lines, size, &line, &failure->error)) {
-            failed = model_warn(s->m, "springs in extras: '%.*s' was left out: %s", (int)(size < 60u ? size : 60u),
-                                lines, failure->error.what);
-        }
-    }
-    memset(&failure->error, 0, sizeof failure->error);
-    if (failed || springs_bind_nodes(s->m, s->sets, s->set_count, out)) {
-        springs_text_free(text);
-        return out_of_memory(&failure->error);
-    }
-    failed = springs_bind_text(text, s->m, s->sets, s->set_count, 1, out, &line, &failure->error);
-    springs_text_free(text);
-    return failed;
-}
-
-static int read_given_springs(const convert_options *options, springs_text *text, convert_failure *failure)
-{
-    if (options->springs && springs_text_read(text, options->springs, &failure->line, &failure->error)) {
-        failure->file = options->springs;
-        return 1;
-    }
-    for (uint32_t i = 0; i < options->spring_line_count; i++) {
-        if (read_spring_line(options->spring_lines[i], text, failure)) return 1;
-    }
-    return 0;
-}
-
-static int bind_given_springs(const convert_options *options, const source *s, set_springs *out,
-                              convert_failure *failure)
-{
-    springs_text *text = springs_text_new();
-    int failed = text ? read_given_springs(options, text, failure) : out_of_memory(&failure->error);
-    if (!failed && springs_bind_text(text, s->m, s->sets, s->set_count, 0, out, &failure->line, &failure->error)) {
-        failure->file = failure->line ? options->springs : "--spring";
-        failed = 1;
-    }
-    springs_text_free(text);
-    return failed;
-}
-
-/* *out [set_count]: what swings, in all skeletons; joints are in their last order. */
-static int read_springs(const convert_options *options, const source *s, set_springs **out, convert_failure *failure)
-{
-    int failed;
-    *out = calloc(s->set_count + 1u, sizeof **out);
-    if (!*out) return out_of_memory(&failure->error);
-    if (options->only == CONVERT_CLIPS) return 0;
-    failed = options->springs || options->spring_line_count ? bind_given_springs(options, s, *out, failure)
-                                                            : bind_own_springs(s, *out, failure);
-    return failed || (springs_sort(*out, s->set_count) && out_of_memory(&failure->error));
 }
 
 /* ---- encoding ---- */
@@ -380,26 +132,14 @@ static int encode_meshes(model *m, const convert_options *options, encoded *e, m
     return failed;
 }
 
-/* Whether the rows of its table hang together. */
-static int check_ragdoll(const noh_pack *pack, model_error *error)
+static int check_chunks(const noh_pack *pack, model_error *error)
 {
-    for (uint32_t i = 0; pack->ragdoll_row_count && i < pack->skeleton_count; i++) {
-        noh_ragdoll_source s = { .pack = pack, .skeleton = i };
-        const noh_skeleton_header *header;
-        noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
-        noh_ragdoll_rig rig;
-        noh_error refusal = { NOH_OK, "", 0, 0 };
-        uint32_t count;
-        if (noh_pack_skeleton_at(pack, i, &s.joints, &header, NULL)) continue;
-        s.metres = header->unit_cm / 100.0f;
-        if (noh_ragdoll_find_rows(&s, rows, &count, NULL) || count != pack->ragdoll_row_count) continue;
-        if (!noh_ragdoll_rig_make(&s, rows, count, &rig, &refusal)) continue;
-        (void)snprintf(error->what, sizeof error->what, "--ragdoll: %s ('%s')", refusal.what,
-                       noh_pack_joint_name(pack, i, rows[refusal.where < count ? refusal.where : 0].joint));
-        error->where[0] = 0;
-        return 1;
+    int failed = 0;
+    for (int type = 0; type < NOH_CHUNK_TYPES && !failed; type++) {
+        const chunk_maker *maker = chunk_maker_of((noh_chunk_type)type);
+        failed = maker->check && maker->check(pack, error);
     }
-    return 0;
+    return failed;
 }
 
 /* Open the pack with the library's own reader: a pack that it refuses is never written. */
@@ -415,7 +155,7 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
         buffer_free(out);
         return 1;
     }
-    if (pack_check_graphs(&pack, error) || check_ragdoll(&pack, error)) {
+    if (check_chunks(&pack, error)) {
         buffer_free(out);
         return 1;
     }
@@ -458,7 +198,7 @@ static int strip(byte_buffer *out, const strip_levels *levels, model_error *erro
         return 0;
     }
     (void)noh_pack_open(out->bytes, out->count, &pack, NULL); /* check_own_pack opened it */
-    first = calloc(pack.mesh_count + 1u, sizeof *first);
+    first = calloc(pack.runs[NOH_CHUNK_MESH].count + 1u, sizeof *first);
     failed = first ? strip_levels_of(levels, &pack, first, error) || pack_strip(&pack, first, &stripped, error)
                    : out_of_memory(error);
     free(first);
@@ -511,7 +251,7 @@ static int trim_textures(model *m, const mesh_levels *levels, const convert_opti
     return 0;
 }
 
-static int convert_source(const source *s, const pack_extras *extras, const convert_options *options, byte_buffer *out,
+static int convert_source(const source *s, void *const *chunks, const convert_options *options, byte_buffer *out,
                           model_error *error)
 {
     model empty;
@@ -528,7 +268,7 @@ static int convert_source(const source *s, const pack_extras *extras, const conv
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
-    failed = make_wrinkles(s, extras->recipe, options, error);
+    failed = make_wrinkles(s, chunks[NOH_CHUNK_RECIPE], options, error);
     set_textures(s, options);
     if (!failed && options->only != CONVERT_MESH && size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm)) {
         failed = out_of_memory(error);
@@ -540,7 +280,7 @@ static int convert_source(const source *s, const pack_extras *extras, const conv
              trim_textures(s->m, meshes.levels, options, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
-        made.extras = *extras;
+        made.chunks = chunks;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
                  check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
@@ -610,21 +350,29 @@ static int join_all(const char *const *inputs, int count, int base, const conver
     return 0;
 }
 
+/* Of the makers that read once joints are in their last order, or of the others. */
+static int read_chunks(const convert_options *options, const source *s, int in_joint_order, void **made,
+                       convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    for (int type = 0; type < NOH_CHUNK_TYPES; type++) {
+        const chunk_maker *maker = chunk_maker_of((noh_chunk_type)type);
+        if (!maker->read || maker->in_joint_order != in_joint_order) continue;
+        if (maker->read(options, s, &made[type], failure)) return 1;
+        failure->file = model_file;
+        failure->line = 0;
+    }
+    return 0;
+}
+
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure)
 {
     source *all = calloc((size_t)input_count + 1u, sizeof *all);
-    graph_file *graphs = NULL;
-    recipe_text *recipe = NULL;
-    ragdoll_text *ragdoll = NULL;
-    set_springs *springs = NULL;
-    hair_text *hair = NULL;
-    hair_grown grown = { .hair_count = 0 };
-    const terrain *ground = NULL;
-    terrain read_ground = { .heights = NULL };
+    void *chunks[NOH_CHUNK_TYPES] = { NULL };
     int failed, base = 0;
     memset(failure, 0, sizeof *failure);
-    failure->file = input_count ? inputs[0] : options->terrain;
+    failure->file = input_count ? inputs[0] : options->texts[NOH_CHUNK_TERRAIN];
     if (!all || (!input_count && !(all[0].m = model_new()))) {
         free(all);
         return out_of_memory(&failure->error);
@@ -635,29 +383,19 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
         failed = join_all(inputs, input_count, base, options, all, failure) ||
                  make_surfaces(options, &all[base], &failure->error) ||
                  apply_events(options, &all[base], &failure->error) ||
-                 read_graphs(options, &all[base], &graphs, failure) ||
-                 read_recipe(options, &all[base], &recipe, failure) ||
-                 read_ragdoll(options, &all[base], &ragdoll, failure) ||
-                 read_hair(options, &all[base], &hair, &grown, failure) ||
-                 read_terrain(options, &read_ground, &ground, failure);
-        failed = failed ||
-                 (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) && out_of_memory(&failure->error));
-        failed = failed || read_springs(options, &all[base], &springs, failure);
-        if (!failed) {
-            const pack_extras extras = { graphs, recipe, ragdoll, springs, hair, &grown, ground };
-            failed = convert_source(&all[base], &extras, options, out, &failure->error);
-        }
+                 read_chunks(options, &all[base], 0, chunks, failure) ||
+                 (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) &&
+                  out_of_memory(&failure->error)) ||
+                 read_chunks(options, &all[base], 1, chunks, failure) ||
+                 convert_source(&all[base], chunks, options, out, &failure->error);
     }
-    springs_free(springs, all[base].set_count);
     for (int i = 0; i < input_count || !i; i++) {
         source_free(&all[i]);
     }
-    graph_text_free(graphs);
-    recipe_free(recipe);
-    ragdoll_free(ragdoll);
-    hair_grown_free(&grown);
-    hair_free(hair);
-    terrain_free(&read_ground);
+    for (int type = 0; type < NOH_CHUNK_TYPES; type++) {
+        const chunk_maker *maker = chunk_maker_of((noh_chunk_type)type);
+        if (maker->free) maker->free(chunks[type]);
+    }
     free(all);
     return failed;
 }

@@ -32,16 +32,12 @@ typedef struct convert_options {
     uint32_t texture_max;       /* textures are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     int whole_textures;         /* 1: textures are not trimmed (texture/texture_trim.h) */
     convert_only only;
-    const char *events;              /* a text file of callback keys; NULL: none */
-    const char *graph;               /* a text file of animation graphs; NULL: none */
-    const char *springs;             /* a text file of springs (springs/springs_read.h); NULL: the glTF file's */
-    const char *const *spring_lines; /* [spring_line_count] lines of such a text, after the file's */
+    const char *events;                 /* a text file of callback keys; NULL: none */
+    const char *texts[NOH_CHUNK_TYPES]; /* the file of a chunk's text (chunks/chunk_maker.h): graphs, springs, recipe,
+                                           ragdoll, haircut, terrain; NULL: none */
+    const char *const *spring_lines;    /* [spring_line_count] lines of springs, after the file's */
     uint32_t spring_line_count;
-    const char *recipe;     /* a text file of a face's recipes; NULL: none */
-    const char *ragdoll;    /* a text file of a ragdoll's bodies; NULL: none */
-    const char *hair;       /* a text file of a haircut; NULL: none */
-    const char *terrain;    /* a picture or a model of the ground (terrain/terrain_read.h); NULL: none */
-    terrain_options ground; /* of it */
+    terrain_options ground; /* of the terrain */
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */

@@ -177,6 +177,17 @@ void source_free(source *s)
     memset(s, 0, sizeof *s);
 }
 
+int source_has_joint(const source *s, const char *name)
+{
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        const raw_skeleton *k = &s->sets[i]->skeleton;
+        for (uint32_t j = 0; j < k->joint_count; j++) {
+            if (strcmp(k->joints[j].name, name) == 0) return 1;
+        }
+    }
+    return 0;
+}
+
 /* ---- which skeleton ---- */
 
 static const char *joint_name(const raw_skeleton *s, uint32_t joint)

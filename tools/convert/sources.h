@@ -42,6 +42,9 @@ typedef struct source_options {
 int source_read(const char *path, const source_options *options, source *s, model_error *error);
 void source_free(source *s);
 
+/* Whether any skeleton has a joint of the name. */
+int source_has_joint(const source *s, const char *name);
+
 /* Move the clips of `other` to `base`. Translations are converted to the base's unit. A clip whose name the base
  * already has is renamed FILE/NAME, where FILE is the file's name without its ending. Omissions become
  * warnings of base.

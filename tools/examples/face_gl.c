@@ -92,7 +92,7 @@ static int open_face(face *f)
     draws.layers_uint = noh_gl_morph_plan_of(f->morph)->layer_format == GL_RGBA32UI;
     if (noh_gl_renderer_create(&device, &draws, programs, sizeof programs, &f->renderer, &error))
         return fail("renderer", &error);
-    for (uint32_t i = 0; i < f->pack.texture_count && i < 64u; i++) {
+    for (uint32_t i = 0; i < f->pack.runs[NOH_CHUNK_TEXTURE].count && i < 64u; i++) {
         noh_texture texture;
         (void)noh_pack_texture_at(&f->pack, i, &texture, NULL);
         if (noh_gl_picture_create(&f->gl, &f->ledger, &texture, &f->pictures[i], &error))

@@ -142,7 +142,7 @@ int main(int argc, char **argv)
     for (unsigned i = 0; i < (unsigned)(60.0 * seconds + 0.5); i++) frame(&w);
     printf("%.2f m from where it began\n", w.root.translation[2]);
     picture_clear(&image, centre, 1.75f);
-    for (uint32_t i = 0; i < w.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < w.pack.runs[NOH_CHUNK_MESH].count; i++) {
         if (draw(&w, i)) return 1;
     }
     return picture_save(&image, out);

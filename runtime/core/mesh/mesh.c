@@ -39,8 +39,8 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
 
 static const noh_transfer_header *transfer_of(const noh_pack *pack, uint32_t mesh)
 {
-    for (uint32_t i = pack->first_transfer; i < pack->first_transfer + pack->transfer_count; i++) {
-        const noh_transfer_header *h = (const void *)(pack->bytes + pack->chunks[i].offset);
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TRANSFER].count; i++) {
+        const noh_transfer_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_TRANSFER, i);
         if (h->mesh == mesh) return h;
     }
     return NULL;
@@ -49,15 +49,16 @@ static const noh_transfer_header *transfer_of(const noh_pack *pack, uint32_t mes
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(pack && mesh);
-    if (index >= pack->mesh_count) {
+    if (index >= pack->runs[NOH_CHUNK_MESH].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->mesh_count ? "mesh index is past the pack's last mesh" : "pack holds no mesh", index,
-                        pack->mesh_count);
+                        pack->runs[NOH_CHUNK_MESH].count ? "mesh index is past the pack's last mesh"
+                                                         : "pack holds no mesh",
+                        index, pack->runs[NOH_CHUNK_MESH].count);
     }
     mesh->pack = pack;
-    mesh->name = noh_pack_chunk_name(pack, pack->first_mesh + index);
+    mesh->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_MESH].first + index);
     mesh->transfer = transfer_of(pack, index);
-    view_of((const noh_mesh_header *)(const void *)(pack->bytes + pack->chunks[pack->first_mesh + index].offset), mesh);
+    view_of(noh_pack_chunk_at(pack, NOH_CHUNK_MESH, index), mesh);
     return NOH_OK;
 }
 
@@ -78,8 +79,10 @@ uint32_t noh_mesh_source(const noh_mesh *mesh)
     if (mesh->header->level_first) {
         return mesh->header->source_crc;
     }
-    for (uint32_t i = pack->first_mesh; i < pack->first_mesh + pack->mesh_count; i++) {
-        if (pack->bytes + pack->chunks[i].offset == chunk) return pack->chunks[i].crc;
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
+        if (noh_pack_chunk_at(pack, NOH_CHUNK_MESH, i) == chunk) {
+            return pack->chunks[pack->runs[NOH_CHUNK_MESH].first + i].crc;
+        }
     }
     return 0;
 }
@@ -88,13 +91,13 @@ noh_result noh_pack_skin_at(const noh_pack *pack, uint32_t index, noh_skin *skin
 {
     const uint8_t *chunk;
     NOH_ASSERT(pack && skin);
-    if (index >= pack->skin_count) {
+    if (index >= pack->runs[NOH_CHUNK_SKIN].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         index == NOH_NONE ? "a rigid mesh has no skin" : "skin index is past the pack's last skin",
-                        index, pack->skin_count);
+                        index, pack->runs[NOH_CHUNK_SKIN].count);
     }
-    chunk = pack->bytes + pack->chunks[pack->first_skin + index].offset;
-    skin->name = noh_pack_chunk_name(pack, pack->first_skin + index);
+    chunk = noh_pack_chunk_at(pack, NOH_CHUNK_SKIN, index);
+    skin->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_SKIN].first + index);
     skin->header = (const noh_skin_header *)(const void *)chunk;
     skin->joints = (const uint16_t *)(const void *)(chunk + skin->header->joints_offset);
     skin->inverse_bind = (const float *)(const void *)(chunk + skin->header->inverse_bind_offset);

@@ -13,18 +13,18 @@ noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_err
     const noh_pack *pack;
     NOH_ASSERT(mesh && mesh->pack && wrinkles);
     pack = mesh->pack;
-    for (uint32_t i = 0; i < pack->wrinkles_count; i++) {
-        const uint8_t *bytes = pack->bytes + pack->chunks[pack->first_wrinkles + i].offset;
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_WRINKLES].count; i++) {
+        const uint8_t *bytes = noh_pack_chunk_at(pack, NOH_CHUNK_WRINKLES, i);
         const noh_wrinkles_header *h = (const noh_wrinkles_header *)(const void *)bytes;
         const uint8_t *first = (const uint8_t *)(mesh->header - (mesh->header->level - mesh->header->level_first));
-        if (pack->bytes + pack->chunks[pack->first_mesh + h->mesh].offset == first) {
+        if (noh_pack_chunk_at(pack, NOH_CHUNK_MESH, h->mesh) == first) {
             wrinkles->target_count = h->target_count;
             wrinkles->matrix = bytes + h->matrix_offset;
             return NOH_OK;
         }
     }
     return noh_fail(error, NOH_ERR_NOT_FOUND, "the mesh has no wrinkles: build its pack with --wrinkles auto", 0,
-                    pack->wrinkles_count);
+                    pack->runs[NOH_CHUNK_WRINKLES].count);
 }
 
 void noh_wrinkles_weights(const noh_wrinkles *wrinkles, const float *weights, float *regions)

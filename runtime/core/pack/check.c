@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "noh/base.h"
+#include "noh/format.h"
 #include "noh/low_core.h"
+#include "noh/pack.h"
 
 NOH_NEVER_INLINE noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t offset)
 {
@@ -63,6 +65,13 @@ noh_result noh_check_end(const noh_check *check)
     return NOH_OK;
 }
 
+const void *noh_check_subject(const noh_check *check, noh_chunk_type type, noh_chunk_type about)
+{
+    const uint32_t n = *(const uint32_t *)(const void *)check->bytes, before = check->pack->runs[type].count;
+    if (before && n <= *(const uint32_t *)noh_pack_chunk_at(check->pack, type, before - 1u)) return NULL;
+    return noh_pack_chunk_at(check->pack, about, n);
+}
+
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what)
 {
     for (uint32_t i = 0; i < count; i++) {
@@ -85,5 +94,13 @@ noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, 
     if (noh_hash_name(check->pack->strings + name) != hash) {
         return noh_check_fail(check, "name and its hash differ", offset + sizeof name);
     }
+    return NOH_OK;
+}
+
+/* Graphs are checked when they are opened, by noh_pack_check_graph, so that a program without graphs links none of it.
+ */
+noh_result noh_check_graph(noh_check *check)
+{
+    (void)check;
     return NOH_OK;
 }

@@ -463,13 +463,13 @@ static graph_view view_of(const noh_check *check, const noh_pack_graph_header *h
 
 noh_result noh_pack_check_graph(const noh_pack *pack, uint32_t index, noh_error *error)
 {
-    const noh_pack_chunk *c = &pack->chunks[pack->first_graph + index];
+    const noh_pack_chunk *c = &pack->chunks[pack->runs[NOH_CHUNK_GRAPH].first + index];
     const uint8_t *bytes = pack->bytes + c->offset;
     const noh_pack_graph_header *h = (const noh_pack_graph_header *)(const void *)bytes;
-    noh_check check = { pack, bytes, c->bytes, c->offset, 0, error };
+    noh_check check = { pack, bytes, c->bytes, c->offset, 0, error, NULL };
     noh_result result;
     graph_view g;
-    NOH_ASSERT(index < pack->graph_count);
+    NOH_ASSERT(index < pack->runs[NOH_CHUNK_GRAPH].count);
     result = noh_check_head(&check, sizeof *h);
     if (!result) result = check_counts(&check, h);
     if (!result) result = check_arrays(&check, h);

@@ -5,30 +5,6 @@
 
 #include "noh/base.h"
 #include "noh/format.h"
-#include "noh/pack.h"
-
-/* A chunk before this one. */
-static const void *chunk_at(const noh_pack *pack, uint32_t index)
-{
-    return pack->bytes + pack->chunks[index].offset;
-}
-
-/* It is for a skinned mesh of the pack, a later one than the list before it. NULL: it is not. */
-static const noh_mesh_header *mesh_of(const noh_pack *pack, const noh_influences_header *h)
-{
-    const noh_mesh_header *mesh;
-    if (h->mesh >= pack->mesh_count) {
-        return NULL;
-    }
-    if (pack->influences_count) {
-        const noh_influences_header *before = chunk_at(pack, pack->first_influences + pack->influences_count - 1u);
-        if (h->mesh <= before->mesh) {
-            return NULL;
-        }
-    }
-    mesh = chunk_at(pack, pack->first_mesh + h->mesh);
-    return mesh->skin == NOH_NONE ? NULL : mesh;
-}
 
 static noh_result check_header(const noh_check *check, const noh_influences_header *h)
 {
@@ -118,8 +94,8 @@ noh_result noh_check_influences(noh_check *check)
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_header(check, h);
     if (result) return result;
-    mesh = mesh_of(check->pack, h);
-    if (!mesh) {
+    mesh = noh_check_subject(check, NOH_CHUNK_INFLUENCES, NOH_CHUNK_MESH);
+    if (!mesh || mesh->skin == NOH_NONE) {
         return noh_check_fail(check, "influence list names a mesh that is not there or not skinned, or is out of order",
                               offsetof(noh_influences_header, mesh));
     }

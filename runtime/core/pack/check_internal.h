@@ -17,6 +17,7 @@ typedef struct noh_check {
     uint32_t file_offset;
     uint32_t cursor; /* where the next array has to begin */
     noh_error *error;
+    noh_pack *opens; /* the same pack, for the arrays of this chunk */
 } noh_check;
 
 /* Fail at a byte of the chunk. */
@@ -42,25 +43,19 @@ noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint3
 /* The chunk has to end where its last array did. */
 noh_result noh_check_end(const noh_check *check);
 
+/* The header of the chunk that this one is about, the n-th of the type `about`, n being the first word of this chunk.
+ * NULL: there is none, or n is not above that of the chunk of this type before it. */
+const void *noh_check_subject(const noh_check *check, noh_chunk_type type, noh_chunk_type about);
+
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what);
 /* `offset`: of the name's field, which that of its hash follows. */
 noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
 
-noh_result noh_check_texture(noh_check *check);
-noh_result noh_check_materials(noh_check *check);
-noh_result noh_check_mesh(noh_check *check);
-noh_result noh_check_transfer(noh_check *check);
-noh_result noh_check_influences(noh_check *check);
-noh_result noh_check_wrinkles(noh_check *check);
-noh_result noh_check_nodes(noh_check *check);
-noh_result noh_check_skeleton(noh_check *check);
-noh_result noh_check_skin(noh_check *check);
-noh_result noh_check_clip(noh_check *check);
-noh_result noh_check_recipe(noh_check *check);
-noh_result noh_check_ragdoll(noh_check *check);
-noh_result noh_check_springs(noh_check *check);
-noh_result noh_check_hair(noh_check *check);
-noh_result noh_check_terrain(noh_check *check);
+/* noh_check_strings and so on: each chunk of its type, in check_strings.c and so on. It may rely on the chunks before
+ * it, and sets what `opens` keeps of its own. */
+#define NOH_CHECKER(NAME, name, tag, many) noh_result noh_check_##name(noh_check *check);
+NOH_CHUNKS(NOH_CHECKER)
+#undef NOH_CHECKER
 
 /* check_mesh_part.c: what every level of a mesh has; `h` is that level's header. */
 noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);

@@ -93,7 +93,7 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
         };
         return noh_check_fields(check, fields, 4, "rigid mesh has influences, palettes or a skin's flags", 0);
     }
-    if (h->skin >= check->pack->skin_count) {
+    if (h->skin >= check->pack->runs[NOH_CHUNK_SKIN].count) {
         return noh_check_fail(check, "mesh names a skin that is not there", offsetof(noh_mesh_header, skin));
     }
     if (n != 1 && n != 2 && n != 4 && n != 8) {

@@ -57,5 +57,10 @@ noh_result noh_check_ragdoll(noh_check *check)
         result = check_row(check, &rows[i], at);
         if (!result && !is_new(rows, i)) result = noh_check_fail(check, "two rows of a ragdoll have one joint", at);
     }
-    return result ? result : noh_check_end(check);
+    if (!result) result = noh_check_end(check);
+    if (!result) {
+        check->opens->ragdoll_rows = (const noh_pack_ragdoll_row *)(const void *)(check->bytes + h->rows_offset);
+        check->opens->ragdoll_row_count = h->row_count;
+    }
+    return result;
 }

@@ -33,5 +33,10 @@ noh_result noh_check_recipe(noh_check *check)
         const uint64_t at = h->rows_offset + (uint64_t)i * sizeof(noh_recipe_row);
         result = check_row(check, (const noh_recipe_row *)(const void *)(check->bytes + at), at);
     }
-    return result ? result : noh_check_end(check);
+    if (!result) result = noh_check_end(check);
+    if (!result) {
+        check->opens->recipe_rows = (const noh_recipe_row *)(const void *)(check->bytes + h->rows_offset);
+        check->opens->recipe_row_count = h->row_count;
+    }
+    return result;
 }

@@ -8,14 +8,14 @@
 
 static uint32_t skeleton_joints(const noh_pack *pack, uint32_t skeleton)
 {
-    const noh_pack_chunk *chunk = &pack->chunks[pack->first_skeleton + skeleton];
-    return ((const noh_skeleton_header *)(const void *)(pack->bytes + chunk->offset))->joint_count;
+    const noh_skeleton_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_SKELETON, skeleton);
+    return h->joint_count;
 }
 
 uint32_t noh_check_skin_joints(const noh_pack *pack, uint32_t skin)
 {
-    const noh_pack_chunk *chunk = &pack->chunks[pack->first_skin + skin];
-    return skin == NOH_NONE ? 0 : ((const noh_skin_header *)(const void *)(pack->bytes + chunk->offset))->joint_count;
+    const noh_skin_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_SKIN, skin);
+    return h ? h->joint_count : 0;
 }
 
 noh_result noh_check_skin(noh_check *check)
@@ -29,7 +29,7 @@ noh_result noh_check_skin(noh_check *check)
     if (!h->joint_count || h->joint_count > NOH_SKIN_JOINTS_MAX) {
         return noh_check_fail(check, "skin has no joints or too many", offsetof(noh_skin_header, joint_count));
     }
-    if (h->skeleton >= check->pack->skeleton_count) {
+    if (h->skeleton >= check->pack->runs[NOH_CHUNK_SKELETON].count) {
         return noh_check_fail(check, "skin names a skeleton that is not there", offsetof(noh_skin_header, skeleton));
     }
     result = noh_check_array(check, offsetof(noh_skin_header, joints_offset), h->joint_count, 2);

@@ -15,30 +15,13 @@ typedef struct springs_check {
     const float *bind; /* [joint_count][10] */
 } springs_check;
 
-static const void *chunk_at(const noh_pack *pack, uint32_t index)
-{
-    return pack->bytes + pack->chunks[index].offset;
-}
-
-/* It is for a skeleton of the pack, a later one than the chunk before it. */
-static int names_a_skeleton(const noh_pack *pack, const noh_springs_header *h)
-{
-    const noh_springs_header *before;
-    if (h->skeleton >= pack->skeleton_count || !pack->springs_count) {
-        return h->skeleton < pack->skeleton_count;
-    }
-    before = chunk_at(pack, pack->first_springs + pack->springs_count - 1u);
-    return h->skeleton > before->skeleton;
-}
-
 static noh_result check_header(const noh_check *check, const noh_springs_header *h)
 {
-    const noh_skeleton_header *skeleton;
-    if (!names_a_skeleton(check->pack, h)) {
+    const noh_skeleton_header *skeleton = noh_check_subject(check, NOH_CHUNK_SPRINGS, NOH_CHUNK_SKELETON);
+    if (!skeleton) {
         return noh_check_fail(check, "springs name a skeleton that is not there, or are out of order",
                               offsetof(noh_springs_header, skeleton));
     }
-    skeleton = chunk_at(check->pack, check->pack->first_skeleton + h->skeleton);
     const noh_check_field fields[] = {
         { offsetof(noh_springs_header, joint_count), h->joint_count != skeleton->joint_count },
         { offsetof(noh_springs_header, row_count), !h->row_count || h->row_count > h->joint_count },
@@ -144,7 +127,7 @@ static noh_result check_colliders(const noh_check *check, const noh_springs_head
 
 static noh_result check_all(const noh_check *check, const noh_springs_header *h)
 {
-    const uint8_t *skeleton = chunk_at(check->pack, check->pack->first_skeleton + h->skeleton);
+    const uint8_t *skeleton = noh_pack_chunk_at(check->pack, NOH_CHUNK_SKELETON, h->skeleton);
     const noh_skeleton_header *s = (const noh_skeleton_header *)(const void *)skeleton;
     const springs_check c = { check, h, (const noh_spring_row *)(const void *)(check->bytes + h->rows_offset),
                               (const uint16_t *)(const void *)(skeleton + s->parents_offset),

@@ -2,26 +2,8 @@
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
-#include "noh/pack.h"
 
 #include <stddef.h>
-
-/* A chunk before this one. */
-static const void *chunk_at(const noh_pack *pack, uint32_t index)
-{
-    return pack->bytes + pack->chunks[index].offset;
-}
-
-/* It is for a mesh of the pack, a later one than the transfer before it. */
-static int names_a_mesh(const noh_pack *pack, const noh_transfer_header *h)
-{
-    const noh_transfer_header *before;
-    if (h->mesh >= pack->mesh_count || !pack->transfer_count) {
-        return h->mesh < pack->mesh_count;
-    }
-    before = chunk_at(pack, pack->first_transfer + pack->transfer_count - 1u);
-    return h->mesh > before->mesh;
-}
 
 static noh_result check_header(const noh_check *check, const noh_transfer_header *h)
 {
@@ -45,20 +27,17 @@ static noh_result check_header(const noh_check *check, const noh_transfer_header
 /* As many vertices, delta texels and targets as its mesh has. */
 static noh_result check_mesh_counts(const noh_check *check, const noh_transfer_header *h)
 {
-    const noh_mesh_header *mesh;
-    if (!names_a_mesh(check->pack, h)) {
+    const noh_mesh_header *mesh = noh_check_subject(check, NOH_CHUNK_TRANSFER, NOH_CHUNK_MESH);
+    if (!mesh) {
         return noh_check_fail(check, "transfer names a mesh that is not there, or is out of order",
                               offsetof(noh_transfer_header, mesh));
     }
-    mesh = chunk_at(check->pack, check->pack->first_mesh + h->mesh);
-    {
-        const noh_check_field counts[] = {
-            { offsetof(noh_transfer_header, vertex_count), h->vertex_count != mesh->vertex_count },
-            { offsetof(noh_transfer_header, texel_count), h->texel_count != mesh->texel_count },
-            { offsetof(noh_transfer_header, target_count), h->target_count != mesh->target_count },
-        };
-        return noh_check_fields(check, counts, 3, "transfer differs from its mesh in a count", 0);
-    }
+    const noh_check_field counts[] = {
+        { offsetof(noh_transfer_header, vertex_count), h->vertex_count != mesh->vertex_count },
+        { offsetof(noh_transfer_header, texel_count), h->texel_count != mesh->texel_count },
+        { offsetof(noh_transfer_header, target_count), h->target_count != mesh->target_count },
+    };
+    return noh_check_fields(check, counts, 3, "transfer differs from its mesh in a count", 0);
 }
 
 /* Signed bytes are -127..127. */

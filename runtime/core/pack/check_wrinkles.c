@@ -2,34 +2,16 @@
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
-#include "noh/pack.h"
 
 #include <stddef.h>
 
-static const void *chunk_at(const noh_pack *pack, uint32_t index)
-{
-    return pack->bytes + pack->chunks[index].offset;
-}
-
-/* It is for a mesh of the pack, a later one than the chunk before it. */
-static int names_a_mesh(const noh_pack *pack, const noh_wrinkles_header *h)
-{
-    const noh_wrinkles_header *before;
-    if (h->mesh >= pack->mesh_count || !pack->wrinkles_count) {
-        return h->mesh < pack->mesh_count;
-    }
-    before = chunk_at(pack, pack->first_wrinkles + pack->wrinkles_count - 1u);
-    return h->mesh > before->mesh;
-}
-
 static noh_result check_header(const noh_check *check, const noh_wrinkles_header *h)
 {
-    const noh_mesh_header *mesh;
-    if (!names_a_mesh(check->pack, h)) {
+    const noh_mesh_header *mesh = noh_check_subject(check, NOH_CHUNK_WRINKLES, NOH_CHUNK_MESH);
+    if (!mesh) {
         return noh_check_fail(check, "wrinkles name a mesh that is not there, or are out of order",
                               offsetof(noh_wrinkles_header, mesh));
     }
-    mesh = chunk_at(check->pack, check->pack->first_mesh + h->mesh);
     if (h->target_count != mesh->target_count) {
         return noh_check_fail(check, "wrinkles differ from their mesh in the count of targets",
                               offsetof(noh_wrinkles_header, target_count));

@@ -9,28 +9,32 @@
 
 #include "core/pack/check_internal.h"
 
-/* Chunks come in this order, so that no chunk refers to a later one. */
-static int chunk_rank(uint32_t type)
+#define CHUNK_TAG(NAME, name, tag, many) NOH_TAG_##NAME,
+#define CHUNK_MANY(NAME, name, tag, many) many,
+#define CHUNK_CHECK(NAME, name, tag, many) \
+    case NOH_CHUNK_##NAME: return noh_check_##name(check);
+
+/* NOH_CHUNK_TYPES for an unknown tag. */
+static uint32_t type_of(uint32_t tag)
+{
+    static const uint32_t tags[NOH_CHUNK_TYPES] = { NOH_CHUNKS(CHUNK_TAG) };
+    uint32_t type = 0;
+    while (type < NOH_CHUNK_TYPES && tags[type] != tag) type++;
+    return type;
+}
+
+static int is_single(uint32_t type)
+{
+    static const uint8_t many[NOH_CHUNK_TYPES] = { NOH_CHUNKS(CHUNK_MANY) };
+    return !many[type];
+}
+
+/* A switch, since a table of functions is data that the linker must be able to write. */
+static noh_result check_content(noh_check *check, uint32_t type)
 {
     switch (type) {
-    case NOH_CHUNK_STRINGS: return 0;
-    case NOH_CHUNK_TEXTURE: return 1;
-    case NOH_CHUNK_MATERIALS: return 2;
-    case NOH_CHUNK_SKELETON: return 3;
-    case NOH_CHUNK_SKIN: return 4;
-    case NOH_CHUNK_MESH: return 5;
-    case NOH_CHUNK_TRANSFER: return 6;
-    case NOH_CHUNK_INFLUENCES: return 7;
-    case NOH_CHUNK_WRINKLES: return 8;
-    case NOH_CHUNK_NODES: return 9;
-    case NOH_CHUNK_CLIP: return 10;
-    case NOH_CHUNK_GRAPH: return 11;
-    case NOH_CHUNK_RECIPE: return 12;
-    case NOH_CHUNK_RAGDOLL: return 13;
-    case NOH_CHUNK_SPRINGS: return 14;
-    case NOH_CHUNK_HAIR: return 15;
-    case NOH_CHUNK_TERRAIN: return 16;
-    default: return -1;
+        NOH_CHUNKS(CHUNK_CHECK)
+    default: return noh_check_fail(check, "chunk of an unknown type", 0);
     }
 }
 
@@ -118,121 +122,12 @@ static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cu
     return NOH_OK;
 }
 
-/* The chunk begins and ends with a zero, and no string is too long: so every offset below its size is a string that
- * ends in the chunk, and offset 0 is the empty one. */
-static noh_result open_strings(noh_pack *pack, const noh_pack_chunk *c, noh_error *error)
-{
-    const char *strings = (const char *)pack->bytes + c->offset;
-    uint32_t length = 0;
-    if (!c->bytes || strings[0] || strings[c->bytes - 1]) {
-        return noh_fail(error, NOH_ERR_DATA, "string chunk does not begin and end with a zero", c->offset, 0);
-    }
-    for (uint32_t i = 0; i < c->bytes; i++) {
-        length = strings[i] ? length + 1 : 0;
-        if (length >= NOH_NAME_BYTES_MAX) {
-            return noh_fail(error, NOH_ERR_LIMIT, "name is longer than the limit", c->offset + i, NOH_NAME_BYTES_MAX);
-        }
-    }
-    pack->strings = strings;
-    pack->string_bytes = c->bytes;
-    return NOH_OK;
-}
-
-/* Chunks of a type are neighbours, so a count and the first one's index find them all. */
-static void count_chunk(uint32_t *count, uint32_t *first, uint32_t index)
-{
-    if (*count == 0) {
-        *first = index;
-    }
-    *count += 1;
-}
-
-static noh_result open_chunk(noh_pack *pack, uint32_t index, noh_error *error)
+static noh_result open_chunk(noh_pack *pack, uint32_t index, uint32_t type, noh_error *error)
 {
     const noh_pack_chunk *c = &pack->chunks[index];
-    noh_check check = { pack, pack->bytes + c->offset, c->bytes, c->offset, 0, error };
-    noh_result result = NOH_OK;
-    switch (c->type) {
-    case NOH_CHUNK_STRINGS: result = open_strings(pack, c, error); break;
-    case NOH_CHUNK_TEXTURE:
-        result = noh_check_texture(&check);
-        count_chunk(&pack->texture_count, &pack->first_texture, index);
-        break;
-    case NOH_CHUNK_MATERIALS:
-        result = noh_check_materials(&check);
-        pack->materials = (const noh_material *)(const void *)check.bytes;
-        pack->material_count = c->bytes / (uint32_t)sizeof(noh_material);
-        break;
-    case NOH_CHUNK_MESH:
-        result = noh_check_mesh(&check);
-        count_chunk(&pack->mesh_count, &pack->first_mesh, index);
-        break;
-    case NOH_CHUNK_TRANSFER:
-        result = noh_check_transfer(&check);
-        count_chunk(&pack->transfer_count, &pack->first_transfer, index);
-        break;
-    case NOH_CHUNK_INFLUENCES:
-        result = noh_check_influences(&check);
-        count_chunk(&pack->influences_count, &pack->first_influences, index);
-        break;
-    case NOH_CHUNK_WRINKLES:
-        result = noh_check_wrinkles(&check);
-        count_chunk(&pack->wrinkles_count, &pack->first_wrinkles, index);
-        break;
-    case NOH_CHUNK_NODES:
-        result = noh_check_nodes(&check);
-        if (!result) {
-            const noh_nodes_header *h = (const noh_nodes_header *)(const void *)check.bytes;
-            pack->node_count = h->node_count;
-            pack->nodes = (const noh_node *)(const void *)(check.bytes + h->nodes_offset);
-            pack->node_weight_count = h->weight_count;
-            pack->node_weights = (const float *)(const void *)(check.bytes + h->weights_offset);
-        }
-        break;
-    case NOH_CHUNK_SKELETON:
-        result = noh_check_skeleton(&check);
-        count_chunk(&pack->skeleton_count, &pack->first_skeleton, index);
-        break;
-    case NOH_CHUNK_SKIN:
-        result = noh_check_skin(&check);
-        count_chunk(&pack->skin_count, &pack->first_skin, index);
-        break;
-    case NOH_CHUNK_CLIP:
-        result = noh_check_clip(&check);
-        count_chunk(&pack->clip_count, &pack->first_clip, index);
-        break;
-    case NOH_CHUNK_RECIPE:
-        result = noh_check_recipe(&check);
-        if (!result) {
-            const noh_recipe_header *h = (const noh_recipe_header *)(const void *)check.bytes;
-            pack->recipe_row_count = h->row_count;
-            pack->recipe_rows = (const noh_recipe_row *)(const void *)(check.bytes + h->rows_offset);
-        }
-        break;
-    case NOH_CHUNK_RAGDOLL:
-        result = noh_check_ragdoll(&check);
-        if (!result) {
-            const noh_pack_ragdoll_header *h = (const noh_pack_ragdoll_header *)(const void *)check.bytes;
-            pack->ragdoll_row_count = h->row_count;
-            pack->ragdoll_rows = (const noh_pack_ragdoll_row *)(const void *)(check.bytes + h->rows_offset);
-        }
-        break;
-    case NOH_CHUNK_SPRINGS:
-        result = noh_check_springs(&check);
-        count_chunk(&pack->springs_count, &pack->first_springs, index);
-        break;
-    case NOH_CHUNK_HAIR:
-        result = noh_check_hair(&check);
-        pack->hair = (const noh_pack_hair_header *)(const void *)check.bytes;
-        break;
-    case NOH_CHUNK_TERRAIN:
-        result = noh_check_terrain(&check);
-        pack->terrain = (const noh_pack_terrain_header *)(const void *)check.bytes;
-        break;
-    default: /* a graph, which noh_pack_check_graph checks when it is opened */
-        count_chunk(&pack->graph_count, &pack->first_graph, index);
-        break;
-    }
+    noh_check check = { pack, pack->bytes + c->offset, c->bytes, c->offset, 0, error, pack };
+    const noh_result result = check_content(&check, type);
+    if (!pack->runs[type].count++) pack->runs[type].first = index;
     check.file_offset = (uint32_t)((const uint8_t *)c - pack->bytes); /* the name is in the chunk table */
     return result ? result : noh_check_name(&check, c->name, c->name_hash, offsetof(noh_pack_chunk, name));
 }
@@ -248,29 +143,26 @@ static noh_result check_chunk_reserved(const noh_pack_chunk *c, uint64_t table_a
     return NOH_OK;
 }
 
-/* Every chunk in turn: its type and rank, its place, its checksum, its content. */
+/* Every chunk in turn: its type and order, its place, its checksum, its content. */
 static noh_result open_chunks(noh_pack *pack, noh_error *error)
 {
     uint64_t cursor = sizeof(noh_pack_header) + (uint64_t)pack->chunk_count * sizeof(noh_pack_chunk);
-    int last_rank = -1;
+    uint32_t last = 0;
     for (uint32_t i = 0; i < pack->chunk_count; i++) {
-        uint64_t table_at = sizeof(noh_pack_header) + (uint64_t)i * sizeof(noh_pack_chunk);
-        uint32_t type = pack->chunks[i].type;
-        int rank = chunk_rank(type);
-        int single = type == NOH_CHUNK_STRINGS || type == NOH_CHUNK_MATERIALS || type == NOH_CHUNK_NODES ||
-                     type == NOH_CHUNK_RECIPE || type == NOH_CHUNK_RAGDOLL || type == NOH_CHUNK_HAIR ||
-                     type == NOH_CHUNK_TERRAIN;
+        const uint64_t table_at = sizeof(noh_pack_header) + (uint64_t)i * sizeof(noh_pack_chunk);
+        const uint32_t type = type_of(pack->chunks[i].type);
         noh_result result;
-        if (rank < 0 || rank < last_rank || (single && rank == last_rank) || (i == 0) != (rank == 0)) {
+        if (type == NOH_CHUNK_TYPES || type < last || (i && is_single(type) && type == last) ||
+            (i == 0) != (type == NOH_CHUNK_STRINGS)) {
             return noh_fail(error, NOH_ERR_DATA, "chunk of an unknown type, or out of order", table_at, 0);
         }
-        last_rank = rank;
+        last = type;
         result = check_chunk_reserved(&pack->chunks[i], table_at, error);
         if (!result) {
             result = check_place(pack, i, &cursor, error);
         }
         if (!result) {
-            result = open_chunk(pack, i, error);
+            result = open_chunk(pack, i, type, error);
         }
         if (result) {
             return result;
@@ -327,6 +219,13 @@ const char *noh_pack_string(const noh_pack *pack, uint32_t offset)
     return offset < pack->string_bytes ? pack->strings + offset : "";
 }
 
+const void *noh_pack_chunk_at(const noh_pack *pack, noh_chunk_type type, uint32_t index)
+{
+    NOH_ASSERT(pack && (uint32_t)type < NOH_CHUNK_TYPES);
+    const noh_chunk_run *run = &pack->runs[type];
+    return index < run->count ? pack->bytes + pack->chunks[run->first + index].offset : NULL;
+}
+
 const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk)
 {
     NOH_ASSERT(pack);
@@ -337,13 +236,14 @@ noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture
 {
     const uint8_t *chunk;
     NOH_ASSERT(pack && texture);
-    if (index >= pack->texture_count) {
+    if (index >= pack->runs[NOH_CHUNK_TEXTURE].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->texture_count ? "texture index is past the pack's last texture" : "pack holds no texture",
-                        index, pack->texture_count);
+                        pack->runs[NOH_CHUNK_TEXTURE].count ? "texture index is past the pack's last texture"
+                                                            : "pack holds no texture",
+                        index, pack->runs[NOH_CHUNK_TEXTURE].count);
     }
-    chunk = pack->bytes + pack->chunks[pack->first_texture + index].offset;
-    texture->name = noh_pack_chunk_name(pack, pack->first_texture + index);
+    chunk = noh_pack_chunk_at(pack, NOH_CHUNK_TEXTURE, index);
+    texture->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_TEXTURE].first + index);
     texture->header = (const noh_texture_header *)(const void *)chunk;
     texture->pixels = chunk + texture->header->pixels_offset;
     return NOH_OK;

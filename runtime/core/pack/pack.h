@@ -12,7 +12,7 @@ extern "C" {
 
 /* Check the chunk of the n-th graph: counts, arrays, names, nodes. noh_pack_open checks only its checksum;
  * noh_pack_graph_at (graph.h) calls this function.
- * ranges  index below graph_count
+ * ranges  index below the pack's count of graphs
  * errors  DATA the chunk is damaged (where: the byte in the pack) */
 noh_result noh_pack_check_graph(const noh_pack *pack, uint32_t index, noh_error *error);
 

@@ -11,8 +11,8 @@
 noh_result noh_pack_skin_list(const noh_pack *pack, uint32_t mesh, noh_skin_list *list, noh_error *error)
 {
     NOH_ASSERT(pack && list);
-    for (uint32_t i = 0; i < pack->influences_count; i++) {
-        const uint8_t *bytes = pack->bytes + pack->chunks[pack->first_influences + i].offset;
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_INFLUENCES].count; i++) {
+        const uint8_t *bytes = noh_pack_chunk_at(pack, NOH_CHUNK_INFLUENCES, i);
         const noh_influences_header *h = (const noh_influences_header *)(const void *)bytes;
         if (h->mesh == mesh) {
             list->header = h;

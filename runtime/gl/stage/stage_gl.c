@@ -567,7 +567,7 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     memset(out, 0, sizeof *out);
     out->mesh = &item->model->mesh;
     out->pictures = ((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].pictures +
-                    (size_t)a->look.texture_set * k->desc->mesh->texture_count;
+                    (size_t)a->look.texture_set * k->desc->mesh->runs[NOH_CHUNK_TEXTURE].count;
     out->is_morphed = noh_gl_has_tile(item, shown);
     if (out->is_morphed) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
     out->is_skinned = k->meshes[index].skinned;

@@ -30,7 +30,8 @@ static const noh_stage_actor *actor_at(const drawing *d, uint32_t place)
 /* The textures of an actor. */
 static const noh_gl_texture *pictures_of(const drawing *d, uint32_t place)
 {
-    return d->on_gl->pictures + (size_t)actor_at(d, place)->look.texture_set * d->k->desc->mesh->texture_count;
+    return d->on_gl->pictures +
+           (size_t)actor_at(d, place)->look.texture_set * d->k->desc->mesh->runs[NOH_CHUNK_TEXTURE].count;
 }
 
 static int is_seen(const drawing *d, uint32_t place)

@@ -61,7 +61,7 @@ static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage
 
 typedef struct noh_gl_kind {
     noh_gl_item *items;       /* [mesh_count] */
-    noh_gl_texture *pictures; /* [1 + texture_set_count][texture_count of the pack]: those that others own, too */
+    noh_gl_texture *pictures; /* [1 + texture_set_count][textures of the pack]: those that others own, too */
 } noh_gl_kind;
 
 typedef struct noh_stage_gl {

@@ -14,12 +14,13 @@ typedef struct site {
 
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind)
 {
-    return (1u + kind->texture_set_count) * kind->mesh->texture_count;
+    return (1u + kind->texture_set_count) * kind->mesh->runs[NOH_CHUNK_TEXTURE].count;
 }
 
 static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
 {
-    return &kinds[where.kind].pictures[where.set * desc->kinds[where.kind].mesh->texture_count + where.texture];
+    return &kinds[where.kind]
+                .pictures[where.set * desc->kinds[where.kind].mesh->runs[NOH_CHUNK_TEXTURE].count + where.texture];
 }
 
 /* Whether a set has the texture with this index in a pack; *texture is then the one that it replaces. */
@@ -30,7 +31,7 @@ static int has(const noh_kind_desc *kind, uint32_t set, const noh_pack *pack, ui
     if (!set || from->bytes != pack->bytes) {
         return !set && from->bytes == pack->bytes;
     }
-    for (*texture = 0; *texture < kind->mesh->texture_count; ++*texture) {
+    for (*texture = 0; *texture < kind->mesh->runs[NOH_CHUNK_TEXTURE].count; ++*texture) {
         const noh_pack *worn;
         if (noh_stage_worn(kind, set, *texture, &worn) == index && worn->bytes == pack->bytes) return 1;
     }
@@ -68,7 +69,7 @@ static int owns(const noh_stage_desc *desc, site where, noh_texture *texture)
 static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
 {
     where->texture++;
-    while (where->kind < end && where->texture >= desc->kinds[where->kind].mesh->texture_count) {
+    while (where->kind < end && where->texture >= desc->kinds[where->kind].mesh->runs[NOH_CHUNK_TEXTURE].count) {
         where->texture = 0;
         if (++where->set > desc->kinds[where->kind].texture_set_count) {
             where->set = 0;

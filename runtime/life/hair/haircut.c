@@ -15,9 +15,9 @@
 noh_result noh_haircut_open(const noh_pack *pack, noh_haircut *out, noh_error *error)
 {
     NOH_ASSERT(pack && out);
-    const noh_pack_hair_header *h = pack->hair;
+    const uint8_t *bytes = noh_pack_chunk_at(pack, NOH_CHUNK_HAIR, 0);
+    const noh_pack_hair_header *h = (const noh_pack_hair_header *)(const void *)bytes;
     if (!h) return noh_fail(error, NOH_ERR_NOT_FOUND, "the pack has no haircut", 0, 0);
-    const uint8_t *bytes = (const uint8_t *)h;
     memset(out, 0, sizeof *out);
     out->header = h;
     out->joint = noh_pack_string(pack, h->joint);

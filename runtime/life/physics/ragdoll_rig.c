@@ -116,7 +116,7 @@ static void probe_mesh(const maker *m, const noh_mesh *mesh, const noh_skin *ski
 
 static void probe_skin(const maker *m, probe *p, int counts)
 {
-    for (uint32_t i = 0; i < m->source->pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < m->source->pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_skin skin;
         if (noh_pack_mesh_at(m->source->pack, i, &mesh, NULL) ||

@@ -112,7 +112,7 @@ static void probe_mesh(sole *s, const noh_mesh *mesh, const noh_skin *skin, int 
 
 static void probe(sole *s, int pass)
 {
-    for (uint32_t i = 0; i < s->source->pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < s->source->pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_skin skin;
         if (noh_pack_mesh_at(s->source->pack, i, &mesh, NULL) ||

@@ -108,7 +108,7 @@ static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[
 static int find_skin(const noh_ragdoll_source *s, uint32_t head, float low[3], float high[3])
 {
     uint32_t count = 0;
-    for (uint32_t m = 0; m < s->pack->mesh_count; m++) {
+    for (uint32_t m = 0; m < s->pack->runs[NOH_CHUNK_MESH].count; m++) {
         noh_mesh mesh;
         noh_skin skin;
         if (noh_pack_mesh_at(s->pack, m, &mesh, NULL) || noh_pack_skin_at(s->pack, mesh.header->skin, &skin, NULL) ||

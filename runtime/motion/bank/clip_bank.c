@@ -121,7 +121,7 @@ static noh_result count_clips(const noh_bank_binding *b, counts *c, noh_error *e
         if (r) return r;
     }
     for (uint32_t i = 0; i < b->pack_count; i++) {
-        c->foreign += b->packs[i]->clip_count;
+        c->foreign += b->packs[i]->runs[NOH_CHUNK_CLIP].count;
     }
     c->foreign -= fitting;
     c->replaced = fitting - c->shape.clip_count;

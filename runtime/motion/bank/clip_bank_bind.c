@@ -10,14 +10,14 @@
 
 static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_error *error)
 {
-    if (skeleton == NOH_NONE || b->mesh->skeleton_count == 0) {
+    if (skeleton == NOH_NONE || b->mesh->runs[NOH_CHUNK_SKELETON].count == 0) {
         b->skeleton_index = NOH_NONE;
         return NOH_OK;
     }
     b->skeleton_index = skeleton;
     if (noh_pack_skeleton_at(b->mesh, skeleton, &b->skeleton, &b->header, NULL) != NOH_OK) {
         return noh_fail(error, NOH_ERR_ARG, "skeleton of a clip bank is past the mesh pack's last skeleton", skeleton,
-                        b->mesh->skeleton_count);
+                        b->mesh->runs[NOH_CHUNK_SKELETON].count);
     }
     return NOH_OK;
 }
@@ -25,7 +25,7 @@ static noh_result bind_skeleton(uint32_t skeleton, noh_bank_binding *b, noh_erro
 /* Clips of this skeleton in another unit would be posed at the wrong size. */
 static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_error *error)
 {
-    for (uint32_t i = 0; b->header && i < b->packs[pack]->skeleton_count; i++) {
+    for (uint32_t i = 0; b->header && i < b->packs[pack]->runs[NOH_CHUNK_SKELETON].count; i++) {
         const noh_bank_place at = { pack, i };
         noh_skeleton skeleton;
         const noh_skeleton_header *h;
@@ -86,14 +86,14 @@ static int fits(const noh_bank_binding *b, noh_bank_found *found)
 static uint32_t name_hash_at(const noh_bank_binding *b, noh_bank_place at)
 {
     const noh_pack *pack = b->packs[at.pack];
-    return pack->chunks[pack->first_clip + at.index].name_hash;
+    return pack->chunks[pack->runs[NOH_CHUNK_CLIP].first + at.index].name_hash;
 }
 
 /* Find the first clip of a pack that fits and has this name. Returns 0 if there is none. */
 static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
 {
     noh_bank_place at = { pack, 0 };
-    for (; at.index < b->packs[pack]->clip_count; at.index++) {
+    for (; at.index < b->packs[pack]->runs[NOH_CHUNK_CLIP].count; at.index++) {
         if (name_hash_at(b, at) == name_hash) {
             found->at = at;
             if (fits(b, found)) return 1;
@@ -121,7 +121,7 @@ int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank
 {
     while (next->pack < b->pack_count) {
         const noh_bank_place at = *next;
-        if (at.index >= b->packs[at.pack]->clip_count) {
+        if (at.index >= b->packs[at.pack]->runs[NOH_CHUNK_CLIP].count) {
             next->pack++;
             next->index = 0;
             continue;
@@ -138,7 +138,8 @@ uint32_t noh_bank_count_fitting(const noh_bank_binding *b)
     noh_bank_found found;
     uint32_t count = 0;
     for (found.at.pack = 0; found.at.pack < b->pack_count; found.at.pack++) {
-        for (found.at.index = 0; found.at.index < b->packs[found.at.pack]->clip_count; found.at.index++) {
+        for (found.at.index = 0; found.at.index < b->packs[found.at.pack]->runs[NOH_CHUNK_CLIP].count;
+             found.at.index++) {
             count += (uint32_t)fits(b, &found);
         }
     }

@@ -16,12 +16,13 @@ noh_result noh_pack_skeleton_at(const noh_pack *pack, uint32_t index, noh_skelet
     const uint8_t *chunk;
     const noh_skeleton_header *h;
     NOH_ASSERT(pack && skeleton);
-    if (index >= pack->skeleton_count) {
+    if (index >= pack->runs[NOH_CHUNK_SKELETON].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->skeleton_count ? "index is past the pack's last skeleton" : "the pack has no skeleton",
-                        index, pack->skeleton_count);
+                        pack->runs[NOH_CHUNK_SKELETON].count ? "index is past the pack's last skeleton"
+                                                             : "the pack has no skeleton",
+                        index, pack->runs[NOH_CHUNK_SKELETON].count);
     }
-    chunk = pack->bytes + pack->chunks[pack->first_skeleton + index].offset;
+    chunk = noh_pack_chunk_at(pack, NOH_CHUNK_SKELETON, index);
     h = (const noh_skeleton_header *)(const void *)chunk;
     memset(skeleton, 0, sizeof *skeleton);
     skeleton->joint_count = h->joint_count;
@@ -59,13 +60,14 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
 {
     const uint8_t *chunk;
     NOH_ASSERT(pack && clip);
-    if (index >= pack->clip_count) {
+    if (index >= pack->runs[NOH_CHUNK_CLIP].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->clip_count ? "index is past the pack's last clip" : "the pack has no clip", index,
-                        pack->clip_count);
+                        pack->runs[NOH_CHUNK_CLIP].count ? "index is past the pack's last clip"
+                                                         : "the pack has no clip",
+                        index, pack->runs[NOH_CHUNK_CLIP].count);
     }
-    chunk = pack->bytes + pack->chunks[pack->first_clip + index].offset;
-    clip->name = noh_pack_chunk_name(pack, pack->first_clip + index);
+    chunk = noh_pack_chunk_at(pack, NOH_CHUNK_CLIP, index);
+    clip->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_CLIP].first + index);
     clip->header = (const noh_clip_header *)(const void *)chunk;
     clip->events = (const noh_clip_event *)(const void *)(chunk + clip->header->events_offset);
     clip->markers = (const noh_clip_marker *)(const void *)(chunk + clip->header->markers_offset);
@@ -77,7 +79,7 @@ noh_result noh_pack_clip_at(const noh_pack *pack, uint32_t index, noh_pack_clip 
 noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, noh_skeleton *skeleton, uint32_t *index,
                               noh_error *error)
 {
-    for (uint32_t i = 0; i < pack->skeleton_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_SKELETON].count; i++) {
         const noh_skeleton_header *h;
         if (noh_pack_skeleton_at(pack, i, skeleton, &h, NULL) == NOH_OK && h->hash == clip->header->skeleton_hash &&
             h->joint_count == clip->header->joint_count) {

@@ -42,19 +42,20 @@ noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_grap
     const noh_pack_graph_header *h;
     noh_result result;
     NOH_ASSERT(pack && graph);
-    if (index >= pack->graph_count) {
+    if (index >= pack->runs[NOH_CHUNK_GRAPH].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        pack->graph_count ? "index is past the pack's last graph" : "the pack has no graph", index,
-                        pack->graph_count);
+                        pack->runs[NOH_CHUNK_GRAPH].count ? "index is past the pack's last graph"
+                                                          : "the pack has no graph",
+                        index, pack->runs[NOH_CHUNK_GRAPH].count);
     }
     result = noh_pack_check_graph(pack, index, error);
     if (result) {
         return result;
     }
-    chunk = pack->bytes + pack->chunks[pack->first_graph + index].offset;
+    chunk = noh_pack_chunk_at(pack, NOH_CHUNK_GRAPH, index);
     h = (const noh_pack_graph_header *)(const void *)chunk;
     graph->pack = pack;
-    graph->name = noh_pack_chunk_name(pack, pack->first_graph + index);
+    graph->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_GRAPH].first + index);
     graph->header = h;
     graph->nodes = (const noh_pack_graph_node *)(const void *)(chunk + h->nodes_offset);
     graph->children = (const uint16_t *)(const void *)(chunk + h->children_offset);
@@ -88,8 +89,8 @@ uint32_t noh_pack_graph_find(const noh_pack *pack, const char *name)
 {
     NOH_ASSERT(pack && name);
     const uint32_t hash = noh_hash_name(name);
-    for (uint32_t i = 0; i < pack->graph_count; i++) {
-        const noh_pack_chunk *c = &pack->chunks[pack->first_graph + i];
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_GRAPH].count; i++) {
+        const noh_pack_chunk *c = &pack->chunks[pack->runs[NOH_CHUNK_GRAPH].first + i];
         if (is_named(pack, c->name, c->name_hash, name, hash)) return i;
     }
     return NOH_NONE;

@@ -107,7 +107,7 @@ noh_result noh_blob_rig_make(const noh_kind_desc *kind, noh_blob_rig *rig, noh_e
         const noh_node *node = &pack->nodes[i];
         if (node->mesh != NOH_NONE && is_wanted(kind, i)) keep_node(rig, kind, node->mesh, node->world);
     }
-    for (uint32_t i = 0; !pack->node_count && i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; !pack->node_count && i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         if (is_wanted(kind, i)) keep_node(rig, kind, i, NULL);
     }
     return rig->body_count ? NOH_OK : noh_fail(error, NOH_ERR_NOT_FOUND, "blobs: the kind has no mesh to draw", 0, 0);

@@ -65,13 +65,12 @@ struct noh_springs {
 int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc)
 {
     NOH_ASSERT(pack && desc);
-    for (uint32_t i = 0; i < pack->springs_count; i++) {
-        const uint8_t *bytes = pack->bytes + pack->chunks[pack->first_springs + i].offset;
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_SPRINGS].count; i++) {
+        const uint8_t *bytes = noh_pack_chunk_at(pack, NOH_CHUNK_SPRINGS, i);
         const noh_springs_header *h = (const noh_springs_header *)(const void *)bytes;
         const noh_skeleton_header *s;
         if (h->skeleton != skeleton) continue;
-        s = (const noh_skeleton_header *)(const void *)(pack->bytes +
-                                                        pack->chunks[pack->first_skeleton + skeleton].offset);
+        s = noh_pack_chunk_at(pack, NOH_CHUNK_SKELETON, skeleton);
         memset(desc, 0, sizeof *desc);
         (void)noh_pack_skeleton_at(pack, skeleton, &desc->skeleton, NULL, NULL);
         desc->metres = s->unit_cm / 100.0f;

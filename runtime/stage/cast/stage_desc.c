@@ -45,7 +45,7 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
         d.layer_count = 3;
     }
     if (!d.clips && !d.clip_packs) d.clips = d.mesh;
-    if (d.mesh->skeleton_count == 0) d.skeleton = NOH_NONE;
+    if (d.mesh->runs[NOH_CHUNK_SKELETON].count == 0) d.skeleton = NOH_NONE;
     noh_stage_fill_modules(&d);
     if (!d.change_count) d.change_count = 3u * noh_stage_track_count(&d);
     d.held_float_count = d.held_float_count == NOH_NONE ? 0 : d.held_float_count ? d.held_float_count : 8u;
@@ -95,7 +95,7 @@ static int is_listed(const noh_kind_desc *kind, uint32_t node)
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items)
 {
     const noh_pack *pack = kind->mesh;
-    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
+    const uint32_t count = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
     uint32_t found = 0;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
@@ -139,7 +139,7 @@ uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t textur
 
 static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
 {
-    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+    for (uint32_t t = 0; t < kind->mesh->runs[NOH_CHUNK_TEXTURE].count; t++) {
         const noh_pack *pack;
         if (noh_stage_worn(kind, set, t, &pack) != t || pack->bytes != kind->mesh->bytes) return 0;
     }
@@ -149,7 +149,7 @@ static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
 /* Texture coordinates are those of the kind's own textures. */
 static int is_laid_out_otherwise(const noh_kind_desc *kind, uint32_t set)
 {
-    for (uint32_t t = 0; t < kind->mesh->texture_count; t++) {
+    for (uint32_t t = 0; t < kind->mesh->runs[NOH_CHUNK_TEXTURE].count; t++) {
         const noh_pack *pack;
         noh_texture own, worn;
         const uint32_t at = noh_stage_worn(kind, set, t, &pack);
@@ -200,7 +200,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     }
     if (d->clips && d->clip_packs) return "a kind has clips and clip_packs";
     for (uint32_t i = 0; d->nodes && i < d->node_count; i++) {
-        if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->mesh_count))
+        if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->runs[NOH_CHUNK_MESH].count))
             return "nodes of a kind: one is none of its mesh pack's";
     }
     if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y)) return "root_axes of a kind has unknown bits";
@@ -211,7 +211,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (bad_texture_sets(d)) return bad_texture_sets(d);
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
     filled = noh_stage_kind_desc(desc, number);
-    if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->skeleton_count)
+    if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->runs[NOH_CHUNK_SKELETON].count)
         return "skeleton of a kind is none of its mesh pack's";
     if (noh_stage_bad_modules(&filled)) return noh_stage_bad_modules(&filled);
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;

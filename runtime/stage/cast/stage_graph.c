@@ -23,7 +23,7 @@ typedef struct graph_list {
 
 static const char *name_at(const noh_pack *pack, uint32_t graph)
 {
-    return noh_pack_chunk_name(pack, pack->first_graph + graph);
+    return noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_GRAPH].first + graph);
 }
 
 static uint32_t pack_count(const noh_kind_desc *d)
@@ -58,7 +58,7 @@ static int add_matches(const noh_kind_desc *d, const noh_stage_word *word, graph
     int found = 0;
     for (uint32_t p = 0; p < pack_count(d); p++) {
         const noh_pack *pack = pack_at(d, p);
-        for (uint32_t g = 0; g < pack->graph_count; g++) {
+        for (uint32_t g = 0; g < pack->runs[NOH_CHUNK_GRAPH].count; g++) {
             const char *name = name_at(pack, g);
             if (!noh_stage_word_matches(word, name) || is_replaced(d, p, name)) continue;
             found = 1;

@@ -57,9 +57,10 @@ const char *noh_stage_bad_finer(const noh_kind_desc *kind)
 {
     static const char *const another = "finer of a kind: not the pack that its mesh was stripped from";
     if (!kind->finer) return NULL;
-    if (kind->finer->mesh_count != kind->mesh->mesh_count || kind->finer->material_count != kind->mesh->material_count)
+    if (kind->finer->runs[NOH_CHUNK_MESH].count != kind->mesh->runs[NOH_CHUNK_MESH].count ||
+        kind->finer->material_count != kind->mesh->material_count)
         return another;
-    for (uint32_t i = 0; i < kind->mesh->mesh_count; i++) {
+    for (uint32_t i = 0; i < kind->mesh->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh coarse, fine;
         uint32_t first;
         (void)noh_pack_mesh_at(kind->mesh, i, &coarse, NULL);

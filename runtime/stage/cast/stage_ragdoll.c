@@ -64,7 +64,7 @@ noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, no
     noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
     uint32_t count;
     noh_result result;
-    if (source.skeleton == NOH_NONE || !source.pack->skeleton_count) {
+    if (source.skeleton == NOH_NONE || !source.pack->runs[NOH_CHUNK_SKELETON].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
     }
     result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);

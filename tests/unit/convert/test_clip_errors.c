@@ -297,7 +297,7 @@ static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, doub
     double *course = course_of(o, clip, &count), *way = test_zeros(3u * (size_t)count * sizeof *way);
     for (uint32_t j = 0; j < joint_count; j++) reach[j] = -1.0f;
     memset(worst, 0, NOH_UPDATE_RATE_COUNT * sizeof *worst);
-    for (uint32_t i = 0; i < o->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < o->pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_skin skin;
         noh_pack_mesh_at(&o->pack, i, &mesh, NULL);

@@ -31,9 +31,9 @@ typedef struct asset {
 
 static void open_sets(asset *a)
 {
-    a->set_count = a->pack.skeleton_count ? a->pack.skeleton_count : 1;
+    a->set_count = a->pack.runs[NOH_CHUNK_SKELETON].count ? a->pack.runs[NOH_CHUNK_SKELETON].count : 1;
     a->sets = test_zeros(sizeof *a->sets * a->set_count);
-    for (uint32_t i = 0; i < a->set_count && a->pack.clip_count; i++) {
+    for (uint32_t i = 0; i < a->set_count && a->pack.runs[NOH_CHUNK_CLIP].count; i++) {
         noh_clip_bank_desc desc;
         memset(&desc, 0, sizeof desc);
         desc.clips = &a->pack;

@@ -231,7 +231,7 @@ static void a_dumped_graph_builds_to_the_same_bytes(void **state)
                 b;
     byte_buffer text = { NULL, 0, 0, 0 };
     (void)state;
-    assert_int_equal(a.pack.graph_count, 2);
+    assert_int_equal(a.pack.runs[NOH_CHUNK_GRAPH].count, 2);
     for (uint32_t i = 0; i < 2; i++) {
         const noh_pack_graph g = graph_of(&a, i);
         dump_graph(&text, &g);

@@ -632,7 +632,7 @@ static void every_mesh_has_its_levels(void **state)
     lod_pack p;
     (void)state;
     lod_pack_make(m, &four_levels, 0, &p);
-    assert_int_equal(p.pack.mesh_count, 2);
+    assert_int_equal(p.pack.runs[NOH_CHUNK_MESH].count, 2);
     for (uint32_t i = 0; i < 2u; i++) {
         const noh_mesh mesh = test_mesh(&p.pack, i);
         float weights[5] = { 1.0f, -0.5f, 0.25f, 0.0f, 2.0f };

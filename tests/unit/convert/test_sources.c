@@ -375,8 +375,8 @@ static void the_pack_of_several_files(void **state)
     made[1] = clip_pack(swapped, 2, NULL, &counts[1]);
     for (int i = 0; i < 2; i++) {
         packs[i] = test_open(made[i], counts[i]);
-        assert_int_equal(packs[i].skeleton_count, 1);
-        assert_int_equal(packs[i].clip_count, 2);
+        assert_int_equal(packs[i].runs[NOH_CHUNK_SKELETON].count, 1);
+        assert_int_equal(packs[i].runs[NOH_CHUNK_CLIP].count, 2);
     }
     for (uint32_t i = 0; i < 2; i++) {
         noh_pack_clip a, b;

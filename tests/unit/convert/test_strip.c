@@ -75,7 +75,7 @@ static int tear_down(void **state)
 static kept strip(const noh_pack *pack, const char *item)
 {
     const strip_levels levels = { &item, 1 };
-    uint32_t *first = test_zeros((pack->mesh_count + 1u) * sizeof *first);
+    uint32_t *first = test_zeros((pack->runs[NOH_CHUNK_MESH].count + 1u) * sizeof *first);
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error = { "", "" };
     kept k;
@@ -239,7 +239,8 @@ static void nothing_but_a_prefix_is_left(void **state)
 {
     kept k = strip(&face.pack, "2");
     const noh_mesh full = test_mesh(&face.pack, 0), level = noh_mesh_at_lod(&full, 2), mesh = test_mesh(&k.pack, 0);
-    const noh_pack_chunk *chunk = &k.pack.chunks[k.pack.first_mesh], *from = &face.pack.chunks[face.pack.first_mesh];
+    const noh_pack_chunk *chunk = &k.pack.chunks[k.pack.runs[NOH_CHUNK_MESH].first],
+                         *from = &face.pack.chunks[face.pack.runs[NOH_CHUNK_MESH].first];
     const uint32_t vertices = full.header->vertex_count - level.header->vertex_count,
                    texels = full.header->texel_count - level.header->texel_count;
     (void)state;
@@ -293,7 +294,8 @@ static void meshes_are_cut_by_name(void **state)
     for (uint32_t m = 0; m < 3; m++) {
         char item[64];
         kept k, of_plain;
-        snprintf(item, sizeof item, "%s=2", noh_pack_chunk_name(&levels.pack, levels.pack.first_mesh + m));
+        snprintf(item, sizeof item, "%s=2",
+                 noh_pack_chunk_name(&levels.pack, levels.pack.runs[NOH_CHUNK_MESH].first + m));
         k = strip(&levels.pack, item);
         of_plain = strip(&plain, item); /* its coarsest is its only one */
         assert_memory_equal(of_plain.bytes, plain.bytes, count);
@@ -304,7 +306,7 @@ static void meshes_are_cut_by_name(void **state)
         for (uint32_t c = 0; c < k.pack.chunk_count; c++) {
             const noh_pack_chunk *a = &k.pack.chunks[c], *b = &levels.pack.chunks[c];
             assert_int_equal(a->type, b->type);
-            if (c != k.pack.first_mesh + m) assert_int_equal(a->crc, b->crc);
+            if (c != k.pack.runs[NOH_CHUNK_MESH].first + m) assert_int_equal(a->crc, b->crc);
         }
         assert_int_equal(pack_walk(&k.pack, 1), pack_walk(&k.pack, 1));
         free(k.bytes);
@@ -326,7 +328,7 @@ static void the_last_item_for_a_mesh_counts(void **state)
     static const char *const items[] = { "3", "face=1", "2" };
     uint32_t first = 9;
     (void)state;
-    assert_string_equal(noh_pack_chunk_name(&face.pack, face.pack.first_mesh), "face");
+    assert_string_equal(noh_pack_chunk_name(&face.pack, face.pack.runs[NOH_CHUNK_MESH].first), "face");
     for (uint32_t count = 0; count <= 3; count++) {
         static const uint32_t expected[] = { 0, 3, 1, 2 };
         const strip_levels levels = { items, count };
@@ -368,7 +370,7 @@ static void expect_refused(const kept *good, void (*lie)(noh_mesh_header *h), co
     noh_error error = { NOH_OK, "nothing", 0, 0 };
     noh_pack pack;
     noh_result result;
-    lie((noh_mesh_header *)(void *)(bytes + good->pack.chunks[good->pack.first_mesh].offset));
+    lie((noh_mesh_header *)(void *)(bytes + good->pack.chunks[good->pack.runs[NOH_CHUNK_MESH].first].offset));
     pack_repair(bytes, good->count);
     result = noh_pack_open(bytes, good->count, &pack, &error);
     if (result != NOH_ERR_DATA || !strstr(error.what, message)) {
@@ -418,7 +420,7 @@ static void any_bit_of_the_headers_may_flip(void **state)
     (void)state;
     for (int i = 0; i < 2; i++) {
         kept k = strip(&all[i]->pack, "2");
-        const size_t at = k.pack.chunks[k.pack.first_mesh].offset;
+        const size_t at = k.pack.chunks[k.pack.runs[NOH_CHUNK_MESH].first].offset;
         for (size_t bit = 8u * at; bit < 8u * (at + 2u * sizeof(noh_mesh_header)); bit++) {
             noh_pack pack;
             k.bytes[bit / 8u] ^= (uint8_t)(1u << bit % 8u);

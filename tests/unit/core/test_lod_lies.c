@@ -69,7 +69,7 @@ static forged reach(uint8_t *bytes)
     const noh_pack_header *h = (const noh_pack_header *)(const void *)bytes;
     const noh_pack_chunk *chunks = (const noh_pack_chunk *)(const void *)(bytes + sizeof *h);
     forged f = { NULL };
-    while (chunks->type != NOH_CHUNK_MESH) {
+    while (chunks->type != NOH_TAG_MESH) {
         chunks++;
     }
     f.chunk = bytes + chunks->offset;

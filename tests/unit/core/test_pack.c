@@ -35,11 +35,11 @@ static void opens_and_walks(void **state)
 {
     noh_pack pack = test_open(good, good_count);
     (void)state;
-    assert_int_equal(pack.mesh_count, 1);
-    assert_int_equal(pack.texture_count, 1);
+    assert_int_equal(pack.runs[NOH_CHUNK_MESH].count, 1);
+    assert_int_equal(pack.runs[NOH_CHUNK_TEXTURE].count, 1);
     assert_int_equal(pack.material_count, 2);
     assert_int_equal(pack.node_count, 2);
-    assert_int_equal(pack.clip_count, 3);
+    assert_int_equal(pack.runs[NOH_CHUNK_CLIP].count, 3);
     assert_true(test_mesh(&pack, 0).header->pair_count > 0);
     assert_int_equal(pack_walk(&pack, 1), pack_walk(&pack, 1));
     assert_int_not_equal(pack_walk(&pack, 1), pack_walk(&pack, 2));
@@ -367,12 +367,12 @@ static float nan_value(void)
     X(header_reserved, DATA, "reserved", f->header->reserved[9] = 1)                                                 \
     X(chunk_type_unknown, DATA, "unknown type", f->mesh_at->type ^= 0x20u)                                           \
     X(chunk_reserved, DATA, "reserved field of a chunk", f->mesh_at->reserved[1] = 1)                                \
-    X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_CHUNK_TEXTURE)                             \
+    X(chunks_out_of_order, DATA, "out of order", f->clip_at[1].type = NOH_TAG_TEXTURE)                               \
     X(chunks_swapped, DATA, "begin", swap_chunks(f, 3, 4))                                                           \
     X(chunk_before_strings, DATA, "out of order", swap_chunks(f, 0, 1))                                              \
-    X(strings_twice, DATA, "out of order", f->texture_at->type = NOH_CHUNK_STRINGS)                                  \
-    X(materials_twice, DATA, "out of order", f->mesh_at->type = NOH_CHUNK_MATERIALS)                                 \
-    X(nodes_twice, DATA, "out of order", f->clip_at->type = NOH_CHUNK_NODES)                                         \
+    X(strings_twice, DATA, "out of order", f->texture_at->type = NOH_TAG_STRINGS)                                    \
+    X(materials_twice, DATA, "out of order", f->mesh_at->type = NOH_TAG_MATERIALS)                                   \
+    X(nodes_twice, DATA, "out of order", f->clip_at->type = NOH_TAG_NODES)                                           \
     X(chunk_offset_past_end, DATA, "begin", f->mesh_at->offset = (uint32_t)f->count)                                 \
     X(chunk_offset_far_past_end, DATA, "begin", f->mesh_at->offset = 0xffffffc0u)                                    \
     X(chunk_offset_inside_the_one_before, DATA, "begin", f->mesh_at->offset -= 64)                                   \

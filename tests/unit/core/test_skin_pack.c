@@ -56,9 +56,9 @@ static forged reach(uint8_t *bytes)
 {
     forged f;
     uint8_t *skeleton = NULL;
-    first_chunk(bytes, NOH_CHUNK_MESH, &f.mesh_bytes);
-    first_chunk(bytes, NOH_CHUNK_SKIN, &f.skin_bytes);
-    first_chunk(bytes, NOH_CHUNK_SKELETON, &skeleton);
+    first_chunk(bytes, NOH_TAG_MESH, &f.mesh_bytes);
+    first_chunk(bytes, NOH_TAG_SKIN, &f.skin_bytes);
+    first_chunk(bytes, NOH_TAG_SKELETON, &skeleton);
     f.bind_pose = (float *)(void *)(skeleton + ((const noh_skeleton_header *)(const void *)skeleton)->bind_offset);
     f.mesh = (noh_mesh_header *)(void *)f.mesh_bytes;
     f.skin = (noh_skin_header *)(void *)f.skin_bytes;
@@ -141,7 +141,7 @@ LIES(X)
 /* What is read with a vertex's record lies in its palette, and what that names in its skin. */
 static void expect_limits(const noh_pack *pack)
 {
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         const noh_mesh mesh = test_mesh(pack, i);
         const noh_mesh_header *h = mesh.header;
         noh_skin skin;
@@ -231,8 +231,8 @@ static void a_mesh_of_two_skins_is_copied(void **state)
     m->node_count = 9;
     bytes = skin_pack_of(m, NULL, 1.0f, &count, NULL);
     pack = test_open(bytes, count);
-    assert_int_equal(pack.mesh_count, 3);
-    assert_int_equal(pack.skin_count, 2);
+    assert_int_equal(pack.runs[NOH_CHUNK_MESH].count, 3);
+    assert_int_equal(pack.runs[NOH_CHUNK_SKIN].count, 2);
     a = test_mesh(&pack, pack.nodes[6].mesh);
     b = test_mesh(&pack, pack.nodes[7].mesh);
     assert_int_equal(a.header->skin, 0);
@@ -333,7 +333,8 @@ static void rigid_parts_become_one_mesh(void **state)
             noh_pack pack = test_open(bytes, count);
             noh_mesh mesh = test_mesh(&pack, pack.nodes[4].mesh);
             noh_skin skin;
-            assert_int_equal(pack.mesh_count, 2); /* the tube has no material of theirs, so it stays apart */
+            assert_int_equal(pack.runs[NOH_CHUNK_MESH].count,
+                             2); /* the tube has no material of theirs, so it stays apart */
             assert_int_equal(pack.nodes[5].mesh, NOH_NONE);
             assert_int_equal(mesh.header->influence_count, 1);
             assert_int_equal(mesh.header->vertex_count, 6);
@@ -360,7 +361,7 @@ static void parts_are_kept_where_asked(void **state)
     options.keep_parts = 1;
     bytes = skin_pack_of(m, &options, 1.0f, &count, NULL);
     pack = test_open(bytes, count);
-    assert_int_equal(pack.mesh_count, 3);
+    assert_int_equal(pack.runs[NOH_CHUNK_MESH].count, 3);
     for (uint32_t i = 0; i < 3; i++) {
         assert_int_not_equal(test_mesh(&pack, i).header->skin, NOH_NONE);
     }

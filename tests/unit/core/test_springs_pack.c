@@ -77,7 +77,7 @@ static void forge(forged *f)
     f->bytes = test_aligned(good, good_count);
     header = (noh_pack_header *)(void *)f->bytes;
     f->chunk = (noh_pack_chunk *)(void *)(header + 1) + header->chunk_count - 1;
-    assert_int_equal(f->chunk->type, NOH_CHUNK_SPRINGS);
+    assert_int_equal(f->chunk->type, NOH_TAG_SPRINGS);
     f->h = (noh_springs_header *)(void *)(f->bytes + f->chunk->offset);
     f->rows = (noh_spring_row *)(void *)((uint8_t *)f->h + f->h->rows_offset);
     f->chains = (noh_spring_chain *)(void *)((uint8_t *)f->h + f->h->chains_offset);

@@ -51,7 +51,7 @@ static kept strip_to_coarsest(const noh_pack *pack)
 {
     const char *item = "7";
     const strip_levels levels = { &item, 1 };
-    uint32_t *first = test_zeros((pack->mesh_count + 1u) * sizeof *first);
+    uint32_t *first = test_zeros((pack->runs[NOH_CHUNK_MESH].count + 1u) * sizeof *first);
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error = { "", "" };
     kept k;
@@ -267,7 +267,7 @@ static void triangles_come_once_and_first(void **state)
         noh_wire_section s;
         memset(&s, 0, sizeof s);
         s.kind = NOH_WIRE_MESH;
-        s.at = face.pack.chunks[face.pack.first_mesh].offset;
+        s.at = face.pack.chunks[face.pack.runs[NOH_CHUNK_MESH].first].offset;
         assert_int_equal(noh_wire_begin(f, &s), 1);
         s.kind = others[i];
         assert_int_equal(noh_wire_begin(f, &s), 0);

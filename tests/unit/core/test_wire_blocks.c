@@ -137,7 +137,7 @@ static void any_bits_come_back(void **state)
         noh_pack pack = test_open(bytes, count);
         wire_report report;
         for (uint32_t i = 0; i < FORMATS; i++) {
-            const noh_pack_chunk *c = &pack.chunks[pack.first_texture + i];
+            const noh_pack_chunk *c = &pack.chunks[pack.runs[NOH_CHUNK_TEXTURE].first + i];
             noh_texture t;
             assert_int_equal(noh_pack_texture_at(&pack, i, &t, NULL), NOH_OK);
             for (uint32_t at = t.header->pixels_offset; at < c->bytes; at++) {
@@ -168,7 +168,7 @@ static void pictures_take_few_bytes(void **state)
         uint64_t blocks = 0;
         wire_report report;
         byte_buffer out = wire_of(&pack, &report);
-        for (uint32_t i = 0; i < FORMATS; i++) blocks += pack.chunks[pack.first_texture + i].bytes;
+        for (uint32_t i = 0; i < FORMATS; i++) blocks += pack.chunks[pack.runs[NOH_CHUNK_TEXTURE].first + i].bytes;
         print_message("# %u of %u bytes\n", (unsigned)report.textures, (unsigned)blocks);
         assert_true(report.textures * (kind ? 1u : 2u) < blocks);
         buffer_free(&out);

@@ -123,7 +123,7 @@ static void each_pose(const char *name, const char *dual_quaternion, int times, 
         for (int k = 0; k < times; k++) {
             oracle_pose(a->o, (int)clip, oracle_animation_end(a->o, clip) * (double)test_random_float(&r, 0.0f, 1.0f),
                         locals);
-            for (uint32_t m = 0; m < a->pack.mesh_count; m++) {
+            for (uint32_t m = 0; m < a->pack.runs[NOH_CHUNK_MESH].count; m++) {
                 scene_pose p;
                 pose_mesh(a, m, locals, &r, &p);
                 check(&p, &r, context);

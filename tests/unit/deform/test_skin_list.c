@@ -250,7 +250,7 @@ static void lies_are_refused(void **state)
     for (size_t i = 0; i < TEST_COUNT(forgeries); i++) {
         uint8_t *bytes = test_aligned(x.bytes, x.count);
         const noh_pack_chunk *chunk = (const noh_pack_chunk *)(void *)(bytes + sizeof(noh_pack_header)) +
-                                      x.pack.first_influences;
+                                      x.pack.runs[NOH_CHUNK_INFLUENCES].first;
         noh_influences_header *h = (noh_influences_header *)(void *)(bytes + chunk->offset);
         forged f = { h, (uint32_t *)(void *)((uint8_t *)h + h->vertices_offset),
                      (uint32_t *)(void *)((uint8_t *)h + h->firsts_offset),
@@ -258,7 +258,7 @@ static void lies_are_refused(void **state)
                      (uint16_t *)(void *)((uint8_t *)h + h->joints_offset) };
         noh_error error = { NOH_OK, "", 0, 0 };
         noh_pack pack;
-        assert_int_equal(chunk->type, NOH_CHUNK_INFLUENCES);
+        assert_int_equal(chunk->type, NOH_TAG_INFLUENCES);
         forgeries[i].lie(&f);
         pack_repair(bytes, x.count);
         if (noh_pack_open(bytes, x.count, &pack, &error) != NOH_ERR_DATA || !strstr(error.what, forgeries[i].what)) {

@@ -142,7 +142,7 @@ static void check_asset(const char *name, const skin_options *options, int times
         for (int k = 0; k < (clip < 0 ? 1 : times); k++) {
             double end = clip < 0 ? 0.0 : oracle_animation_end(a.o, (uint32_t)clip);
             oracle_pose(a.o, clip, end * (double)test_random_float(&random, 0.0f, 1.0f), locals);
-            for (uint32_t m = 0; m < a.pack.mesh_count; m++) {
+            for (uint32_t m = 0; m < a.pack.runs[NOH_CHUNK_MESH].count; m++) {
                 compare(&a, m, locals, &random, &e);
             }
         }

@@ -599,7 +599,7 @@ static void finer_packs_have_the_same_transfer(void **state)
 
 static noh_transfer_header *header_of(uint8_t *bytes, const noh_pack *pack)
 {
-    return (noh_transfer_header *)(void *)(bytes + pack->chunks[pack->first_transfer].offset);
+    return (noh_transfer_header *)(void *)(bytes + pack->chunks[pack->runs[NOH_CHUNK_TRANSFER].first].offset);
 }
 
 static void every_lie_is_refused(void **state)
@@ -638,7 +638,7 @@ static void every_lie_is_refused(void **state)
         }
         pack_repair(bytes, p.count);
         if (noh_pack_open(bytes, p.count, &pack, &error) != NOH_ERR_DATA) fail_msg("lie %d opens", lie);
-        assert_true(error.where >= p.pack.chunks[p.pack.first_transfer].offset);
+        assert_true(error.where >= p.pack.chunks[p.pack.runs[NOH_CHUNK_TRANSFER].first].offset);
         assert_true(strlen(error.what) > 10);
     }
     memcpy(bytes, p.bytes, p.count);
@@ -660,7 +660,7 @@ static void every_flip_is_safe(void **state)
     (void)state;
     light_model(&p, lod_face_model(&face), 4, 0);
     bytes = test_aligned(p.bytes, p.count);
-    chunk = &p.pack.chunks[p.pack.first_transfer];
+    chunk = &p.pack.chunks[p.pack.runs[NOH_CHUNK_TRANSFER].first];
     for (uint32_t bit = 0; bit < 8u * chunk->bytes; bit++) {
         noh_pack pack;
         memcpy(bytes, p.bytes, p.count);

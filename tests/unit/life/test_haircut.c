@@ -25,6 +25,7 @@ typedef struct wig {
     hair_grown grown;
     uint8_t *bytes; /* of the chunk */
     uint32_t count;
+    noh_pack_chunk chunk; /* at the pack's first byte */
     noh_pack pack;
     noh_haircut cut;
 } wig;
@@ -70,7 +71,9 @@ static void open_wig(wig *w)
     memcpy(w->bytes, &h, sizeof h);
     w->pack.strings = "";
     w->pack.string_bytes = 1;
-    w->pack.hair = (const noh_pack_hair_header *)(const void *)w->bytes;
+    w->pack.bytes = w->bytes;
+    w->pack.chunks = &w->chunk;
+    w->pack.runs[NOH_CHUNK_HAIR].count = 1;
     assert_int_equal(noh_haircut_open(&w->pack, &w->cut, NULL), NOH_OK);
 }
 

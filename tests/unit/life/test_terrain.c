@@ -83,7 +83,7 @@ static uint8_t *packed(size_t *count)
     convert_failure failure;
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&options, 0, sizeof options);
-    options.terrain = hill();
+    options.texts[NOH_CHUNK_TERRAIN] = hill();
     options.ground.points = 17;
     if (convert_files(NULL, 0, &options, &out, &failure)) fail_msg("%s: %s", failure.file, failure.error.what);
     uint8_t *bytes = malloc(out.count);
@@ -155,7 +155,7 @@ static void broken_ones_are_refused(void **state)
     noh_pack pack;
     (void)state;
     assert_int_equal(noh_pack_open(bytes, count, &pack, NULL), NOH_OK);
-    const size_t at = (size_t)((const uint8_t *)pack.terrain - bytes);
+    const size_t at = (size_t)((const uint8_t *)noh_pack_chunk_at(&pack, NOH_CHUNK_TERRAIN, 0) - bytes);
     for (size_t i = 0; i < TEST_COUNT(wrong); i++) {
         uint32_t before;
         memcpy(&before, bytes + at + wrong[i].at, sizeof before);

@@ -167,10 +167,10 @@ static void floats_are_joined_to_meshes(void **state)
     assert_int_equal(noh_clip_bank_node_group(set, p.node_count), NOH_NONE);
     assert_int_equal(noh_clip_bank_node_group(set, NOH_NONE), NOH_NONE);
     assert_int_equal(noh_clip_bank_mesh_group(set, mesh), 0);
-    assert_int_equal(noh_clip_bank_mesh_group(set, p.mesh_count), NOH_NONE);
+    assert_int_equal(noh_clip_bank_mesh_group(set, p.runs[NOH_CHUNK_MESH].count), NOH_NONE);
     assert_int_equal(noh_clip_bank_mesh_group(set, NOH_NONE), NOH_NONE); /* what a node without a mesh has */
     assert_ptr_equal(noh_clip_bank_mesh_weights(set, floats, mesh), floats + set->groups[0].first);
-    assert_null(noh_clip_bank_mesh_weights(set, floats, p.mesh_count));
+    assert_null(noh_clip_bank_mesh_weights(set, floats, p.runs[NOH_CHUNK_MESH].count));
     free(set);
     free(made);
     model_free(m);
@@ -595,8 +595,8 @@ static void mesh_and_clips_apart(void **state)
     whole = test_open(packs[CONVERT_ALL], counts[CONVERT_ALL]);
     mesh = test_open(packs[CONVERT_MESH], counts[CONVERT_MESH]);
     anim = test_open(packs[CONVERT_CLIPS], counts[CONVERT_CLIPS]);
-    assert_int_equal(mesh.clip_count, 0);
-    assert_int_equal(mesh.skeleton_count, 1);
+    assert_int_equal(mesh.runs[NOH_CHUNK_CLIP].count, 0);
+    assert_int_equal(mesh.runs[NOH_CHUNK_SKELETON].count, 1);
     together = set_of(&whole);
     desc = desc_of(&anim);
     desc.mesh = &mesh;

@@ -113,7 +113,7 @@ static void graphs_are_found_by_name(void **state)
     noh_pack_graph g;
     noh_error error;
     (void)state;
-    assert_int_equal(fixture.pack.graph_count, 1);
+    assert_int_equal(fixture.pack.runs[NOH_CHUNK_GRAPH].count, 1);
     assert_int_equal(noh_pack_graph_find(&fixture.pack, "all"), 0);
     assert_int_equal(noh_pack_graph_find(&fixture.pack, "al"), NOH_NONE);
     assert_int_equal(noh_pack_graph_at(&fixture.pack, 0, &g, NULL), NOH_OK);
@@ -417,7 +417,7 @@ static noh_result open_graph(const uint8_t *bytes, noh_pack *pack, noh_error *er
 /* With repaired checksums: refused with a place, or played in full. */
 static void repaired_flips_of_a_graph_stay_in_bounds(void **state)
 {
-    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.first_graph];
+    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.runs[NOH_CHUNK_GRAPH].first];
     const size_t count = fixture.pack.byte_count, first = 8u * (size_t)c->offset, last = first + 8u * (size_t)c->bytes;
     uint8_t *bytes = test_aligned(NULL, count);
     size_t opened = 0, refused = 0;
@@ -463,7 +463,7 @@ static forged forge(void)
     forged f;
     uint8_t *chunk;
     f.bytes = test_aligned(fixture.bytes, fixture.pack.byte_count);
-    chunk = f.bytes + fixture.pack.chunks[fixture.pack.first_graph].offset;
+    chunk = f.bytes + fixture.pack.chunks[fixture.pack.runs[NOH_CHUNK_GRAPH].first].offset;
     f.h = (noh_pack_graph_header *)(void *)chunk;
     f.nodes = (noh_pack_graph_node *)(void *)(chunk + f.h->nodes_offset);
     f.children = (uint16_t *)(void *)(chunk + f.h->children_offset);
@@ -548,7 +548,7 @@ static noh_pack_graph_node *kind(forged *f, uint32_t which)
 /* Whether a byte is before the graph's chunk: of the header and table, where the checksums are. */
 static int is_checksum(uint64_t byte)
 {
-    return byte < fixture.pack.chunks[fixture.pack.first_graph].offset;
+    return byte < fixture.pack.chunks[fixture.pack.runs[NOH_CHUNK_GRAPH].first].offset;
 }
 
 /* The byte that the error names is in the field with the lie; where an array ends elsewhere, in the next one's offset.
@@ -563,7 +563,7 @@ static int names_the_field(const forged *f, const noh_error *error)
 
 static void forged_graphs_are_refused(void **state)
 {
-    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.first_graph];
+    const noh_pack_chunk *c = &fixture.pack.chunks[fixture.pack.runs[NOH_CHUNK_GRAPH].first];
     noh_pack pack;
     noh_error error;
     (void)state;

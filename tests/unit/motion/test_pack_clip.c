@@ -64,8 +64,8 @@ static void pack_holds_skeleton_clip_and_keys(void **state)
     noh_skeleton skeleton;
     uint32_t index = 9;
     (void)state;
-    assert_int_equal(pack.skeleton_count, 1);
-    assert_int_equal(pack.clip_count, 1);
+    assert_int_equal(pack.runs[NOH_CHUNK_SKELETON].count, 1);
+    assert_int_equal(pack.runs[NOH_CHUNK_CLIP].count, 1);
     assert_int_equal(noh_pack_clip_at(&pack, 0, &clip, NULL), NOH_OK);
     assert_int_equal(noh_pack_clip_at(&pack, 1, &clip, NULL), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_pack_bind_clip(&pack, &clip, &skeleton, &index, NULL), NOH_OK);
@@ -263,8 +263,8 @@ static forged forge(void)
     forged f;
     noh_pack pack = test_open(good.bytes, good.count);
     f.bytes = test_aligned(good.bytes, good.count);
-    f.skeleton_chunk = f.bytes + pack.chunks[pack.first_skeleton].offset;
-    f.clip_chunk = f.bytes + pack.chunks[pack.first_clip].offset;
+    f.skeleton_chunk = f.bytes + pack.chunks[pack.runs[NOH_CHUNK_SKELETON].first].offset;
+    f.clip_chunk = f.bytes + pack.chunks[pack.runs[NOH_CHUNK_CLIP].first].offset;
     f.skeleton = (noh_skeleton_header *)(void *)f.skeleton_chunk;
     f.clip = (noh_clip_header *)(void *)f.clip_chunk;
     return f;

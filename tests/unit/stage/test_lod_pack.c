@@ -57,8 +57,9 @@ typedef void (*forge)(noh_skeleton_header *skeleton, uint32_t *levels, noh_clip_
 
 static noh_clip_header *first_clip_of(uint8_t *bytes, const noh_pack *pack, uint32_t skeleton)
 {
-    for (uint32_t i = 0; i < pack->clip_count; i++) {
-        noh_clip_header *h = (noh_clip_header *)(void *)(bytes + pack->chunks[pack->first_clip + i].offset);
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_CLIP].count; i++) {
+        noh_clip_header *h = (noh_clip_header *)(void *)(bytes +
+                                                         pack->chunks[pack->runs[NOH_CHUNK_CLIP].first + i].offset);
         if (h->skeleton == skeleton) return h;
     }
     fail_msg("no clip moves skeleton %u", skeleton);
@@ -72,7 +73,7 @@ static void open_table(table *t, forge change)
     t->clips_bytes = test_aligned(good, good_count);
     t->pack = test_open(good, good_count);
     if (change) {
-        uint8_t *chunk = t->clips_bytes + t->pack.chunks[t->pack.first_skeleton + FOUR].offset;
+        uint8_t *chunk = t->clips_bytes + t->pack.chunks[t->pack.runs[NOH_CHUNK_SKELETON].first + FOUR].offset;
         noh_skeleton_header *skeleton = (noh_skeleton_header *)(void *)chunk;
         change(skeleton, (uint32_t *)(void *)(chunk + skeleton->levels_offset),
                first_clip_of(t->clips_bytes, &t->pack, FOUR));
@@ -271,7 +272,7 @@ static void levels_without_an_error_in_some_clip_are_left_out(void **state)
 
 static noh_mesh_header *header_of(fixture_levels *f, uint32_t mesh)
 {
-    return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.first_mesh + mesh].offset);
+    return (noh_mesh_header *)(void *)(f->bytes + f->pack.chunks[f->pack.runs[NOH_CHUNK_MESH].first + mesh].offset);
 }
 
 /* A level has one number everywhere. Loaded from level 1 on, the coarsest is still 2, and the finest chosen is 1. */

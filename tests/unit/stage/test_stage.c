@@ -644,7 +644,7 @@ static void spheres_hold_every_vertex(void **state)
         for (uint32_t j = 0; j < c.plan.kinds[PUPPETS].joint_count; j++) {
             assert_int_equal(noh_actor_joint(c.stage, actor, j, joints + 12 * j, NULL), NOH_OK);
         }
-        for (uint32_t m = 0; m < c.packs[PUPPETS].mesh_count; m++) {
+        for (uint32_t m = 0; m < c.packs[PUPPETS].runs[NOH_CHUNK_MESH].count; m++) {
             const noh_mesh mesh = test_mesh(&c.packs[PUPPETS], m);
             noh_skin skin;
             assert_int_equal(noh_pack_skin_at(&c.packs[PUPPETS], mesh.header->skin, &skin, NULL), NOH_OK);
@@ -670,7 +670,7 @@ static double farthest(const cast *c, const noh_pack *pack, noh_actor actor, con
     for (uint32_t j = 0; j < c->plan.kinds[0].joint_count; j++) {
         assert_int_equal(noh_actor_joint(c->stage, actor, j, joints + 12u * j, NULL), NOH_OK);
     }
-    for (uint32_t m = 0; m < pack->mesh_count; m++) {
+    for (uint32_t m = 0; m < pack->runs[NOH_CHUNK_MESH].count; m++) {
         const noh_mesh mesh = test_mesh(pack, m);
         noh_skin skin;
         if (noh_pack_skin_at(pack, mesh.header->skin, &skin, NULL) != NOH_OK) continue;

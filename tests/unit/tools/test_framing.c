@@ -82,7 +82,7 @@ static void every_clip_stays_in_the_picture(void **state)
     (void)state;
     assert_non_null(s);
     open_scene(s, "hero/body.glb");
-    for (uint32_t i = 0; i < s->file.pack.clip_count; i++) {
+    for (uint32_t i = 0; i < s->file.pack.runs[NOH_CHUNK_CLIP].count; i++) {
         const double azimuths[] = { 0.0, 0.0, 2.2 }, aspects[] = { 620.0 / 668.0, 390.0 / 844.0, 16.0 / 9.0 };
         noh_pack_clip clip;
         assert_int_equal(noh_pack_clip_at(&s->file.pack, i, &clip, NULL), NOH_OK);

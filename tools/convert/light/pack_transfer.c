@@ -51,7 +51,7 @@ static uint32_t append(copier *c, size_t base, const void *bytes, size_t count)
 /* The chunk of one mesh, under the mesh's name. */
 static int add_transfer(copier *c, uint32_t index)
 {
-    noh_pack_chunk like = c->pack->chunks[c->pack->first_mesh + index];
+    noh_pack_chunk like = c->pack->chunks[c->pack->runs[NOH_CHUNK_MESH].first + index];
     noh_transfer_header h;
     transfer_data data;
     noh_mesh mesh;
@@ -70,7 +70,7 @@ static int add_transfer(copier *c, uint32_t index)
     h.texel_count = mesh.header->texel_count;
     h.target_count = mesh.header->target_count;
     h.ray_count = c->rays.count;
-    like.type = NOH_CHUNK_TRANSFER;
+    like.type = NOH_TAG_TRANSFER;
     begin_chunk(c, &like);
     base = c->out->count;
     buffer_append(c->out, NULL, sizeof h);
@@ -107,12 +107,13 @@ static void close_pack(copier *c)
 
 static int copy(copier *c)
 {
-    const uint32_t after = c->pack->first_mesh + c->pack->mesh_count;
+    const uint32_t after = c->pack->runs[NOH_CHUNK_MESH].first + c->pack->runs[NOH_CHUNK_MESH].count;
     int failed = 0;
     buffer_append(c->out, NULL,
-                  sizeof(noh_pack_header) + sizeof *c->chunks * (c->pack->chunk_count + c->pack->mesh_count));
+                  sizeof(noh_pack_header) +
+                      sizeof *c->chunks * (c->pack->chunk_count + c->pack->runs[NOH_CHUNK_MESH].count));
     copy_chunks(c, 0, after);
-    for (uint32_t i = 0; i < c->pack->mesh_count && !failed; i++) {
+    for (uint32_t i = 0; i < c->pack->runs[NOH_CHUNK_MESH].count && !failed; i++) {
         failed = add_transfer(c, i);
     }
     copy_chunks(c, after, c->pack->chunk_count);
@@ -124,7 +125,7 @@ static int copy(copier *c)
 
 int pack_transfer(const noh_pack *pack, const transfer_settings *settings, byte_buffer *out, model_error *error)
 {
-    const uint32_t count = pack->chunk_count + pack->mesh_count;
+    const uint32_t count = pack->chunk_count + pack->runs[NOH_CHUNK_MESH].count;
     copier c;
     int failed, refused = 0;
     if (count > NOH_PACK_CHUNKS_MAX) {

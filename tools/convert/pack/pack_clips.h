@@ -4,15 +4,10 @@
 
 #include <stdio.h>
 
-#include "convert/base/hair_read.h"
-#include "convert/base/ragdoll_read.h"
 #include "convert/base/recipe_read.h"
 #include "convert/codec/clip_encode.h"
 #include "convert/codec/clip_errors.h"
-#include "convert/model/hair_grow.h"
 #include "convert/codec/named_errors.h"
-#include "convert/graph/graph_text.h"
-#include "convert/springs/springs_bind.h"
 #include "convert/terrain/terrain_read.h"
 
 typedef struct encoded_clip {
@@ -23,23 +18,12 @@ typedef struct encoded_clip {
     clip_errors errors;
 } encoded_clip;
 
-/* The contents of a pack from texts and pictures other than the model; NULL: none. */
-typedef struct pack_extras {
-    const graph_file *graphs;
-    const recipe_text *recipe;
-    const ragdoll_text *ragdoll;
-    const set_springs *springs; /* [set_count] */
-    const hair_text *hair;
-    const hair_grown *grown; /* from `hair` */
-    const terrain *ground;
-} pack_extras;
-
 typedef struct encoded_clips {
     raw_set **sets; /* [set_count]; borrowed */
     uint32_t set_count;
     encoded_clip *clips; /* [clip_count] */
     uint32_t clip_count;
-    pack_extras extras; /* borrowed */
+    void *const *chunks; /* [NOH_CHUNK_TYPES] what the makers have read (chunks/chunk_maker.h); NULL: nothing */
 } encoded_clips;
 
 typedef struct clips_settings {

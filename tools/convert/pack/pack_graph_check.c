@@ -48,7 +48,7 @@ static noh_clip_bank *open_bank(const noh_pack *pack, uint32_t skeleton, noh_err
 
 int pack_check_graphs(const noh_pack *pack, model_error *error)
 {
-    for (uint32_t i = 0; i < pack->graph_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_GRAPH].count; i++) {
         noh_error why = { NOH_OK, "", 0, 0 };
         noh_pack_graph g;
         int failed = 1;
@@ -57,7 +57,8 @@ int pack_check_graphs(const noh_pack *pack, model_error *error)
                               "the built graph does not open: %s (byte %llu); this is a bug in noh: please report it",
                               why.what, (unsigned long long)why.where);
         }
-        for (uint32_t s = 0; s < (pack->skeleton_count ? pack->skeleton_count : 1u) && failed; s++) {
+        for (uint32_t s = 0;
+             s < (pack->runs[NOH_CHUNK_SKELETON].count ? pack->runs[NOH_CHUNK_SKELETON].count : 1u) && failed; s++) {
             noh_clip_bank *bank = open_bank(pack, s, &why);
             failed = !bank || bind_graph(pack, bank, s, i, &why);
             free(bank);

@@ -420,7 +420,7 @@ static int order_mesh(noh_pack *copy, uint32_t index)
     int failed;
     memset(&o, 0, sizeof o);
     (void)noh_pack_mesh_at(copy, index, &o.mesh, NULL);
-    o.chunk = (uint8_t *)(uintptr_t)copy->bytes + copy->chunks[copy->first_mesh + index].offset;
+    o.chunk = (uint8_t *)(uintptr_t)noh_pack_chunk_at(copy, NOH_CHUNK_MESH, index);
     o.indices = malloc(4u * (size_t)o.mesh.header->index_count + 4u);
     failed = !o.indices || order_triangles(&o) || (may_rename(&o, copy, index) && rename_all(&o));
     free(o.indices);
@@ -435,14 +435,14 @@ int pack_order(const noh_pack *pack, byte_buffer *out, model_error *error)
     int failed = !buffer_append(out, pack->bytes, pack->byte_count);
     copy.bytes = out->bytes;
     copy.chunks = failed ? NULL : (const noh_pack_chunk *)(const void *)(out->bytes + sizeof h);
-    for (uint32_t i = 0; !failed && i < pack->mesh_count; i++) failed = order_mesh(&copy, i);
+    for (uint32_t i = 0; !failed && i < pack->runs[NOH_CHUNK_MESH].count; i++) failed = order_mesh(&copy, i);
     if (failed) {
         buffer_free(out);
         return model_fail(error, "", "out of memory");
     }
     chunks = (noh_pack_chunk *)(void *)(out->bytes + sizeof h);
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
-        noh_pack_chunk *c = &chunks[pack->first_mesh + i];
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
+        noh_pack_chunk *c = &chunks[pack->runs[NOH_CHUNK_MESH].first + i];
         c->crc = noh_crc32c(0, out->bytes + c->offset, c->bytes);
     }
     memcpy(&h, out->bytes, sizeof h);

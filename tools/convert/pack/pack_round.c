@@ -19,7 +19,7 @@
 typedef struct rounder {
     const noh_pack *pack;
     const round_desc *desc;
-    round_mesh *meshes; /* [pack->mesh_count], what became of each */
+    round_mesh *meshes; /* [meshes of the pack], what became of each */
     byte_buffer *out;
     size_t base; /* of the chunk in out */
     noh_mesh from;
@@ -403,11 +403,11 @@ static void append_mesh(rounder *r)
 static void append_chunk(void *context, uint32_t index, byte_buffer *out)
 {
     rounder *r = context;
-    const uint32_t mesh = index - r->pack->first_mesh;
+    const uint32_t mesh = index - r->pack->runs[NOH_CHUNK_MESH].first;
     int change = 0;
     r->out = out;
     r->base = out->count;
-    if (index >= r->pack->first_mesh && mesh < r->pack->mesh_count) {
+    if (index >= r->pack->runs[NOH_CHUNK_MESH].first && mesh < r->pack->runs[NOH_CHUNK_MESH].count) {
         (void)noh_pack_mesh_at(r->pack, mesh, &r->from, NULL);
         r->report = &r->meshes[mesh];
         memset(r->report, 0, sizeof *r->report);

@@ -39,7 +39,7 @@ static uint32_t at_most(uint32_t a, uint32_t b)
 
 int strip_levels_of(const strip_levels *levels, const noh_pack *pack, uint32_t *first, model_error *error)
 {
-    memset(first, 0, pack->mesh_count * sizeof *first);
+    memset(first, 0, pack->runs[NOH_CHUNK_MESH].count * sizeof *first);
     for (uint32_t i = 0; i < levels->count; i++) {
         size_t name_bytes;
         uint32_t level, found = 0;
@@ -47,8 +47,8 @@ int strip_levels_of(const strip_levels *levels, const noh_pack *pack, uint32_t *
             return model_fail(error, "", "'%.100s' is not a level: it must be K or MESH=K, K from 0 to %u",
                               levels->items[i], NOH_LOD_LEVELS_MAX - 1u);
         }
-        for (uint32_t m = 0; m < pack->mesh_count; m++) {
-            if (is_for(levels->items[i], name_bytes, noh_pack_chunk_name(pack, pack->first_mesh + m))) {
+        for (uint32_t m = 0; m < pack->runs[NOH_CHUNK_MESH].count; m++) {
+            if (is_for(levels->items[i], name_bytes, noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_MESH].first + m))) {
                 first[m] = level;
                 found = 1;
             }
@@ -58,7 +58,7 @@ int strip_levels_of(const strip_levels *levels, const noh_pack *pack, uint32_t *
                               levels->items[i]);
         }
     }
-    for (uint32_t m = 0; m < pack->mesh_count; m++) {
+    for (uint32_t m = 0; m < pack->runs[NOH_CHUNK_MESH].count; m++) {
         noh_mesh mesh;
         (void)noh_pack_mesh_at(pack, m, &mesh, NULL);
         first[m] = noh_mesh_at_lod(&mesh, first[m]).header->level;
@@ -265,8 +265,8 @@ static void append_influences(stripper *s, uint32_t index)
 static void append_chunk(void *context, uint32_t index, byte_buffer *out)
 {
     stripper *s = context;
-    const uint32_t mesh = index - s->pack->first_mesh;
-    const int is_mesh = index >= s->pack->first_mesh && mesh < s->pack->mesh_count;
+    const uint32_t mesh = index - s->pack->runs[NOH_CHUNK_MESH].first;
+    const int is_mesh = index >= s->pack->runs[NOH_CHUNK_MESH].first && mesh < s->pack->runs[NOH_CHUNK_MESH].count;
     s->out = out;
     s->base = out->count;
     if (is_mesh) {
@@ -275,9 +275,9 @@ static void append_chunk(void *context, uint32_t index, byte_buffer *out)
     if (is_mesh && s->first[mesh] > s->from.header->level) {
         s->from = noh_mesh_at_lod(&s->from, s->first[mesh]);
         append_mesh(s);
-    } else if (s->pack->chunks[index].type == NOH_CHUNK_TRANSFER) {
+    } else if (s->pack->chunks[index].type == NOH_TAG_TRANSFER) {
         append_transfer(s, index);
-    } else if (s->pack->chunks[index].type == NOH_CHUNK_INFLUENCES) {
+    } else if (s->pack->chunks[index].type == NOH_TAG_INFLUENCES) {
         append_influences(s, index);
     } else {
         pack_copy_as_is(s->pack, index, out);

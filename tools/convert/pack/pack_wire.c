@@ -263,7 +263,7 @@ static int write_deltas(writer *w, const noh_mesh *mesh, uint32_t chunk)
 /* A mesh's chunk: filtered arrays, and plain bytes between them. */
 static int write_mesh(writer *w, const noh_pack *pack, uint32_t index, const wire_grid *grid)
 {
-    const noh_pack_chunk *c = &pack->chunks[pack->first_mesh + index];
+    const noh_pack_chunk *c = &pack->chunks[pack->runs[NOH_CHUNK_MESH].first + index];
     const uint32_t at = c->offset;
     noh_wire_section s;
     noh_mesh mesh;
@@ -300,7 +300,7 @@ static int write_mesh(writer *w, const noh_pack *pack, uint32_t index, const wir
 
 static void write_texture(writer *w, const noh_pack *pack, uint32_t index)
 {
-    const noh_pack_chunk *c = &pack->chunks[pack->first_texture + index];
+    const noh_pack_chunk *c = &pack->chunks[pack->runs[NOH_CHUNK_TEXTURE].first + index];
     noh_texture texture;
     noh_wire_section s;
     uint32_t head;
@@ -352,11 +352,11 @@ static int write_pack(writer *w, const noh_pack *pack, const noh_pack *before)
     const uint32_t table = (uint32_t)(sizeof(noh_pack_header) + pack->chunk_count * sizeof(noh_pack_chunk));
     write_bytes(w, 0, table, &w->report->rest);
     for (uint32_t i = 0; i < pack->chunk_count; i++) {
-        const uint32_t mesh = i - pack->first_mesh, texture = i - pack->first_texture;
+        const uint32_t mesh = i - pack->runs[NOH_CHUNK_MESH].first, texture = i - pack->runs[NOH_CHUNK_TEXTURE].first;
         if (copy_chunk(w, pack, i, before)) continue;
-        if (i >= pack->first_mesh && mesh < pack->mesh_count) {
+        if (i >= pack->runs[NOH_CHUNK_MESH].first && mesh < pack->runs[NOH_CHUNK_MESH].count) {
             if (write_mesh(w, pack, mesh, w->steps->grids ? &w->steps->grids[mesh] : NULL)) return 1;
-        } else if (i >= pack->first_texture && texture < pack->texture_count) {
+        } else if (i >= pack->runs[NOH_CHUNK_TEXTURE].first && texture < pack->runs[NOH_CHUNK_TEXTURE].count) {
             write_texture(w, pack, texture);
         } else {
             write_bytes(w, pack->chunks[i].offset, pack->chunks[i].bytes, &w->report->rest);
@@ -376,7 +376,7 @@ static void make_costs(float *costs)
 static uint64_t scratch_of(const noh_pack *pack)
 {
     uint64_t most = 0;
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         uint64_t bytes;
         (void)noh_pack_mesh_at(pack, i, &mesh, NULL);

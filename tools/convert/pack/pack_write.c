@@ -1,6 +1,5 @@
-#include "pack_write.h"
+#include "convert/chunks/chunk_maker.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,58 +9,71 @@
 #include "noh/low_core.h"
 #include "convert/model/tint.h"
 #include "pack_clips.h"
-#include "pack_graph.h"
 #include "pack_mesh.h"
 #include "pack_skin.h"
 #include "texture_levels.h"
 
-typedef struct writer {
-    const model *m;
-    const mesh_levels *levels;  /* or NULL */
-    const encoded_clips *clips; /* or NULL */
-    byte_buffer out;            /* header and table first, then the chunks */
-    string_table strings;
-    noh_pack_chunk *chunks;
-    uint32_t chunk_count;
-    uint32_t *skin_chunks; /* [skin_count] the n-th skin chunk, or NOH_NONE where no mesh is bound to it */
-    mesh_extra *extras;    /* [mesh_count] */
-    model_error *error;
-    int refused; /* a mesh cannot be packed; the error has the reason */
-} writer;
-
-static void name_of(string_table *strings, const char *text, uint32_t *name, uint32_t *hash)
+const chunk_maker *chunk_maker_of(noh_chunk_type type)
 {
-    *name = string_offset(strings, text ? text : "");
-    *hash = noh_hash_name((const char *)strings->bytes.bytes + *name);
+#define MAKER(NAME, name, tag, many) &chunk_##name,
+    static const chunk_maker *const makers[NOH_CHUNK_TYPES] = { NOH_CHUNKS(MAKER) };
+#undef MAKER
+    return makers[type];
 }
 
-static void begin_chunk(writer *w, uint32_t type, const char *name)
+void chunk_name(pack_writer *w, const char *text, uint32_t *name, uint32_t *hash)
 {
+    *name = string_offset(&w->strings, text ? text : "");
+    *hash = noh_hash_name((const char *)w->strings.bytes.bytes + *name);
+}
+
+void chunk_begin(pack_writer *w, noh_chunk_type type, const char *name)
+{
+#define TAG(NAME, lower, tag, many) NOH_TAG_##NAME,
+    static const uint32_t tags[NOH_CHUNK_TYPES] = { NOH_CHUNKS(TAG) };
+#undef TAG
+    if (w->chunk_count == NOH_PACK_CHUNKS_MAX) {
+        w->refused = model_fail(w->error, "",
+                                "more than %u meshes, textures, skeletons, clips and graphs: split them into several "
+                                "packs",
+                                NOH_PACK_CHUNKS_MAX);
+        w->chunk_count--;
+    }
     noh_pack_chunk *c = &w->chunks[w->chunk_count];
     buffer_align(&w->out, NOH_PACK_ALIGN);
     memset(c, 0, sizeof *c);
-    c->type = type;
-    name_of(&w->strings, name, &c->name, &c->name_hash);
+    c->type = tags[type];
+    chunk_name(w, name, &c->name, &c->name_hash);
     c->offset = (uint32_t)w->out.count;
 }
 
-static void end_chunk(writer *w)
+void chunk_end(pack_writer *w)
 {
     noh_pack_chunk *c = &w->chunks[w->chunk_count++];
     c->bytes = (uint32_t)(w->out.count - c->offset);
     c->crc = w->out.failed ? 0 : noh_crc32c(0, w->out.bytes + c->offset, c->bytes);
 }
 
+/* Filled in by assemble. */
+static void write_strings(pack_writer *w, const void *made)
+{
+    (void)made;
+    chunk_begin(w, NOH_CHUNK_STRINGS, "");
+    w->chunk_count++;
+}
+
+const chunk_maker chunk_strings = { .write = write_strings };
+
 static uint32_t wrap_mode(uint32_t gltf)
 {
     return gltf == 33071 ? NOH_WRAP_CLAMP : gltf == 33648 ? NOH_WRAP_MIRROR : NOH_WRAP_REPEAT;
 }
 
-static void write_texture(writer *w, const model_texture *t)
+static void write_texture(pack_writer *w, const model_texture *t)
 {
     noh_texture_header h;
     size_t base;
-    begin_chunk(w, NOH_CHUNK_TEXTURE, t->name);
+    chunk_begin(w, NOH_CHUNK_TEXTURE, t->name);
     memset(&h, 0, sizeof h);
     h.wrap_s = wrap_mode(t->wrap_s);
     h.wrap_t = wrap_mode(t->wrap_t);
@@ -75,8 +87,16 @@ static void write_texture(writer *w, const model_texture *t)
     } else {
         memcpy(w->out.bytes + base, &h, sizeof h);
     }
-    end_chunk(w);
+    chunk_end(w);
 }
+
+static void write_textures(pack_writer *w, const void *made)
+{
+    (void)made;
+    for (uint32_t i = 0; i < w->m->texture_count; i++) write_texture(w, &w->m->textures[i]);
+}
+
+const chunk_maker chunk_texture = { .write = write_textures };
 
 static uint32_t material_flags(const model_material *m)
 {
@@ -108,14 +128,16 @@ static void write_maps(const model_material *from, noh_material *to)
     memcpy(to->surface_more, from->surface_more, sizeof to->surface_more);
 }
 
-static void write_materials(writer *w)
+static void write_materials(pack_writer *w, const void *made)
 {
-    begin_chunk(w, NOH_CHUNK_MATERIALS, "");
+    (void)made;
+    if (!w->m->material_count) return;
+    chunk_begin(w, NOH_CHUNK_MATERIALS, "");
     for (uint32_t i = 0; i < w->m->material_count; i++) {
         const model_material *from = &w->m->materials[i];
         noh_material to;
         memset(&to, 0, sizeof to);
-        name_of(&w->strings, from->name, &to.name, &to.name_hash);
+        chunk_name(w, from->name, &to.name, &to.name_hash);
         to.flags = material_flags(from);
         to.base_color_texture = from->base_color_texture;
         memcpy(to.base_color, from->base_color, sizeof to.base_color);
@@ -126,10 +148,12 @@ static void write_materials(writer *w)
         write_maps(from, &to);
         buffer_append(&w->out, &to, sizeof to);
     }
-    end_chunk(w);
+    chunk_end(w);
 }
 
-static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
+const chunk_maker chunk_materials = { .write = write_materials };
+
+static void write_mesh(pack_writer *w, uint32_t index, const morph_encoding *e)
 {
     static const mesh_levels alone = { .count = 1 };
     const model_mesh *mesh = &w->m->meshes[index];
@@ -146,13 +170,24 @@ static void write_mesh(writer *w, uint32_t index, const morph_encoding *e)
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;
     }
     w->extras[index].index = index;
-    begin_chunk(w, NOH_CHUNK_MESH, mesh->name);
+    chunk_begin(w, NOH_CHUNK_MESH, mesh->name);
     w->refused = w->refused || pack_mesh(&from, &w->strings, &w->out, &w->extras[index], w->error);
-    end_chunk(w);
+    chunk_end(w);
 }
 
+static void write_meshes(pack_writer *w, const void *made)
+{
+    (void)made;
+    for (uint32_t i = 0; i < w->m->mesh_count; i++) write_mesh(w, i, w->encodings[i]);
+}
+
+const chunk_maker chunk_mesh = { .write = write_meshes };
+
+/* Added to the finished pack: light/pack_transfer.c. */
+const chunk_maker chunk_transfer = { .write = NULL };
+
 /* A skinned mesh is placed by its joints, whose model space is the world. */
-static void set_world(const writer *w, const model_node *from, noh_node *to)
+static void set_world(const pack_writer *w, const model_node *from, noh_node *to)
 {
     int skinned = from->mesh != MODEL_NONE && w->m->meshes[from->mesh].bound;
     for (int i = 0; i < 12; i++) {
@@ -160,11 +195,11 @@ static void set_world(const writer *w, const model_node *from, noh_node *to)
     }
 }
 
-static void write_node(writer *w, const model_node *from, uint32_t *weight_count)
+static void write_node(pack_writer *w, const model_node *from, uint32_t *weight_count)
 {
     noh_node to;
     memset(&to, 0, sizeof to);
-    name_of(&w->strings, from->name, &to.name, &to.name_hash);
+    chunk_name(w, from->name, &to.name, &to.name_hash);
     to.parent = from->parent;
     to.mesh = from->mesh;
     memcpy(to.translation, from->translation, sizeof to.translation);
@@ -179,11 +214,13 @@ static void write_node(writer *w, const model_node *from, uint32_t *weight_count
     buffer_append(&w->out, &to, sizeof to);
 }
 
-static void write_nodes(writer *w)
+static void write_nodes(pack_writer *w, const void *made)
 {
+    (void)made;
+    if (!w->m->node_count) return;
     noh_nodes_header h = { w->m->node_count, 0, sizeof h, 0 };
     size_t base;
-    begin_chunk(w, NOH_CHUNK_NODES, "");
+    chunk_begin(w, NOH_CHUNK_NODES, "");
     base = w->out.count;
     buffer_append(&w->out, &h, sizeof h);
     for (uint32_t i = 0; i < w->m->node_count; i++) {
@@ -200,8 +237,10 @@ static void write_nodes(writer *w)
     if (!w->out.failed) {
         memcpy(w->out.bytes + base, &h, sizeof h);
     }
-    end_chunk(w);
+    chunk_end(w);
 }
+
+const chunk_maker chunk_nodes = { .write = write_nodes };
 
 /* The n-th skeleton chunk of a set; sets without joints have none. */
 static uint32_t skeleton_chunk(const encoded_clips *made, uint32_t set)
@@ -213,21 +252,26 @@ static uint32_t skeleton_chunk(const encoded_clips *made, uint32_t set)
     return n;
 }
 
-static void write_skeletons(writer *w)
+static void write_skeletons(pack_writer *w, const void *made)
 {
-    for (uint32_t i = 0; i < w->clips->set_count; i++) {
+    (void)made;
+    for (uint32_t i = 0; w->clips && i < w->clips->set_count; i++) {
         if (!w->clips->sets[i]->skeleton.joint_count) {
             continue; /* clips of weights alone */
         }
-        begin_chunk(w, NOH_CHUNK_SKELETON, w->clips->sets[i]->skeleton.name);
+        chunk_begin(w, NOH_CHUNK_SKELETON, w->clips->sets[i]->skeleton.name);
         pack_skeleton(&w->clips->sets[i]->skeleton, &w->strings, &w->out);
-        end_chunk(w);
+        chunk_end(w);
     }
 }
 
+const chunk_maker chunk_skeleton = { .write = write_skeletons };
+
 /* Only skins that move a mesh. */
-static void write_skins(writer *w)
+static void write_skins(pack_writer *w, const void *made)
 {
+    (void)made;
+    if (!w->clips) return;
     uint32_t count = 0;
     for (uint32_t s = 0; s < w->m->skin_count; s++) {
         int used = 0;
@@ -236,24 +280,26 @@ static void write_skins(writer *w)
         }
         w->skin_chunks[s] = used ? count++ : NOH_NONE;
         if (used) {
-            begin_chunk(w, NOH_CHUNK_SKIN, w->m->skins[s].name);
+            chunk_begin(w, NOH_CHUNK_SKIN, w->m->skins[s].name);
             pack_skin(&w->m->skins[s], skeleton_chunk(w->clips, w->m->skins[s].set), &w->out);
-            end_chunk(w);
+            chunk_end(w);
         }
     }
 }
 
-static void write_influences(writer *w, uint32_t index)
+const chunk_maker chunk_skin = { .write = write_skins };
+
+static void write_list(pack_writer *w, uint32_t index)
 {
     const byte_buffer *list = &w->extras[index].influences;
     w->out.failed |= list->failed;
     if (!list->count) return;
-    begin_chunk(w, NOH_CHUNK_INFLUENCES, w->m->meshes[index].name);
+    chunk_begin(w, NOH_CHUNK_INFLUENCES, w->m->meshes[index].name);
     buffer_append(&w->out, list->bytes, list->count);
-    end_chunk(w);
+    chunk_end(w);
 }
 
-static void write_wrinkles(writer *w, uint32_t index)
+static void write_regions(pack_writer *w, uint32_t index)
 {
     const model_mesh *mesh = &w->m->meshes[index];
     noh_wrinkles_header h;
@@ -261,209 +307,44 @@ static void write_wrinkles(writer *w, uint32_t index)
     h.mesh = index;
     h.target_count = mesh->target_count;
     h.matrix_offset = sizeof h;
-    begin_chunk(w, NOH_CHUNK_WRINKLES, mesh->name);
+    chunk_begin(w, NOH_CHUNK_WRINKLES, mesh->name);
     buffer_append(&w->out, &h, sizeof h);
     buffer_append(&w->out, mesh->wrinkles, (size_t)mesh->target_count * NOH_WRINKLE_REGIONS);
-    end_chunk(w);
+    chunk_end(w);
 }
 
-static void write_content(writer *w, morph_encoding *const *encodings)
+static void write_influences(pack_writer *w, const void *made)
 {
-    for (uint32_t i = 0; i < w->m->texture_count; i++) {
-        write_texture(w, &w->m->textures[i]);
-    }
-    if (w->m->material_count) {
-        write_materials(w);
-    }
-    if (w->clips) {
-        write_skeletons(w);
-        write_skins(w);
-    }
+    (void)made;
+    for (uint32_t i = 0; i < w->m->mesh_count; i++) write_list(w, i);
+}
+
+const chunk_maker chunk_influences = { .write = write_influences };
+
+static void write_wrinkles(pack_writer *w, const void *made)
+{
+    (void)made;
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
-        write_mesh(w, i, encodings[i]);
-    }
-    for (uint32_t i = 0; i < w->m->mesh_count; i++) {
-        write_influences(w, i);
-    }
-    for (uint32_t i = 0; i < w->m->mesh_count; i++) {
-        if (w->m->meshes[i].wrinkles) write_wrinkles(w, i);
-    }
-    if (w->m->node_count) {
-        write_nodes(w);
+        if (w->m->meshes[i].wrinkles) write_regions(w, i);
     }
 }
 
-static void write_clips(writer *w)
+const chunk_maker chunk_wrinkles = { .write = write_wrinkles };
+
+static void write_clips(pack_writer *w, const void *made)
 {
-    for (uint32_t i = 0; i < w->clips->clip_count; i++) {
-        begin_chunk(w, NOH_CHUNK_CLIP, w->clips->clips[i].raw->name);
+    (void)made;
+    for (uint32_t i = 0; w->clips && i < w->clips->clip_count; i++) {
+        chunk_begin(w, NOH_CHUNK_CLIP, w->clips->clips[i].raw->name);
         pack_clip(w->clips, &w->clips->clips[i], &w->strings, &w->out);
-        end_chunk(w);
+        chunk_end(w);
     }
 }
 
-static void write_graphs(writer *w)
-{
-    for (uint32_t i = 0; w->clips->extras.graphs && i < w->clips->extras.graphs->count; i++) {
-        begin_chunk(w, NOH_CHUNK_GRAPH, w->clips->extras.graphs->graphs[i]->name);
-        pack_graph(w->clips->extras.graphs->graphs[i], &w->strings, &w->out);
-        end_chunk(w);
-    }
-}
-
-static void write_recipe(writer *w)
-{
-    const recipe_text *recipe = w->clips->extras.recipe;
-    noh_recipe_header h;
-    if (!recipe || !recipe->count) return;
-    memset(&h, 0, sizeof h);
-    h.row_count = recipe->count;
-    h.rows_offset = sizeof h;
-    begin_chunk(w, NOH_CHUNK_RECIPE, "");
-    buffer_append(&w->out, &h, sizeof h);
-    for (uint32_t i = 0; i < recipe->count; i++) {
-        noh_recipe_row row;
-        memset(&row, 0, sizeof row);
-        row.target = string_offset(&w->strings, recipe->rows[i].target);
-        row.target_hash = noh_hash_name(recipe->rows[i].target);
-        row.channel = string_offset(&w->strings, recipe->rows[i].channel);
-        row.channel_hash = noh_hash_name(recipe->rows[i].channel);
-        row.weight = recipe->rows[i].weight;
-        buffer_append(&w->out, &row, sizeof row);
-    }
-    end_chunk(w);
-}
-
-static void write_ragdoll(writer *w)
-{
-    const ragdoll_text *ragdoll = w->clips->extras.ragdoll;
-    noh_pack_ragdoll_header h;
-    if (!ragdoll) return;
-    memset(&h, 0, sizeof h);
-    h.row_count = ragdoll->count;
-    h.rows_offset = sizeof h;
-    begin_chunk(w, NOH_CHUNK_RAGDOLL, "");
-    buffer_append(&w->out, &h, sizeof h);
-    for (uint32_t i = 0; i < ragdoll->count; i++) {
-        const ragdoll_line *from = &ragdoll->rows[i];
-        noh_pack_ragdoll_row row;
-        memset(&row, 0, sizeof row);
-        name_of(&w->strings, from->joint, &row.joint, &row.joint_hash);
-        row.hinge = from->hinge;
-        row.toward = from->toward;
-        row.bend_min = from->bend_min;
-        row.bend_max = from->bend_max;
-        row.side = from->side;
-        row.twist = from->twist;
-        row.friction = from->friction;
-        buffer_append(&w->out, &row, sizeof row);
-    }
-    end_chunk(w);
-}
-
-static void write_springs(writer *w)
-{
-    for (uint32_t i = 0; w->clips->extras.springs && i < w->clips->set_count; i++) {
-        const set_springs *s = &w->clips->extras.springs[i];
-        noh_springs_header h;
-        if (!s->row_count) continue;
-        memset(&h, 0, sizeof h);
-        h.skeleton = i;
-        h.joint_count = w->clips->sets[i]->skeleton.joint_count;
-        h.row_count = s->row_count;
-        h.rows_offset = sizeof h;
-        h.chain_count = s->chain_count;
-        h.chains_offset = (h.rows_offset + h.row_count * (uint32_t)sizeof *s->rows + 15u) & ~15u;
-        h.collider_count = s->collider_count;
-        h.colliders_offset = (h.chains_offset + h.chain_count * (uint32_t)sizeof *s->chains + 15u) & ~15u;
-        begin_chunk(w, NOH_CHUNK_SPRINGS, w->clips->sets[i]->skeleton.name);
-        buffer_append(&w->out, &h, sizeof h);
-        buffer_append(&w->out, s->rows, s->row_count * sizeof *s->rows);
-        buffer_align(&w->out, 16);
-        buffer_append(&w->out, s->chains, s->chain_count * sizeof *s->chains);
-        buffer_align(&w->out, 16);
-        buffer_append(&w->out, s->colliders, s->collider_count * sizeof *s->colliders);
-        end_chunk(w);
-    }
-}
-
-/* sRGB to linear. */
-static float linear(float c)
-{
-    return c <= 0.04045f ? c / 12.92f : powf((c + 0.055f) / 1.055f, 2.4f);
-}
-
-/* All but the name and the offsets. */
-static void hair_header(const hair_text *t, const hair_grown *g, noh_pack_hair_header *h)
-{
-    memset(h, 0, sizeof *h);
-    h->hair_count = g->hair_count;
-    h->point_count = g->point_count;
-    h->patch_count = g->patch_count;
-    h->sphere_count = g->sphere_count;
-    h->strip_count = (uint32_t)t->strips;
-    h->segment_count = (uint32_t)t->segments;
-    h->seed = (uint32_t)t->seed;
-    h->pull = t->pull[0];
-    h->pull_at_tip = t->pull[1];
-    h->damping = t->damping;
-    h->gravity = t->gravity;
-    h->width_root = t->width[0];
-    h->width_tip = t->width[1];
-    h->curl_radius = t->curl[0] < 1.0f ? t->curl[0] : 1.0f;
-    h->curl_turns = t->curl[1];
-    h->scatter = t->scatter;
-    h->gloss = t->gloss;
-    memcpy(h->middle, t->skull, sizeof h->middle);
-    for (int i = 0; i < 3; i++) {
-        h->color_root[i] = linear(t->root[i]);
-        h->color_tip[i] = linear(t->tip[i]);
-    }
-}
-
-static void write_hair(writer *w)
-{
-    const hair_text *t = w->clips->extras.hair;
-    const hair_grown *g = w->clips->extras.grown;
-    noh_pack_hair_header h;
-    if (!t) return;
-    hair_header(t, g, &h);
-    h.metres = w->clips->set_count ? (float)(w->clips->sets[0]->skeleton.unit_cm / 100.0) : 1.0f;
-    name_of(&w->strings, t->joint ? t->joint : "", &h.joint, &h.joint_hash);
-    begin_chunk(w, NOH_CHUNK_HAIR, "");
-    const size_t start = w->out.count;
-    buffer_append(&w->out, &h, sizeof h);
-    h.points_offset = (uint32_t)(w->out.count - start);
-    buffer_append(&w->out, g->points, (size_t)g->hair_count * g->point_count * 12u);
-    buffer_align(&w->out, 16);
-    h.patches_offset = (uint32_t)(w->out.count - start);
-    buffer_append(&w->out, g->patches, (size_t)g->patch_count * sizeof *g->patches);
-    h.spheres_offset = (uint32_t)(w->out.count - start);
-    buffer_append(&w->out, g->spheres, (size_t)g->sphere_count * sizeof *g->spheres);
-    if (!w->out.failed) memcpy(w->out.bytes + start, &h, sizeof h);
-    end_chunk(w);
-}
-
-static void write_terrain(writer *w)
-{
-    const terrain *t = w->clips->extras.ground;
-    noh_pack_terrain_header h;
-    if (!t) return;
-    memset(&h, 0, sizeof h);
-    h.width = t->width;
-    h.depth = t->depth;
-    memcpy(h.origin, t->origin, sizeof h.origin);
-    h.spacing = t->spacing;
-    h.scale = t->scale;
-    h.heights_offset = sizeof h;
-    begin_chunk(w, NOH_CHUNK_TERRAIN, "");
-    buffer_append(&w->out, &h, sizeof h);
-    buffer_append(&w->out, t->heights, sizeof *t->heights * t->width * t->depth);
-    end_chunk(w);
-}
+const chunk_maker chunk_clip = { .write = write_clips };
 
 /* The strings are complete only now, but their chunk is the first: put it between the table and the other chunks. */
-static int assemble(writer *w, byte_buffer *out)
+static int assemble(pack_writer *w, byte_buffer *out)
 {
     noh_pack_header h;
     size_t table = sizeof h + sizeof *w->chunks * w->chunk_count, content;
@@ -497,55 +378,37 @@ static int assemble(writer *w, byte_buffer *out)
     return 0;
 }
 
-static size_t chunk_capacity(const model *m, const encoded_clips *made)
+/* Types in the order of the list. */
+static void write_chunks(pack_writer *w)
 {
-    size_t lists = 0;
-    for (uint32_t i = 0; i < m->mesh_count; i++) lists += m->meshes[i].influence_max > NOH_INFLUENCES_MAX;
-    return lists + 2 * (size_t)m->mesh_count + m->texture_count + m->skin_count + 7 +
-           (made ? 2 * (size_t)made->set_count + made->clip_count +
-                       (made->extras.graphs ? made->extras.graphs->count : 0)
-                 : 0);
+    for (int type = 0; type < NOH_CHUNK_TYPES; type++) {
+        const chunk_maker *maker = chunk_maker_of((noh_chunk_type)type);
+        if (maker->write) maker->write(w, w->clips && w->clips->chunks ? w->clips->chunks[type] : NULL);
+    }
 }
 
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,
                byte_buffer *out, model_error *error)
 {
-    writer w;
+    pack_writer w;
     int failed;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         if (pack_check_encoding(&m->meshes[i], encodings[i], error)) {
             return 1;
         }
     }
-    if (chunk_capacity(m, made) > NOH_PACK_CHUNKS_MAX) {
-        snprintf(error->what, sizeof error->what,
-                 "more than %u meshes, textures, skeletons, clips and graphs: split them into several packs",
-                 NOH_PACK_CHUNKS_MAX);
-        error->where[0] = 0;
-        return 1;
-    }
     memset(&w, 0, sizeof w);
     w.m = m;
     w.levels = levels;
+    w.encodings = encodings;
     w.clips = made;
     w.error = error;
-    w.chunks = calloc(chunk_capacity(m, made), sizeof *w.chunks);
+    w.chunks = calloc(NOH_PACK_CHUNKS_MAX, sizeof *w.chunks);
     w.skin_chunks = calloc(m->skin_count + 1u, sizeof *w.skin_chunks);
     w.extras = calloc(m->mesh_count + 1u, sizeof *w.extras);
     string_offset(&w.strings, "");
     if (w.chunks && w.skin_chunks && w.extras) {
-        begin_chunk(&w, NOH_CHUNK_STRINGS, "");
-        w.chunk_count = 1; /* the strings, filled in by assemble */
-        write_content(&w, encodings);
-        if (made) {
-            write_clips(&w);
-            write_graphs(&w);
-            write_recipe(&w);
-            write_ragdoll(&w);
-            write_springs(&w);
-            write_hair(&w);
-            write_terrain(&w);
-        }
+        write_chunks(&w);
     }
     failed = w.refused || !w.chunks || !w.skin_chunks || !w.extras || w.out.failed || w.strings.bytes.failed ||
              assemble(&w, out);

@@ -351,12 +351,12 @@ static int against_full(bench_job *job, gpu *g, uint32_t actors)
 static int has_cast(const noh_pack *pack)
 {
     int found = 0;
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(pack, i, &mesh, NULL);
         found |= mesh.header->skin != NOH_NONE && mesh.header->level_count > 1u;
     }
-    return found && pack->clip_count;
+    return found && pack->runs[NOH_CHUNK_CLIP].count;
 }
 
 int bench_cast(bench_job *job)

@@ -99,7 +99,7 @@ int bench_clip_set_open(bench_clip_set *set, const bench_job *job)
     int status = 0;
     memset(set, 0, sizeof *set);
     for (uint32_t f = 0; f < job->file_count; f++) {
-        for (uint32_t i = 0; i < job->files[f].pack.clip_count && !status; i++) {
+        for (uint32_t i = 0; i < job->files[f].pack.runs[NOH_CHUNK_CLIP].count && !status; i++) {
             bench_clip c;
             status = init_clip(&c, &job->files[f], i);
             if (status || c.info.joint_count == 0u) {

@@ -233,7 +233,7 @@ static int crowd_open(crowd *c, const pack_file *file)
     c->set.bind_pose = c->skeleton.bind_pose;
     c->set.sample = sample_clip;
     c->set.user = c;
-    for (uint32_t i = 0; i < file->pack.clip_count && c->set.clip_count < CLIPS_MAX && !status; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_CLIP].count && c->set.clip_count < CLIPS_MAX && !status; i++) {
         status = open_clip(c, file, i);
     }
     if (status || c->set.clip_count == 0) {
@@ -333,7 +333,7 @@ int bench_crowd_pose(bench_job *job)
 {
     crowd c;
     int status;
-    if (job->files[0].pack.skeleton_count == 0) {
+    if (job->files[0].pack.runs[NOH_CHUNK_SKELETON].count == 0) {
         return 0;
     }
     memset(&c, 0, sizeof c);

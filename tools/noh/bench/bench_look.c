@@ -76,7 +76,7 @@ static unsigned material_has(const noh_material *m)
 
 static unsigned pack_has(const noh_pack *pack)
 {
-    unsigned has = pack->transfer_count ? KEEP_TRANSFER : 0;
+    unsigned has = pack->runs[NOH_CHUNK_TRANSFER].count ? KEEP_TRANSFER : 0;
     for (uint32_t i = 0; i < pack->material_count; i++) has |= material_has(&pack->materials[i]);
     return has;
 }

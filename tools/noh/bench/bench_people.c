@@ -192,7 +192,7 @@ static int has_people(const noh_pack *pack)
     memset(&source, 0, sizeof source);
     source.pack = pack;
     source.metres = 1.0f;
-    for (uint32_t i = 0; i < pack->clip_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_CLIP].count; i++) {
         noh_pack_clip clip;
         walks |= noh_pack_clip_at(pack, i, &clip, NULL) == NOH_OK && strcmp(clip.name, "walk") == 0;
     }

@@ -49,7 +49,7 @@ typedef struct skin_work {
 static int largest_skinned_mesh(const noh_pack *pack, noh_mesh *out)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(pack, i, &mesh, NULL);
         if (mesh.header->influence_count && mesh.header->vertex_count > most) {
@@ -161,7 +161,7 @@ static int skin_open(skin_bench *b)
     gpu *g = &b->job->g;
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = make_matrices(b);
-    b->pictures = calloc(b->mesh.pack->texture_count + 1u, sizeof *b->pictures);
+    b->pictures = calloc(b->mesh.pack->runs[NOH_CHUNK_TEXTURE].count + 1u, sizeof *b->pictures);
     if (!status && !b->pictures) {
         status = tool_fail("bench", "out of memory");
     }

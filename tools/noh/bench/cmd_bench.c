@@ -22,7 +22,7 @@ typedef struct bench_args {
 static void choose_mesh(bench_job *job)
 {
     uint32_t most = 0;
-    for (uint32_t i = 0; i < job->files[0].pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < job->files[0].pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(&job->files[0].pack, i, &mesh, NULL);
         if (mesh.header->flags & NOH_MESH_UV_TARGETS) continue;

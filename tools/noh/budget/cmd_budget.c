@@ -48,7 +48,7 @@ static void json_levels(json *j, const pack_budget *b)
 /* Of its chunk; 0: there is none. */
 static uint64_t terrain_bytes(const pack_budget *b)
 {
-    const noh_pack_terrain_header *h = b->planned.desc.file->pack.terrain;
+    const noh_pack_terrain_header *h = noh_pack_chunk_at(&b->planned.desc.file->pack, NOH_CHUNK_TERRAIN, 0);
     return h ? h->heights_offset + 2u * (uint64_t)h->width * h->depth : 0;
 }
 
@@ -153,7 +153,7 @@ static int budget_of(const budget_args *a, const figure_desc *desc)
     noh_gl_caps caps;
     pack_budget b;
     int status = draws ? 0 : check_clips_alone(a);
-    if (!draws && !status && !desc->clips->pack.clip_count) {
+    if (!draws && !status && !desc->clips->pack.runs[NOH_CHUNK_CLIP].count) {
         status = tool_fail(desc->file->path, "the pack has neither meshes nor clips");
     }
     if (!status) status = budget_caps(a, draws, &caps);

@@ -20,7 +20,7 @@
 #define INPUTS_MAX 64
 
 typedef struct clip_args {
-    const char *events, *graph, *unit_cm, *rest, *facing, *bound, *rename, *clean;
+    const char *events, *unit_cm, *rest, *facing, *bound, *rename, *clean;
     int partial, loop, open_loop;
     double rate, error_cm, shell_cm, split_hz, segment_frames, effort;
     option_list clip_errors, joint_errors;
@@ -61,14 +61,9 @@ typedef struct wrinkle_args {
 } wrinkle_args;
 
 typedef struct face_args {
-    const char *recipe, *identity, *targets;
+    const char *identity, *targets;
     int eyes, lips, no_correctives;
 } face_args;
-
-typedef struct body_args {
-    const char *ragdoll, *springs, *hair;
-    option_list spring_lines;
-} body_args;
 
 typedef struct attach_args {
     option_list files;
@@ -76,12 +71,13 @@ typedef struct attach_args {
 } attach_args;
 
 typedef struct terrain_args {
-    const char *file;
     double size, height, points;
 } terrain_args;
 
 typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *rects, *only;
+    const char *texts[NOH_CHUNK_TYPES]; /* as in convert_options */
+    option_list spring_lines;
     int input_count, quiet;
     double error_um;
     clip_args clips;
@@ -92,7 +88,6 @@ typedef struct build_args {
     light_args light;
     wrinkle_args wrinkles;
     face_args face;
-    body_args body;
     attach_args attach;
     terrain_args terrain;
 } build_args;
@@ -162,7 +157,6 @@ static int set_clip(const build_args *a, convert_options *o)
     o->clip.joint_errors = (named_errors){ a->clips.joint_errors.items, (uint32_t)a->clips.joint_errors.count };
     o->only = !a->only ? CONVERT_ALL : a->only[0] == 'm' ? CONVERT_MESH : CONVERT_CLIPS;
     o->events = a->clips.events;
-    o->graph = a->clips.graph;
     return 0;
 }
 
@@ -385,13 +379,9 @@ static int run(void *args)
     o.joints.names = a->clips.rename;
     o.joints.partial = a->clips.partial;
     o.source.split_eyes = a->face.eyes;
-    o.recipe = a->face.recipe;
-    o.ragdoll = a->body.ragdoll;
-    o.springs = a->body.springs;
-    o.spring_lines = a->body.spring_lines.items;
-    o.spring_line_count = (uint32_t)a->body.spring_lines.count;
-    o.hair = a->body.hair;
-    o.terrain = a->terrain.file;
+    memcpy(o.texts, a->texts, sizeof o.texts);
+    o.spring_lines = a->spring_lines.items;
+    o.spring_line_count = (uint32_t)a->spring_lines.count;
     o.source.lips = a->face.lips;
     o.no_correctives = a->face.no_correctives;
     o.report = report;
@@ -752,7 +742,7 @@ static const option options[] = {
       .excludes = "--only=mesh" },
     { .name = "--graph",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, clips.graph),
+      .at = offsetof(build_args, texts[NOH_CHUNK_GRAPH]),
       .value = "FILE",
       .what = "animation graphs that play the clips, a text file (noh help FORMATS)",
       .example = "hero.graph",
@@ -779,21 +769,21 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--recipe",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, face.recipe),
+      .at = offsetof(build_args, texts[NOH_CHUNK_RECIPE]),
       .value = "FILE",
       .what = "text file of what the face's targets show: blinks, gaze, emotions, mouth shapes (noh help FORMATS)",
       .example = "hero.recipe",
       .excludes = "--only=anim" },
     { .name = "--ragdoll",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, body.ragdoll),
+      .at = offsetof(build_args, texts[NOH_CHUNK_RAGDOLL]),
       .value = "FILE",
       .what = "text file of the ragdoll's bodies and joint limits (noh help FORMATS)",
       .example = "hero.ragdoll",
       .excludes = "--only=anim" },
     { .name = "--springs",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, body.springs),
+      .at = offsetof(build_args, texts[NOH_CHUNK_SPRINGS]),
       .value = "FILE",
       .what =
           "text file of spring chains and colliders (noh help FORMATS), in place of the glTF file's springs (VRMC_springBone, VRM, extras)",
@@ -801,21 +791,21 @@ static const option options[] = {
       .excludes = "--only=anim" },
     { .name = "--spring",
       .kind = OPTION_LIST,
-      .at = offsetof(build_args, body.spring_lines),
+      .at = offsetof(build_args, spring_lines),
       .value = "LINE",
       .what = "one line of such a file; may repeat",
       .example = "\"chain ponytail* stiffness 0.5\"",
       .excludes = "--only=anim" },
     { .name = "--hair",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, body.hair),
+      .at = offsetof(build_args, texts[NOH_CHUNK_HAIR]),
       .value = "FILE",
       .what = "text file of a haircut: where hair grows, how it is combed and how it looks (noh help FORMATS)",
       .example = "hero.hair",
       .excludes = "--only=anim" },
     { .name = "--terrain",
       .kind = OPTION_INPUT,
-      .at = offsetof(build_args, terrain.file),
+      .at = offsetof(build_args, texts[NOH_CHUNK_TERRAIN]),
       .value = "FILE",
       .what =
           "the ground: a .png with heights as brightness, or a .glb or .gltf file, whose highest surface is used. Without IN, the pack holds the ground alone",

@@ -185,9 +185,9 @@ static int dump_clip(const pack_file *file, const opened *o, const char *path)
 
 static int find_clip(const pack_file *file, const char *name, uint32_t *index)
 {
-    const char **names = calloc(file->pack.clip_count + 1u, sizeof *names);
+    const char **names = calloc(file->pack.runs[NOH_CHUNK_CLIP].count + 1u, sizeof *names);
     const char *near;
-    for (uint32_t i = 0; names && i < file->pack.clip_count; i++) {
+    for (uint32_t i = 0; names && i < file->pack.runs[NOH_CHUNK_CLIP].count; i++) {
         noh_pack_clip packed;
         noh_pack_clip_at(&file->pack, i, &packed, NULL);
         names[i] = packed.name;
@@ -197,7 +197,7 @@ static int find_clip(const pack_file *file, const char *name, uint32_t *index)
             return 0;
         }
     }
-    near = names ? nearest_name(name, names, file->pack.clip_count) : NULL;
+    near = names ? nearest_name(name, names, file->pack.runs[NOH_CHUNK_CLIP].count) : NULL;
     free(names);
     return near ? tool_fail(file->path, "no clip named '%s' (did you mean '%s'?)", name, near)
                 : tool_fail(file->path, "no clip named '%s' (`noh clip` lists them)", name);
@@ -208,9 +208,9 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
     opened o;
     uint32_t index = 0;
     int status;
-    if (file->pack.clip_count == 0 || (!name && file->pack.clip_count > 1)) {
+    if (file->pack.runs[NOH_CHUNK_CLIP].count == 0 || (!name && file->pack.runs[NOH_CHUNK_CLIP].count > 1)) {
         return tool_fail(file->path, "--dump writes one clip and this pack has %u: name it with --clip",
-                         file->pack.clip_count);
+                         file->pack.runs[NOH_CHUNK_CLIP].count);
     }
     status = name ? find_clip(file, name, &index) : 0;
     if (!status) status = open_clip(&o, file, index);
@@ -228,7 +228,7 @@ static int dump_named(const pack_file *file, const char *name, const char *path)
 static int list_clips(const pack_file *file)
 {
     int status = 0;
-    for (uint32_t i = 0; i < file->pack.clip_count && !status; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_CLIP].count && !status; i++) {
         opened o;
         status = open_clip(&o, file, i);
         if (!status) {
@@ -244,7 +244,7 @@ static int json_clips(const pack_file *file)
     json j = json_begin();
     int status = 0;
     json_open(&j, "clips", '[');
-    for (uint32_t i = 0; i < file->pack.clip_count && !status; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_CLIP].count && !status; i++) {
         opened o;
         status = open_clip(&o, file, i);
         if (!status) {

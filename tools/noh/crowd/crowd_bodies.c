@@ -42,7 +42,7 @@ static int find_skeleton(crowd *c, const pack_file *file)
 {
     uint32_t most = 0;
     int found = 0;
-    for (uint32_t i = 0; i < file->pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_skin skin;
         noh_pack_mesh_at(&file->pack, i, &mesh, NULL);

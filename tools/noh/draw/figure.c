@@ -23,7 +23,7 @@ static uint32_t skeleton_of(const noh_pack *pack, uint32_t mesh)
 /* The nodes (meshes, in a pack without nodes) of a skeleton; the first skeleton also gets all rigid ones. */
 static uint32_t list_nodes(const noh_pack *pack, uint32_t skeleton, uint32_t *nodes)
 {
-    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
+    const uint32_t count = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
     uint32_t found = 0;
     for (uint32_t i = 0; i < count; i++) {
         const uint32_t mesh = pack->node_count ? pack->nodes[i].mesh : i;
@@ -47,7 +47,7 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->clips = d->clips && !d->more_clip_count ? &d->clips->pack : NULL;
     k->clip_packs = d->more_clip_count ? f->packs : d->clips ? NULL : &f->kinds[0].mesh; /* none of them */
     k->clip_pack_count = d->more_clip_count ? d->more_clip_count + 1u : 0;
-    k->skeleton = k->mesh->skeleton_count ? skeleton : NOH_NONE;
+    k->skeleton = k->mesh->runs[NOH_CHUNK_SKELETON].count ? skeleton : NOH_NONE;
     k->nodes = nodes;
     k->node_count = node_count;
     k->levels_by_number = 1;
@@ -79,10 +79,10 @@ static int add_kinds(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32
 static int list_kinds(figure *f, int draws)
 {
     const noh_pack *pack = &f->desc.file->pack;
-    const uint32_t skeletons = pack->skeleton_count ? pack->skeleton_count : 1u;
+    const uint32_t skeletons = pack->runs[NOH_CHUNK_SKELETON].count ? pack->runs[NOH_CHUNK_SKELETON].count : 1u;
     uint32_t *next;
     int status = 0;
-    f->nodes = calloc((size_t)pack->node_count + pack->mesh_count + 1u, sizeof *f->nodes);
+    f->nodes = calloc((size_t)pack->node_count + pack->runs[NOH_CHUNK_MESH].count + 1u, sizeof *f->nodes);
     if (!f->nodes) {
         return tool_fail(f->desc.file->path, "out of memory");
     }
@@ -191,7 +191,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     if (!status) {
         status = noh_stage_plan_make(d, caps, &f->plan, &error) ? tool_fail_error(desc->file->path, &error) : 0;
     }
-    if (!status && desc->clips && desc->clips->pack.clip_count) status = check_clips(f);
+    if (!status && desc->clips && desc->clips->pack.runs[NOH_CHUNK_CLIP].count) status = check_clips(f);
     if (status) figure_plan_free(f);
     return status;
 }

@@ -28,7 +28,7 @@ int figure_read_push(const char *text, float impulse[3])
 int figure_can_fall(const noh_pack *pack, noh_error *why)
 {
     static noh_ragdoll_rig rig;
-    const noh_kind_desc kind = { .mesh = pack, .skeleton = pack->skeleton_count ? 0 : NOH_NONE };
+    const noh_kind_desc kind = { .mesh = pack, .skeleton = pack->runs[NOH_CHUNK_SKELETON].count ? 0 : NOH_NONE };
     return noh_kind_can_fall(&kind, &rig, why) == NOH_OK;
 }
 

@@ -38,7 +38,7 @@ int figure_open_clips(pack_file *opened, const char *path, const pack_file *file
         return status;
     }
     *clips = opened;
-    return opened->pack.clip_count ? 0 : tool_fail(path, "the pack has no clips for %s", file->path);
+    return opened->pack.runs[NOH_CHUNK_CLIP].count ? 0 : tool_fail(path, "the pack has no clips for %s", file->path);
 }
 
 void figure_close_clips(pack_file *opened, const pack_file *clips)
@@ -56,7 +56,7 @@ int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file
     for (int i = 0; i < paths->count; i++) {
         const int status = pack_file_open(&a->files[a->count], paths->items[i]);
         if (status) return status;
-        if (!a->files[a->count++].pack.clip_count) {
+        if (!a->files[a->count++].pack.runs[NOH_CHUNK_CLIP].count) {
             return tool_fail(paths->items[i], "the pack has no clips for %s", file->path);
         }
     }
@@ -98,7 +98,7 @@ static int fail_clip(const figure *f, const char *name)
     uint32_t count = 0, total = 0;
     const char **names;
     int status = 0;
-    for (uint32_t n = 0; clips_of(f, n); n++) total += clips_of(f, n)->pack.clip_count;
+    for (uint32_t n = 0; clips_of(f, n); n++) total += clips_of(f, n)->pack.runs[NOH_CHUNK_CLIP].count;
     names = calloc(total + 1u, sizeof *names);
     for (uint32_t n = 0; names && clips_of(f, n); n++) {
         noh_pack_clip clip;

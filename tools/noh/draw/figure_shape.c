@@ -20,7 +20,7 @@ int figure_draws(const noh_pack *pack)
     for (uint32_t i = 0; i < pack->node_count; i++) {
         if (pack->nodes[i].mesh != NOH_NONE) return 1;
     }
-    return !pack->node_count && pack->mesh_count;
+    return !pack->node_count && pack->runs[NOH_CHUNK_MESH].count;
 }
 
 uint32_t figure_level_count(const noh_pack *pack)
@@ -35,7 +35,7 @@ uint32_t figure_level_count(const noh_pack *pack)
 
 uint32_t figure_level_first(const noh_pack *pack)
 {
-    uint32_t least = pack->mesh_count ? NOH_LOD_LEVELS_MAX : 0;
+    uint32_t least = pack->runs[NOH_CHUNK_MESH].count ? NOH_LOD_LEVELS_MAX : 0;
     noh_mesh mesh;
     for (uint32_t i = 0; noh_pack_mesh_at(pack, i, &mesh, NULL) == NOH_OK; i++) {
         least = mesh.header->level_first < least ? mesh.header->level_first : least;

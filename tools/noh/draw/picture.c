@@ -11,7 +11,7 @@ int picture_shows_bones(const pack_file *file, int asked_for)
     if (!asked_for && figure_draws(&file->pack)) {
         return 0;
     }
-    if (file->pack.skeleton_count) {
+    if (file->pack.runs[NOH_CHUNK_SKELETON].count) {
         return 1;
     }
     tool_fail(file->path, asked_for ? "the pack has no skeleton to draw" : "the pack has nothing to draw");
@@ -57,7 +57,7 @@ int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint)
     if (kind < DEBUG_WIREFRAME) return 0;
     p->debug = kind;
     if (kind == DEBUG_BONES) {
-        return p->figure.desc.file->pack.skeleton_count
+        return p->figure.desc.file->pack.runs[NOH_CHUNK_SKELETON].count
                    ? open_bones(p, g)
                    : tool_fail(p->figure.desc.file->path, "the pack has no skeleton to draw");
     }

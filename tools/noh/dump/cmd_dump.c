@@ -213,8 +213,8 @@ static int fail_graph(const pack_file *file, const char *name)
 {
     const char *names[64], *near;
     size_t count = 0;
-    for (; count < file->pack.graph_count && count < sizeof names / sizeof names[0]; count++) {
-        names[count] = noh_pack_chunk_name(&file->pack, file->pack.first_graph + (uint32_t)count);
+    for (; count < file->pack.runs[NOH_CHUNK_GRAPH].count && count < sizeof names / sizeof names[0]; count++) {
+        names[count] = noh_pack_chunk_name(&file->pack, file->pack.runs[NOH_CHUNK_GRAPH].first + (uint32_t)count);
     }
     if (!count) return tool_fail(file->path, "has no animation graph");
     near = nearest_name(name, names, count);
@@ -228,8 +228,8 @@ static int dump_graphs(const pack_file *file, const dump_args *a)
     byte_buffer out = { NULL, 0, 0, 0 };
     const int all = strcmp(a->graph, "all") == 0;
     const uint32_t found = all ? 0 : noh_pack_graph_find(&file->pack, a->graph);
-    int status = found < file->pack.graph_count ? 0 : fail_graph(file, a->graph);
-    for (uint32_t i = found; !status && i < (all ? file->pack.graph_count : found + 1u); i++) {
+    int status = found < file->pack.runs[NOH_CHUNK_GRAPH].count ? 0 : fail_graph(file, a->graph);
+    for (uint32_t i = found; !status && i < (all ? file->pack.runs[NOH_CHUNK_GRAPH].count : found + 1u); i++) {
         noh_pack_graph g;
         noh_error error = { NOH_OK, "", 0, 0 };
         status = noh_pack_graph_at(&file->pack, i, &g, &error) ? tool_fail_error(file->path, &error) : 0;

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "info_chunks.h"
 #include "info_graph.h"
 #include "info_hair.h"
 #include "info_joints.h"
@@ -180,30 +181,33 @@ static int print_info(const pack_file *file)
     write_version(p, writer);
     printf(
         "%s: format %u, written by noh %s, %u bytes, %u chunks; %u mesh%s, %u node%s, %u skeleton%s, %u clip%s, %u material%s, %u texture%s\n",
-        file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->mesh_count,
-        p->mesh_count == 1 ? "" : "es", p->node_count, plural(p->node_count), p->skeleton_count,
-        plural(p->skeleton_count), p->clip_count, plural(p->clip_count), p->material_count, plural(p->material_count),
-        p->texture_count, plural(p->texture_count));
-    for (uint32_t i = 0; i < p->mesh_count; i++) {
+        file->path, NOH_PACK_VERSION, writer, p->byte_count, p->chunk_count, p->runs[NOH_CHUNK_MESH].count,
+        p->runs[NOH_CHUNK_MESH].count == 1 ? "" : "es", p->node_count, plural(p->node_count),
+        p->runs[NOH_CHUNK_SKELETON].count, plural(p->runs[NOH_CHUNK_SKELETON].count), p->runs[NOH_CHUNK_CLIP].count,
+        plural(p->runs[NOH_CHUNK_CLIP].count), p->material_count, plural(p->material_count),
+        p->runs[NOH_CHUNK_TEXTURE].count, plural(p->runs[NOH_CHUNK_TEXTURE].count));
+    info_print_chunks(p);
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);
         print_mesh(p, i, &mesh);
     }
-    for (uint32_t i = 0; i < p->skeleton_count; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_SKELETON].count; i++) {
         noh_skeleton skeleton;
         noh_pack_skeleton_at(p, i, &skeleton, NULL, NULL);
-        printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->first_skeleton + i), skeleton.joint_count);
+        printf("skeleton '%s': %u joints", noh_pack_chunk_name(p, p->runs[NOH_CHUNK_SKELETON].first + i),
+               skeleton.joint_count);
         info_print_levels(p, i);
         printf("\n");
         info_print_joints(p, i);
         info_print_springs(p, i);
     }
-    for (uint32_t i = 0; i < p->clip_count && !status; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_CLIP].count && !status; i++) {
         status = print_clip(file, i);
     }
     info_print_hair(p);
     info_print_terrain(p);
-    for (uint32_t i = 0; i < p->graph_count && !status; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_GRAPH].count && !status; i++) {
         status = info_print_graph(file, i);
     }
     info_print_materials(p);
@@ -311,7 +315,7 @@ static void json_skeleton(json *j, const noh_pack *pack, uint32_t index)
     const noh_skeleton_header *h;
     noh_pack_skeleton_at(pack, index, &skeleton, &h, NULL);
     json_open(j, NULL, '{');
-    json_text(j, "name", noh_pack_chunk_name(pack, pack->first_skeleton + index));
+    json_text(j, "name", noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_SKELETON].first + index));
     json_integer(j, "joints", h->joint_count);
     json_integer(j, "hash", h->hash);
     json_number(j, "unit_cm", (double)h->unit_cm);
@@ -346,7 +350,7 @@ static int json_clip(json *j, const pack_file *file, uint32_t index)
 static uint64_t count_events(const noh_pack *pack)
 {
     uint64_t count = 0;
-    for (uint32_t i = 0; i < pack->clip_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_CLIP].count; i++) {
         noh_pack_clip clip;
         noh_pack_clip_at(pack, i, &clip, NULL);
         count += clip.header->event_count;
@@ -364,34 +368,35 @@ static int json_info(const pack_file *file)
     json_integer(&j, "version", NOH_PACK_VERSION);
     json_text(&j, "writer", writer);
     json_integer(&j, "bytes", p->byte_count);
+    info_json_chunks(&j, p);
     json_open(&j, "meshes", '[');
-    for (uint32_t i = 0; i < p->mesh_count; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         noh_pack_mesh_at(p, i, &mesh, NULL);
         json_mesh(&j, p, i, &mesh);
     }
     json_close(&j, ']');
     json_open(&j, "skeletons", '[');
-    for (uint32_t i = 0; i < p->skeleton_count; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_SKELETON].count; i++) {
         json_skeleton(&j, p, i);
     }
     json_close(&j, ']');
     json_open(&j, "clips", '[');
-    for (uint32_t i = 0; i < p->clip_count && !status; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_CLIP].count && !status; i++) {
         status = json_clip(&j, file, i);
     }
     json_close(&j, ']');
     info_json_hair(&j, p);
     info_json_terrain(&j, p);
     json_open(&j, "graphs", '[');
-    for (uint32_t i = 0; i < p->graph_count && !status; i++) {
+    for (uint32_t i = 0; i < p->runs[NOH_CHUNK_GRAPH].count && !status; i++) {
         status = info_json_graph(&j, file, i);
     }
     json_close(&j, ']');
     json_integer(&j, "events", count_events(p));
     json_integer(&j, "nodes", p->node_count);
     json_integer(&j, "materials", p->material_count);
-    json_integer(&j, "textures", p->texture_count);
+    json_integer(&j, "textures", p->runs[NOH_CHUNK_TEXTURE].count);
     info_json_materials(&j, p);
     info_json_textures(&j, p);
     if (status) {

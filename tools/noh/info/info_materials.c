@@ -58,7 +58,8 @@ void info_print_materials(const noh_pack *pack)
         if (m->priority) printf(", priority %d", (int)m->priority);
         for (uint32_t k = 0; k < MAPS; k++) {
             if (maps[k].texture != NOH_NONE)
-                printf(", %s '%s'", maps[k].name, noh_pack_chunk_name(pack, pack->first_texture + maps[k].texture));
+                printf(", %s '%s'", maps[k].name,
+                       noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_TEXTURE].first + maps[k].texture));
         }
         printf("\n");
     }
@@ -121,7 +122,7 @@ void info_json_costs(json *j, const noh_pack *pack)
 
 void info_print_textures(const noh_pack *pack)
 {
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture t;
         (void)noh_pack_texture_at(pack, i, &t, NULL);
         const noh_texture_header *h = t.header;
@@ -168,7 +169,7 @@ void info_json_materials(json *j, const noh_pack *pack)
 void info_json_textures(json *j, const noh_pack *pack)
 {
     json_open(j, "texture_list", '[');
-    for (uint32_t i = 0; i < pack->texture_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TEXTURE].count; i++) {
         noh_texture t;
         (void)noh_pack_texture_at(pack, i, &t, NULL);
         json_open(j, NULL, '{');

@@ -25,7 +25,7 @@ typedef struct light_args {
 /* Bytes of a vertex's record: of the meshes together, all have the same. */
 static uint32_t bytes_per_vertex(const noh_pack *pack)
 {
-    const noh_pack_chunk *chunk = &pack->chunks[pack->first_transfer];
+    const noh_pack_chunk *chunk = &pack->chunks[pack->runs[NOH_CHUNK_TRANSFER].first];
     const noh_transfer_header *h = (const noh_transfer_header *)(const void *)(pack->bytes + chunk->offset);
     return NOH_TRANSFER_RECORD_BYTES(h->order, h->flags);
 }
@@ -137,7 +137,7 @@ static int measure(const light_args *a, const pack_file *file)
 {
     light_measure m;
     int status;
-    if (!file->pack.transfer_count) {
+    if (!file->pack.runs[NOH_CHUNK_TRANSFER].count) {
         return tool_fail(a->pack, "the pack has no light transfer: build it with --transfer 4 or 6");
     }
     status = check_weights(a, file);
@@ -145,7 +145,7 @@ static int measure(const light_args *a, const pack_file *file)
         return status;
     }
     status = light_measure_open(&m, (uint32_t)a->rays) ? tool_fail(a->pack, "out of memory") : 0;
-    for (uint32_t i = 0; i < file->pack.mesh_count && !status; i++) {
+    for (uint32_t i = 0; i < file->pack.runs[NOH_CHUNK_MESH].count && !status; i++) {
         status = measure_mesh(&m, a, &file->pack, i);
     }
     if (!status) status = a->as_json ? print_json(a, &file->pack, &m) : print_table(a, &file->pack, &m);

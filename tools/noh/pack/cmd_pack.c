@@ -40,7 +40,7 @@ typedef struct packing {
 static void print_mesh(FILE *report, const packing *p, uint32_t i)
 {
     const round_mesh *m = &p->meshes[i];
-    const char *name = noh_pack_chunk_name(p->from, p->from->first_mesh + i);
+    const char *name = noh_pack_chunk_name(p->from, p->from->runs[NOH_CHUNK_MESH].first + i);
     if (m->dropped_tangents) {
         fprintf(report, "mesh '%s': no material needs tangents: they were left out (--keep-tangents keeps them)\n",
                 name);
@@ -58,7 +58,7 @@ static void print_text(const packing *p)
 {
     FILE *report = report_stream(p->a->output);
     const wire_report *r = &p->report;
-    for (uint32_t i = 0; i < p->from->mesh_count; i++) print_mesh(report, p, i);
+    for (uint32_t i = 0; i < p->from->runs[NOH_CHUNK_MESH].count; i++) print_mesh(report, p, i);
     fprintf(report, "%s: %zu bytes of %u, unpacked in a block of %u", p->a->output, p->out.count, p->from->byte_count,
             p->info.block_bytes);
     fprintf(report, p->info.coarse_bytes ? ", the coarsest levels first (a pack of %u)\n" : "\n", p->info.coarse_bytes);
@@ -74,7 +74,7 @@ static void json_mesh(json *j, const packing *p, uint32_t i)
 {
     const round_mesh *m = &p->meshes[i];
     json_open(j, NULL, '{');
-    json_text(j, "name", noh_pack_chunk_name(p->from, p->from->first_mesh + i));
+    json_text(j, "name", noh_pack_chunk_name(p->from, p->from->runs[NOH_CHUNK_MESH].first + i));
     json_integer(j, "tangents_left_out", (uint32_t)m->dropped_tangents);
     json_number(j, "moved_um", 1e6 * m->moved_m);
     json_number(j, "normals_degrees", m->turned);
@@ -100,7 +100,7 @@ static int print_json(const packing *p)
     json_integer(&j, "deltas_bytes", (uint32_t)r->deltas);
     json_integer(&j, "textures_bytes", (uint32_t)r->textures);
     json_open(&j, "meshes", '[');
-    for (uint32_t i = 0; i < p->from->mesh_count; i++) json_mesh(&j, p, i);
+    for (uint32_t i = 0; i < p->from->runs[NOH_CHUNK_MESH].count; i++) json_mesh(&j, p, i);
     json_close(&j, ']');
     return json_end(&j);
 }
@@ -122,11 +122,11 @@ static int open_made(const packing *p, const byte_buffer *made, noh_pack *pack)
 static int make_coarse(packing *p)
 {
     const noh_pack *whole = &p->packs[0];
-    uint32_t *first = calloc(whole->mesh_count + 1u, sizeof *first), levels = 0;
+    uint32_t *first = calloc(whole->runs[NOH_CHUNK_MESH].count + 1u, sizeof *first), levels = 0;
     model_error error;
     int status = 0;
     if (!first) return tool_fail(p->a->pack, "out of memory");
-    for (uint32_t i = 0; i < whole->mesh_count; i++) {
+    for (uint32_t i = 0; i < whole->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         (void)noh_pack_mesh_at(whole, i, &mesh, NULL);
         first[i] = mesh.header->level_count - 1u;
@@ -155,7 +155,7 @@ static int make_packs(packing *p)
     if (!status && pack_round(&ordered, &desc, &p->rounded, p->meshes, &error)) {
         status = tool_fail(p->a->pack, "%s", error.what);
     }
-    for (uint32_t i = 0; !status && i < p->from->mesh_count; i++) p->grids[i] = p->meshes[i].grid;
+    for (uint32_t i = 0; !status && i < p->from->runs[NOH_CHUNK_MESH].count; i++) p->grids[i] = p->meshes[i].grid;
     if (!status) status = open_made(p, &p->rounded, &p->packs[0]);
     p->pack_count = 1;
     return status ? status : make_coarse(p);
@@ -215,8 +215,8 @@ static int pack(const pack_args *a, const noh_pack *from)
     memset(&p, 0, sizeof p);
     p.a = a;
     p.from = from;
-    p.meshes = calloc(from->mesh_count + 1u, sizeof *p.meshes);
-    p.grids = calloc(from->mesh_count + 1u, sizeof *p.grids);
+    p.meshes = calloc(from->runs[NOH_CHUNK_MESH].count + 1u, sizeof *p.meshes);
+    p.grids = calloc(from->runs[NOH_CHUNK_MESH].count + 1u, sizeof *p.grids);
     status = p.meshes && p.grids ? make_packs(&p) : tool_fail(a->pack, "out of memory");
     if (!status) status = write_wire(&p);
     buffer_free(&p.ordered);

@@ -33,16 +33,16 @@ static void fill_desc(session_stage *s, uint32_t actor_count)
 {
     s->kind.mesh = s->pack;
     s->kind.actor_count = actor_count;
-    s->kind.skeleton = s->pack->skeleton_count ? 0u : NOH_NONE;
-    s->kind.inertia = s->pack->skeleton_count != 0;
-    if (s->pack->skeleton_count) s->kind.root_axes = NOH_ROOT_GROUND;
+    s->kind.skeleton = s->pack->runs[NOH_CHUNK_SKELETON].count ? 0u : NOH_NONE;
+    s->kind.inertia = s->pack->runs[NOH_CHUNK_SKELETON].count != 0;
+    if (s->pack->runs[NOH_CHUNK_SKELETON].count) s->kind.root_axes = NOH_ROOT_GROUND;
     s->kind.root_up = 1;
-    s->kind.graphs = noh_graph_module(s->pack->graph_count ? "*" : NULL);
+    s->kind.graphs = noh_graph_module(s->pack->runs[NOH_CHUNK_GRAPH].count ? "*" : NULL);
     s->kind.springs = noh_springs_module();
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
     find_face(s);
-    s->kind.ragdoll = noh_ragdoll_module(s->pack->skeleton_count ? &ragdoll : NULL);
+    s->kind.ragdoll = noh_ragdoll_module(s->pack->runs[NOH_CHUNK_SKELETON].count ? &ragdoll : NULL);
 }
 
 /* A skeleton that cannot have a ragdoll goes without. */
@@ -59,7 +59,7 @@ static int plan(session_stage *s, noh_error *error)
 static size_t sums_of(const noh_pack *pack)
 {
     size_t most = 0;
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         size_t bytes = 0;
         if (noh_pack_mesh_at(pack, i, &mesh, NULL) == NOH_OK) bytes = noh_morph_layers_size(&mesh);

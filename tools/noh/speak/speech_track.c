@@ -299,7 +299,7 @@ static int add_float(const speech_track *t, const char *name, int shut_alone, ra
 /* The clip's floats: the weights of every node with mouth shapes. Returns 1 when out of memory. */
 static int add_faces(const speech_track *t, const noh_pack *pack, raw_clip *clip)
 {
-    const uint32_t count = pack->node_count ? pack->node_count : pack->mesh_count;
+    const uint32_t count = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
     int failed = 0;
     clip->floats = calloc(count + 2u, sizeof *clip->floats);
     failed = !clip->floats;

@@ -127,11 +127,13 @@ static int write_pack(const strip_args *a, const noh_pack *before, const byte_bu
 static int strip(const strip_args *a, const noh_pack *pack)
 {
     const strip_levels levels = { a->levels.items, (uint32_t)a->levels.count };
-    uint32_t *first = calloc(pack->mesh_count + 1u, sizeof *first);
+    uint32_t *first = calloc(pack->runs[NOH_CHUNK_MESH].count + 1u, sizeof *first);
     byte_buffer out = { NULL, 0, 0, 0 };
     model_error error;
     int status = first ? 0 : tool_fail(a->pack, "out of memory");
-    if (!status && !pack->mesh_count) status = tool_fail(a->pack, "the pack has no meshes, and so no levels to strip");
+    if (!status && !pack->runs[NOH_CHUNK_MESH].count) {
+        status = tool_fail(a->pack, "the pack has no meshes, and so no levels to strip");
+    }
     if (!status && (strip_levels_of(&levels, pack, first, &error) || pack_strip(pack, first, &out, &error))) {
         status = tool_fail(a->pack, "%s", error.what);
     }

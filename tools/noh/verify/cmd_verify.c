@@ -122,8 +122,8 @@ static int open_meshes(verify_job *job)
     if (status) {
         return status;
     }
-    job->meshes = calloc(pack->mesh_count + 1u, sizeof *job->meshes);
-    for (uint32_t i = 0; job->meshes && i < pack->mesh_count; i++) {
+    job->meshes = calloc(pack->runs[NOH_CHUNK_MESH].count + 1u, sizeof *job->meshes);
+    for (uint32_t i = 0; job->meshes && i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh full;
         (void)noh_pack_mesh_at(pack, i, &full, NULL);
         job->meshes[i] = noh_mesh_at_lod(&full, job->figure.level);

@@ -24,7 +24,7 @@ typedef struct verify_row {
 
 typedef struct verify_job {
     pack_file file;
-    noh_mesh *meshes; /* [mesh_count of the pack] at the level that is asked for */
+    noh_mesh *meshes; /* [meshes of the pack] at the level that is asked for */
     gpu g;
     uint64_t state; /* of the random weights */
     verify_row rows[24];

@@ -305,7 +305,7 @@ static int verify_mesh(verify_job *job, gpu_morph *m, readback *r, uint32_t mesh
 
 static void set_stream_bound(const verify_job *job, verify_row *row)
 {
-    for (uint32_t i = 0; i < job->file.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < job->file.pack.runs[NOH_CHUNK_MESH].count; i++) {
         const noh_mesh_header *h = job->meshes[i].header;
         double most = 0.0;
         for (int c = 0; c < 3; c++) {
@@ -356,7 +356,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
     desc.vertices = vertices;
     row->normal_bound = vertices ? (double)NOH_FINISHED_NORMAL_ERROR : 0.0;
     desc.meshes = job->meshes;
-    desc.mesh_count = job->file.pack.mesh_count;
+    desc.mesh_count = job->file.pack.runs[NOH_CHUNK_MESH].count;
     desc.path = path;
     desc.accumulate = accumulate;
     desc.without_tangents = job->without_tangents;
@@ -403,7 +403,7 @@ static int verify_simd(verify_job *job)
     (void)noh_morph_kernel_find(NULL, &kernel, NULL);
     row->reason = kernel.name;
     row->available = row->exact = 1;
-    for (uint32_t i = 0; i < job->file.pack.mesh_count && !status; i++) {
+    for (uint32_t i = 0; i < job->file.pack.runs[NOH_CHUNK_MESH].count && !status; i++) {
         const noh_mesh *mesh = &job->meshes[i];
         size_t bytes = noh_morph_layers_size(mesh);
         verify_buffers b;
@@ -455,7 +455,7 @@ int verify_paths(verify_job *job)
 {
     static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
                                             NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
-    uint32_t count = job->file.pack.mesh_count;
+    uint32_t count = job->file.pack.runs[NOH_CHUNK_MESH].count;
     noh_gl_mesh *gl_meshes = calloc(count + 1u, sizeof *gl_meshes);
     noh_error error = { NOH_OK, "", 0, 0 };
     int status = gl_meshes ? 0 : tool_fail(job->file.path, "out of memory");

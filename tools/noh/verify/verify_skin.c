@@ -198,7 +198,7 @@ static int check_clips(mesh_job *m)
     const noh_pack *pack = &m->j->file->pack;
     uint32_t checked = 0;
     int status = 0;
-    for (uint32_t i = 0; i < pack->clip_count && !status; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_CLIP].count && !status; i++) {
         noh_pack_clip chosen;
         noh_skeleton skeleton;
         uint32_t index;
@@ -258,7 +258,7 @@ static int check_mesh(job *j, uint32_t index, const noh_gl_mesh *gl_mesh)
 
 int verify_skin_wanted(const noh_mesh *meshes, const noh_pack *pack)
 {
-    for (uint32_t i = 0; i < pack->mesh_count; i++) {
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
         if (meshes[i].header->influence_count) {
             return 1;
         }
@@ -272,14 +272,14 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
     int status;
     memset(&desc, 0, sizeof desc);
     desc.meshes = j->meshes;
-    desc.mesh_count = j->file->pack.mesh_count;
+    desc.mesh_count = j->file->pack.runs[NOH_CHUNK_MESH].count;
     desc.path = NOH_MORPH_CPU; /* its sums are the reference's on every driver: what differs is the skin */
     status = gpu_morph_open(&j->morph, j->g, &desc, j->file->path);
     if (status) {
         return status;
     }
     status = readback_open(&j->back, j->g, 0);
-    for (uint32_t i = 0; i < j->file->pack.mesh_count && !status; i++) {
+    for (uint32_t i = 0; i < j->file->pack.runs[NOH_CHUNK_MESH].count && !status; i++) {
         if (j->meshes[i].header->influence_count) {
             status = check_mesh(j, i, &gl_meshes[i]);
         }
@@ -292,7 +292,7 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
 int verify_skin_run(gpu *g, const pack_file *file, const noh_mesh *meshes, const noh_gl_mesh *gl_meshes,
                     noh_palette_mode mode, uint64_t *state, verify_skin *out)
 {
-    noh_gl_skin_desc desc = { meshes, file->pack.mesh_count, NULL, NOH_PALETTE_AUTO, 0 };
+    noh_gl_skin_desc desc = { meshes, file->pack.runs[NOH_CHUNK_MESH].count, NULL, NOH_PALETTE_AUTO, 0 };
     noh_gl_skin_plan plan;
     noh_error error = { NOH_OK, "", 0, 0 };
     uint64_t before = noh_gl_ledger_bytes(&g->ledger);

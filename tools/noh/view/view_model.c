@@ -85,7 +85,7 @@ static view_clip *find_clip(view_model *m, const char *name)
 static int list_clips(view_model *m)
 {
     noh_stage *s = m->figure->stage;
-    m->clips = calloc((size_t)m->clips_of->pack.clip_count + 1u, sizeof *m->clips);
+    m->clips = calloc((size_t)m->clips_of->pack.runs[NOH_CHUNK_CLIP].count + 1u, sizeof *m->clips);
     if (!m->clips) {
         return tool_fail(m->path, "out of memory");
     }
@@ -106,7 +106,7 @@ static int list_clips(view_model *m)
 static void measure_targets(view_model *m)
 {
     m->delta_max = 1e-30f;
-    for (uint32_t i = 0; i < m->file.pack.mesh_count; i++) {
+    for (uint32_t i = 0; i < m->file.pack.runs[NOH_CHUNK_MESH].count; i++) {
         noh_mesh mesh;
         (void)noh_pack_mesh_at(&m->file.pack, i, &mesh, NULL);
         for (uint32_t t = 0; t < mesh.header->target_count; t++) {

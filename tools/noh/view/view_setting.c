@@ -42,7 +42,7 @@ void setting_close(setting *s)
 
 static int has_joints(const noh_pack *pack)
 {
-    return pack->skeleton_count > 0;
+    return pack->runs[NOH_CHUNK_SKELETON].count > 0;
 }
 
 static int open_bones(setting *s, gpu *g, const char *path)
@@ -64,7 +64,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     figure_desc d;
     int status;
     memset(s, 0, sizeof *s);
-    s->show_bones = desc->show_bones || !pack->mesh_count;
+    s->show_bones = desc->show_bones || !pack->runs[NOH_CHUNK_MESH].count;
     if (s->show_bones && !has_joints(pack)) {
         return tool_fail(m->path,
                          desc->show_bones ? "the pack has no skeleton to draw" : "the pack has nothing to draw");
@@ -95,7 +95,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     d.view = desc->view;
     d.light = desc->light;
     d.on_floor = 1;
-    d.graphs = m->clips_of->pack.graph_count && pack->skeleton_count == 1 ? "*" : NULL;
+    d.graphs = m->clips_of->pack.runs[NOH_CHUNK_GRAPH].count && pack->runs[NOH_CHUNK_SKELETON].count == 1 ? "*" : NULL;
     status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     if (status && d.graphs) { /* such as graphs whose clips the pack lacks: the error was printed */
         d.graphs = NULL;

@@ -13,7 +13,7 @@ const int joints_at = 8, bones_at = 10;
 
 void surface_combo(view_app *a)
 {
-    const int has_joints = a->model->file.pack.skeleton_count ? 3 : 0;
+    const int has_joints = a->model->file.pack.runs[NOH_CHUNK_SKELETON].count ? 3 : 0;
     int at = a->desc.show_bones ? bones_at
              : a->over.skin     ? joints_at + a->over.skin - 1
                                 : static_cast<int>(a->desc.view);
@@ -149,7 +149,7 @@ void drawing_section(view_app *a)
     ui::checkbox("wireframe", &a->over.wireframe);
     ImGui::SameLine();
     ui::checkbox("normals", &a->over.normals);
-    if (a->model->file.pack.skeleton_count) {
+    if (a->model->file.pack.runs[NOH_CHUNK_SKELETON].count) {
         ImGui::SameLine();
         ui::checkbox("bones", &a->over.bones);
         ui::hint("over the mesh; B");
@@ -157,7 +157,7 @@ void drawing_section(view_app *a)
     const ui::labelled width;
     path_combo(a);
     accumulate_combo(a);
-    if (a->model->file.pack.wrinkles_count) {
+    if (a->model->file.pack.runs[NOH_CHUNK_WRINKLES].count) {
         wrinkle_controls(a);
     }
     if (a->model->is_morphed) {

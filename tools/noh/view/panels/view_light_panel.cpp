@@ -92,7 +92,7 @@ void camera_section(view_app *a)
         view_frame_all(a);
     }
     ui::hint("frame all that plays, from the front; F");
-    if (!a->model->file.pack.skeleton_count) {
+    if (!a->model->file.pack.runs[NOH_CHUNK_SKELETON].count) {
         return;
     }
     const noh_place place = view_model_place(a->model);

@@ -109,7 +109,8 @@ void set_part(view_app *a, const char *joint)
 void part_combo(view_app *a)
 {
     noh_stage *stage = a->model->figure->stage;
-    if (!a->model->file.pack.skeleton_count || !ui::begin_combo("part, from", a->part[0] ? a->part : "no joint")) {
+    if (!a->model->file.pack.runs[NOH_CHUNK_SKELETON].count ||
+        !ui::begin_combo("part, from", a->part[0] ? a->part : "no joint")) {
         return;
     }
     const ui::in within("part, from");

@@ -32,9 +32,9 @@ void head(view_app *a)
     whole_name(name ? name + 1 : m->path, ImGui::GetContentRegionAvail().x);
     ImGui::PopStyleColor();
     ui::hint(m->path);
-    ImGui::TextDisabled("%u mesh%s, %u target%s, %u clip%s", m->file.pack.mesh_count,
-                        m->file.pack.mesh_count == 1 ? "" : "es", m->target_count, m->target_count == 1 ? "" : "s",
-                        m->clip_count, m->clip_count == 1 ? "" : "s");
+    ImGui::TextDisabled("%u mesh%s, %u target%s, %u clip%s", m->file.pack.runs[NOH_CHUNK_MESH].count,
+                        m->file.pack.runs[NOH_CHUNK_MESH].count == 1 ? "" : "es", m->target_count,
+                        m->target_count == 1 ? "" : "s", m->clip_count, m->clip_count == 1 ? "" : "s");
 }
 
 // ---- steps and the clipboard ----

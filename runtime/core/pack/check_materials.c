@@ -1,0 +1,135 @@
+/* check_materials.c: the checker of materials. */
+#include "core/pack/check_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/pack.h"
+
+#include <stddef.h>
+
+/* Colours are sRGB, everything else is data. */
+static noh_result check_texture_of(const noh_check *check, uint32_t texture, int is_data, uint64_t where)
+{
+    const noh_pack *pack = check->pack;
+    const noh_texture_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_TEXTURE, texture);
+    if (texture == NOH_NONE) {
+        return NOH_OK;
+    }
+    if (!h) {
+        return noh_check_fail(check, "material names a texture that is not there", where);
+    }
+    return (h->flags & NOH_TEXTURE_LINEAR) == (is_data ? NOH_TEXTURE_LINEAR : 0u)
+               ? NOH_OK
+               : noh_check_fail(check, "material takes a texture of colours for data, or one of data for colours",
+                                where);
+}
+
+static noh_result check_material_textures(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const struct {
+        size_t field;
+        uint32_t texture;
+        int is_data;
+    } textures[] = {
+        { offsetof(noh_material, base_color_texture), m->base_color_texture, 0 },
+        { offsetof(noh_material, emissive_texture), m->emissive_texture, 0 },
+        { offsetof(noh_material, normal_texture), m->normal_texture, 1 },
+        { offsetof(noh_material, surface_texture), m->surface_texture, 1 },
+        { offsetof(noh_material, wrinkle_texture), m->wrinkle_texture, 1 },
+        { offsetof(noh_material, wrinkle_weights), m->wrinkle_weights[0], 1 },
+        { offsetof(noh_material, wrinkle_weights) + 4u, m->wrinkle_weights[1], 1 },
+        { offsetof(noh_material, wrinkle_weights) + 8u, m->wrinkle_weights[2], 1 },
+    };
+    noh_result result = NOH_OK;
+    for (size_t i = 0; !result && i < sizeof textures / sizeof textures[0]; i++) {
+        result = check_texture_of(check, textures[i].texture, textures[i].is_data, at + textures[i].field);
+    }
+    return result;
+}
+
+/* A mask of codes is read texel by texel. */
+static noh_result check_wrinkle_codes(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const noh_texture_header *h;
+    const uint64_t where = at + offsetof(noh_material, wrinkle_weights);
+    if (!(m->flags & NOH_MATERIAL_WRINKLE_CODES)) return NOH_OK;
+    if (m->wrinkle_weights[0] == NOH_NONE || m->wrinkle_weights[1] != NOH_NONE || m->wrinkle_weights[2] != NOH_NONE) {
+        return noh_check_fail(check, "material flags name a mask of wrinkle regions that it has not",
+                              at + offsetof(noh_material, flags));
+    }
+    h = noh_pack_chunk_at(check->pack, NOH_CHUNK_TEXTURE, m->wrinkle_weights[0]);
+    return h->nearest && h->format == NOH_TEXTURE_RGBA8
+               ? NOH_OK
+               : noh_check_fail(check, "mask of wrinkle regions is filtered or compressed", where);
+}
+
+#define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)
+static noh_result check_specular(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const uint32_t kind = m->flags & SPECULAR;
+    const uint64_t where = at + offsetof(noh_material, specular_texture);
+    const int maps = (m->normal_texture != NOH_NONE) + (m->surface_texture != NOH_NONE) +
+                     (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
+                     (m->wrinkle_texture != NOH_NONE) + (kind != 0) + ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0);
+    if (!(m->f90_loss >= 0.0f && m->f90_loss <= 1.0f)) {
+        return noh_check_fail(check, "what a material reflects at grazing angles is not within 0 to 1",
+                              at + offsetof(noh_material, f90_loss));
+    }
+    if (kind == SPECULAR || (!kind && m->specular_texture) || (kind && m->specular_texture == NOH_NONE)) {
+        return noh_check_fail(check, "material has a specular map without a use of its alpha, or one without the other",
+                              where);
+    }
+    if (maps > (int)NOH_MATERIAL_MAPS_MAX) {
+        return noh_check_fail(check, "material has more maps than a pixel may read", at);
+    }
+    return kind ? check_texture_of(check, m->specular_texture, 0, where) : NOH_OK;
+}
+
+static noh_result check_material(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    noh_result result = noh_check_name(check, m->name, m->name_hash, at);
+    if (!result) result = noh_check_floats(check, m->base_color, 15, "material value is not finite");
+    if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
+    if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
+    if (!result) result = check_material_textures(check, m, at);
+    if (!result && m->flags & ~255u) {
+        result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
+    }
+    if (!result) result = check_wrinkle_codes(check, m, at);
+    if (!result) result = check_specular(check, m, at);
+    if (!result && m->surface > NOH_SURFACE_TOON) {
+        result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
+    }
+    if (!result && (m->priority < -128 || m->priority > 127)) {
+        result = noh_check_fail(check, "priority of a material is not in -128..127",
+                                at + offsetof(noh_material, priority));
+    }
+    if (!result && (m->wrinkle_models > 7u || !m->wrinkle_models != (m->wrinkle_texture == NOH_NONE))) {
+        result = noh_check_fail(check, "material has unknown models of wrinkles, or models without a wrinkle map",
+                                at + offsetof(noh_material, wrinkle_models));
+    }
+    if (!result && m->surface == NOH_SURFACE_SKIN && m->surface_values[0] < 0.0f) {
+        result = noh_check_fail(check, "skin has less than 0 millimetres in a unit",
+                                at + offsetof(noh_material, surface_values));
+    }
+    if (!result && m->surface == NOH_SURFACE_TOON && !(m->surface_more[0] >= 0.0f && m->surface_more[0] <= 1.0f)) {
+        result = noh_check_fail(check, "the hardness of a toon surface's edge is not within 0 to 1",
+                                at + offsetof(noh_material, surface_more));
+    }
+    return result;
+}
+
+noh_result noh_check_materials(noh_check *check)
+{
+    const noh_material *m = (const noh_material *)(const void *)check->bytes;
+    uint32_t count = check->count / (uint32_t)sizeof *m;
+    noh_result result = NOH_OK;
+    if (check->count % sizeof *m || count > NOH_MATERIALS_MAX) {
+        return noh_check_fail(check, "material chunk is not a whole number of materials, or over the limit", 0);
+    }
+    for (uint32_t i = 0; !result && i < count; i++) {
+        result = check_material(check, &m[i], (uint64_t)i * sizeof *m);
+    }
+    check->opens->materials = m;
+    check->opens->material_count = count;
+    return result;
+}

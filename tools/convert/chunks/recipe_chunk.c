@@ -1,0 +1,112 @@
+/* recipe_chunk.c: what a face's targets are for: of a text, of extras and of names. */
+#include "chunk_maker.h"
+
+#include <string.h>
+
+#include "convert/model/recipe_make.h"
+#include "convert/model/model_build.h"
+#include "noh/base.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+
+static int has_target(const model *m, const char *name)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
+            if (strcmp(m->meshes[i].targets[t].name, name) == 0) return 1;
+        }
+    }
+    return 0;
+}
+
+/* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and missing
+ * targets fall back. */
+static int read_recipe_text(const convert_options *options, const source *s, recipe_text **out,
+                            convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    failure->file = options->texts[NOH_CHUNK_RECIPE];
+    if (recipe_read(options->texts[NOH_CHUNK_RECIPE], out, &failure->line, &failure->error)) {
+        return 1;
+    }
+    for (uint32_t i = 0; i < (*out)->count; i++) {
+        const recipe_row *row = &(*out)->rows[i];
+        if (!has_target(s->m, row->target) && model_warn(s->m, "%s:%u: no mesh has the target '%s'",
+                                                         options->texts[NOH_CHUNK_RECIPE], row->line, row->target)) {
+            return model_fail(&failure->error, "", "out of memory");
+        }
+        if (row->channel[0] == '+' && !has_target(s->m, row->channel + 1) &&
+            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
+                       row->channel + 1)) {
+            return model_fail(&failure->error, "", "out of memory");
+        }
+    }
+    for (uint32_t i = 0; i < (*out)->wrinkle_count; i++) {
+        const wrinkle_row *row = &(*out)->wrinkles[i];
+        if (!has_target(s->m, row->target) && model_warn(s->m, "%s:%u: no mesh has the target '%s'",
+                                                         options->texts[NOH_CHUNK_RECIPE], row->line, row->target)) {
+            return model_fail(&failure->error, "", "out of memory");
+        }
+    }
+    failure->line = 0;
+    failure->file = model_file;
+    return 0;
+}
+
+/* Of a text, of extras, of names. */
+static int read_recipe(const convert_options *options, const source *s, void **made, convert_failure *failure)
+{
+    recipe_text *recipe = NULL;
+    uint32_t named = 0;
+    if (options->only == CONVERT_CLIPS) {
+        return 0;
+    }
+    const int failed = options->texts[NOH_CHUNK_RECIPE] && read_recipe_text(options, s, &recipe, failure);
+    if (!recipe) recipe = recipe_new();
+    *made = recipe;
+    if (failed) return 1;
+    if (!recipe || recipe_add_extras(recipe, s->m) || recipe_add_lips(recipe, s->m) ||
+        (!options->no_correctives && recipe_add_named(recipe, s->m, &named))) {
+        (void)snprintf(failure->error.what, sizeof failure->error.what,
+                       "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
+        return 1;
+    }
+    if (named && options->report) {
+        fprintf(options->report, "%u correctives by target names (--no-correctives turns them off)\n", named);
+    }
+    if (!recipe->count && !recipe->wrinkle_count) {
+        recipe_free(recipe);
+        *made = NULL;
+    }
+    return 0;
+}
+
+static void write_recipe(pack_writer *w, const void *made)
+{
+    const recipe_text *recipe = made;
+    noh_recipe_header h;
+    if (!recipe || !recipe->count) return;
+    memset(&h, 0, sizeof h);
+    h.row_count = recipe->count;
+    h.rows_offset = sizeof h;
+    chunk_begin(w, NOH_CHUNK_RECIPE, "");
+    buffer_append(&w->out, &h, sizeof h);
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        noh_recipe_row row;
+        memset(&row, 0, sizeof row);
+        row.target = string_offset(&w->strings, recipe->rows[i].target);
+        row.target_hash = noh_hash_name(recipe->rows[i].target);
+        row.channel = string_offset(&w->strings, recipe->rows[i].channel);
+        row.channel_hash = noh_hash_name(recipe->rows[i].channel);
+        row.weight = recipe->rows[i].weight;
+        buffer_append(&w->out, &row, sizeof row);
+    }
+    chunk_end(w);
+}
+
+static void free_recipe(void *made)
+{
+    recipe_free(made);
+}
+
+const chunk_maker chunk_recipe = { read_recipe, 0, free_recipe, write_recipe, NULL };
