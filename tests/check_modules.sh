@@ -66,7 +66,7 @@ int main(int argc, char **argv)
     static noh_stage_plan plan;
     noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .root_up = 1 };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1 };
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     noh_stage *stage;
     noh_actor actor;
     noh_place place;
@@ -85,7 +85,7 @@ int main(int argc, char **argv)
     if (noh_stage_plan_make(&desc, NULL, &plan, NULL)) return 1;
     memory = malloc((size_t)plan.cpu_bytes);
     if (noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &desc, &plan, &stage, NULL)) return 1;
-    if (noh_stage_spawn(stage, 0, NULL, &actor, NULL) || noh_actor_set_look(stage, actor, &look, NULL)) return 1;
+    if (noh_stage_spawn(stage, 0, NULL, &actor, NULL) || noh_actor_set_appearance(stage, actor, &look, NULL)) return 1;
     if (noh_actor_play(stage, actor, 0, "walk", NULL, NULL)) return 1;
     for (int i = 0; i < 60; i++) {
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, NULL, NULL, NULL, NULL)) return 1;

@@ -98,7 +98,7 @@ EMSCRIPTEN_KEEPALIVE int web_wire_push(uint32_t bytes)
 EMSCRIPTEN_KEEPALIVE int web_wire_shows(void)
 {
     noh_pack pack;
-    if (noh_wire_whole(in.wire)) return 2;
+    if (noh_wire_is_complete(in.wire)) return 2;
     return noh_wire_pack(in.wire, &pack, NULL) == NOH_OK;
 }
 

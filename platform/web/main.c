@@ -357,13 +357,13 @@ EMSCRIPTEN_KEEPALIVE double web_time(void)
 
 static void set_looks(int posed)
 {
-    noh_look look;
+    noh_appearance look;
     memset(&look, 0, sizeof look);
     look.posed = posed != 0;
     look.level = web.level;
     look.smoothed = web.smoothed;
     for (uint32_t i = 0; i < web.figure_count; i++) {
-        (void)noh_actor_set_look(web.stage, web.figures[i].actor, &look, NULL);
+        (void)noh_actor_set_appearance(web.stage, web.figures[i].actor, &look, NULL);
     }
 }
 

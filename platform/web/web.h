@@ -81,7 +81,7 @@ struct web {
     noh_fall falls[WEB_ACTORS_MAX];
     float bounds[6], from[3], spacing; /* from: position of the first character when bounds were measured */
     int32_t speed;                     /* playback speed, 1/65,536 */
-    uint8_t smoothed;                  /* noh_look.smoothed of all figures */
+    uint8_t smoothed;                  /* noh_appearance.smoothed of all figures */
     int elsewhere;                     /* 1: another renderer draws (vertices.c) */
     uint32_t level;                    /* 1 + the shown LOD level; 0: chosen by pixels */
 };

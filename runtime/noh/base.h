@@ -142,7 +142,7 @@ typedef enum noh_half_mode {
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
 #define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s per call; the rest of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */
-#define NOH_RISE_CLIPS_MAX 16u       /* clips to choose from for getting up; later ones are ignored */
+#define NOH_GET_UP_CLIPS_MAX 16u     /* clips to choose from for getting up; later ones are ignored */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* of one spring */
@@ -204,16 +204,16 @@ typedef enum noh_half_mode {
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
-#define NOH_ATTACH_DEPTH_MAX 8u             /* length of a chain of attachments */
-#define NOH_LAYERS_MAX 16u                  /* of a kind */
+#define NOH_ATTACH_DEPTH_MAX 8u           /* length of a chain of attachments */
+#define NOH_LAYERS_MAX 16u                /* of a kind */
 #define NOH_MODIFIERS_MAX 16u             /* of a kind */
 #define NOH_MODIFIER_BYTES_MAX (1u << 20) /* state of one actor, or scratch of one job */
-#define NOH_STAGE_GRAPHS_MAX 16u            /* of a kind */
-#define NOH_LAYER_TRACKS_MAX 8u             /* of a layer */
-#define NOH_CONCESSIONS_MAX 32u             /* of a plan */
-#define NOH_BLOBS_MAX 24u                   /* blob shadows of an actor */
-#define NOH_DECALS_MAX 64u                  /* of a ring */
-#define NOH_DECAL_TRIANGLES 96u             /* default room for each grown mark, as a mean */
+#define NOH_STAGE_GRAPHS_MAX 16u          /* of a kind */
+#define NOH_LAYER_TRACKS_MAX 8u           /* of a layer */
+#define NOH_CONCESSIONS_MAX 32u           /* of a plan */
+#define NOH_BLOBS_MAX 24u                 /* blob shadows of an actor */
+#define NOH_DECALS_MAX 64u                /* of a ring */
+#define NOH_DECAL_TRIANGLES 96u           /* default room for each grown mark, as a mean */
 
 /* ---- light ---- */
 

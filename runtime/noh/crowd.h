@@ -20,8 +20,8 @@ extern "C" {
  * Many agents that walk to their goals and avoid each other.
  *
  *   noh_crowd_size, noh_crowd_init   a crowd in one block
- *   noh_crowd_put, noh_crowd_remove  add and remove agents
- *   noh_crowd_aim, noh_crowd_pace    set its goal and speed; noh_crowd_move: its position
+ *   noh_crowd_add, noh_crowd_remove  add and remove agents
+ *   noh_crowd_set_goal, noh_crowd_set_speed    set its goal and speed; noh_crowd_move: its position
  *   noh_crowd_field_aim, noh_crowd_follow   a goal that many agents share, and the paths to it around walls
  *   noh_crowd_step                   advance time
  *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
@@ -82,7 +82,7 @@ typedef struct noh_crowd_desc {
     uint32_t field_visits;   /* cells that a step visits to build a field; default (0) 8192 */
 } noh_crowd_desc;
 
-/* An agent, for noh_crowd_put and noh_crowd_agent_at. */
+/* An agent, for noh_crowd_add and noh_crowd_agent_at. */
 typedef struct noh_crowd_agent {
     float position[2]; /* x, z */
     float velocity[2]; /* metres per second */
@@ -113,15 +113,15 @@ noh_result noh_crowd_init(void *memory, size_t bytes, const noh_crowd_desc *desc
 
 /* Add an agent at an index of your choice, replacing the agent there. noh_crowd_remove removes one.
  * errors  ARG a number is out of range (where: the index) */
-noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error);
+noh_result noh_crowd_add(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error);
 void noh_crowd_remove(noh_crowd *crowd, uint32_t index);
 
 /* Move an agent to a position, or as far towards it as walls allow; its goal and speed stay. position[2] finite */
 void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2]);
 /* Set an agent's own goal. goal[2] finite */
-void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2]);
+void noh_crowd_set_goal(noh_crowd *crowd, uint32_t index, const float goal[2]);
 /* Set an agent's speed, clamped to 0..15 radii per second. */
-void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed);
+void noh_crowd_set_speed(noh_crowd *crowd, uint32_t index, float speed);
 
 /* Move the world's origin, together with noh_stage_shift_origin: subtracts `by` from agents, goals, obstacles, grids
  * and flow fields. It is exact: a crowd computes relative to the middle of its grid, so agents far from the origin walk
@@ -173,7 +173,7 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
  * Agents of a crowd (crowd.h) as actors of a stage.
  *
  *   noh_walkers_size, noh_walkers_init   room for them, and what their clips do
- *   noh_walkers_put, noh_walkers_remove  tie an actor to an agent, and untie it
+ *   noh_walkers_add, noh_walkers_remove  tie an actor to an agent, and untie it
  *   noh_walkers_face                     the direction in which a standing walker turns
  *   noh_walkers_step                     places and clips follow the agents
  *   noh_walkers_feet_modifier            feet on the ground, for the nearest walkers
@@ -241,7 +241,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
  * index   below walker_max; the actor that had this index is untied
  * heading [2] unit vector x, z that it faces at first; NULL: +z
  * errors  NOT_FOUND the actor is gone; ARG the index, or another kind's actor */
-noh_result noh_walkers_put(noh_walkers *walkers, uint32_t index, noh_stage *stage, noh_actor actor, uint32_t agent,
+noh_result noh_walkers_add(noh_walkers *walkers, uint32_t index, noh_stage *stage, noh_actor actor, uint32_t agent,
                            const float heading[2], noh_error *error);
 void noh_walkers_remove(noh_walkers *walkers, uint32_t index);
 
@@ -301,7 +301,7 @@ int noh_walkers_is_down(const noh_walkers *walkers, uint32_t index);
  *
  *   noh_smart_size, noh_smart_init      objects and their agents, in one block
  *   noh_smart_enter, noh_smart_leave    add and remove an agent
- *   noh_smart_ask                       request the best free slot for a need
+ *   noh_smart_request                       request the best free slot for a need
  *   noh_smart_arrive                    the agent has reached its slot
  *   noh_smart_release                   cancel a request or a use
  *   noh_smart_step                      advance time: needs grow, uses end, free slots are assigned
@@ -394,7 +394,7 @@ void noh_smart_leave(noh_smart *smart, uint32_t agent);
  * them.
  * at       [2] the agent's position, x, z
  * returns  1: it is now GOING or WAITING; 0: it was not FREE, or no object satisfies the need; nothing has changed */
-int noh_smart_ask(noh_smart *smart, uint32_t agent, uint32_t need, const float at[2]);
+int noh_smart_request(noh_smart *smart, uint32_t agent, uint32_t need, const float at[2]);
 /* Report that an agent has reached its slot.
  * returns  1: it was GOING and is now ENTERING; 0: nothing has changed */
 int noh_smart_arrive(noh_smart *smart, uint32_t agent);

@@ -206,7 +206,7 @@ typedef struct noh_time_probe {
  *
  * A frame of a game:
  *   noh_character_step(ch, set, ticks, fn, user)              every character: clock and callback keys
- *   due = noh_character_look(ch, table, settings, scale)      characters in view: chooses LOD levels
+ *   due = noh_character_select_lod(ch, table, settings, scale)      characters in view: chooses LOD levels
  *   noh_character_update(ch, set, skeleton, radii, &scratch)  characters that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    drawn characters: skinning matrices (low_stage.h)
  * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller,
@@ -283,8 +283,8 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
 /* Choose the LOD levels of a character in view, and return whether an update is due. Call at most once a frame. The
  * controller then plays for the chosen mesh level and samples the joints of the chosen joint level.
  * units   pixels_per_metre at its nearest point (noh_lod_scale) */
-noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
-                           float pixels_per_metre);
+noh_due noh_character_select_lod(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                 float pixels_per_metre);
 
 /* Pose a character for this frame or for the next update; calls _begin and _end. Not within a callback of
  * noh_character_step. */

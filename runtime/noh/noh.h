@@ -82,7 +82,7 @@ typedef struct noh_lod_settings {
  *            noh_stage_plan_of, noh_stage_stats_of
  *   names    noh_stage_find, noh_stage_name
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
- *            noh_actor_place_between, noh_actor_cut, noh_actor_set_look, noh_actor_attach
+ *            noh_actor_place_between, noh_actor_cut, noh_actor_set_appearance, noh_actor_attach
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
  *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
  *            noh_actor_graph
@@ -195,7 +195,7 @@ typedef struct noh_kind_desc {
     int root_told;               /* 1: root motion does not move the actor; noh_actor_root returns it */
     int inertia;                 /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
     int unpickable;              /* 1: noh_stage_pick passes through */
-    const noh_texture_set *texture_sets; /* [texture_set_count] for noh_look.texture_set; borrowed */
+    const noh_texture_set *texture_sets; /* [texture_set_count] for noh_appearance.texture_set; borrowed */
     uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
 } noh_kind_desc;
 
@@ -219,15 +219,15 @@ typedef struct noh_stage_desc {
     uint32_t slot_moves;       /* most slots reassigned per frame; each is accumulated again. Waiting actors are drawn
                                 * coarser, or without targets until they have a slot. 1 counts as 2; default (0) no
                                 * bound. A frame with a cut has no bound */
-    int tangents;         /* 1: accumulators also hold tangents, for your own shaders that read morphed tangents; the
+    int tangents;      /* 1: accumulators also hold tangents, for your own shaders that read morphed tangents; the
                            * library's do not */
-    int halves;           /* 1: 16-bit accumulators; -1: always 32-bit; default (0) 32-bit unless a bound needs
+    int halves;        /* 1: 16-bit accumulators; -1: always 32-bit; default (0) 32-bit unless a bound needs
                            * 16-bit */
-    int encode_srgb;      /* 1: shaders encode to sRGB, for framebuffers that do not, such as WebGL's canvas */
-    int full_detail;      /* 1: shows each actor at its kind's finest level, or at noh_look.level, in full detail: no
+    int encode_srgb;   /* 1: shaders encode to sRGB, for framebuffers that do not, such as WebGL's canvas */
+    int full_detail;   /* 1: shows each actor at its kind's finest level, or at noh_appearance.level, in full detail: no
                            * LOD tables, no programs that fade or use fewer influences */
-    int without_depth;    /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
-    int user_values;      /* 1: your own shaders read noh_look.user: 16 bytes more on the CPU and the GPU for each mesh
+    int without_depth; /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
+    int user_values; /* 1: your own shaders read noh_appearance.user: 16 bytes more on the CPU and the GPU for each mesh
                            * of a visible actor */
     int without_shader;   /* 1: every noh_stage_draw names a shader, and the library's programs are not compiled */
     int without_transfer; /* 1: meshes with a transfer (light.h) are lit like those without one, and transfer records
@@ -436,7 +436,7 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
 noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* An actor's appearance. All zeros: visible, with a shadow, within the stage's error, in its own colours. */
-typedef struct noh_look {
+typedef struct noh_appearance {
     uint32_t hidden;      /* 1: neither drawn nor picked; clocks and callback keys go on */
     uint32_t no_shadow;   /* 1: not drawn in depth passes of views without height_px */
     uint32_t posed;       /* 1: posed every frame in full detail, visible or not: for noh_actor_joint on a server */
@@ -449,12 +449,12 @@ typedef struct noh_look {
     uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: completely */
     uint8_t reserved[2];    /* 0 */
     float user[4];          /* noh_user() in your own vertex shaders, with noh_stage_desc.user_values */
-} noh_look;
+} noh_appearance;
 
 /* Set an actor's appearance.
  * errors  NOT_FOUND; ARG pixels is not in 0..NOH_PIXELS_MAX, the kind has no such texture_set, or wrinkle_models has
  *         unknown bits */
-noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error);
+noh_result noh_actor_set_appearance(noh_stage *stage, noh_actor actor, const noh_appearance *look, noh_error *error);
 
 /* Attach an actor to a joint of another actor, which may itself be attached. Its place is then relative to the joint.
  * The parent is posed whenever the actor is visible; a hidden parent hides the actor. When the parent is despawned, the

@@ -241,10 +241,10 @@ noh_result noh_wire_push(noh_wire *wire, const void *bytes, size_t byte_count, n
 noh_result noh_wire_pack(const noh_wire *wire, noh_pack *pack, noh_error *error);
 
 /* Whether the whole pack is complete and the file has ended; never 1 for a truncated file. */
-int noh_wire_whole(const noh_wire *wire);
+int noh_wire_is_complete(const noh_wire *wire);
 
 /* Bytes of the file taken so far. */
-uint32_t noh_wire_taken(const noh_wire *wire);
+uint32_t noh_wire_bytes_read(const noh_wire *wire);
 
 #ifdef __cplusplus
 }

@@ -54,7 +54,7 @@ static void try_bytes(const uint8_t *bytes, size_t count)
         }
         if (noh_wire_pack(wire, &pack, NULL) == NOH_OK) {
             pack_walk(&pack, (uint32_t)count);
-            opened = noh_wire_whole(wire);
+            opened = noh_wire_is_complete(wire);
         }
     }
     free(memory);

@@ -458,7 +458,7 @@ static uint32_t finest_shown(const act *a)
 /* Two kinds of the same packs have one mesh on the GPU, so what is loaded or dropped for one is for both. */
 static void kinds_share_their_levels(void **state)
 {
-    const noh_look finest = { .pixels = 1e-4f };
+    const noh_appearance finest = { .pixels = 1e-4f };
     static gpu g;
     static act a;
     uint32_t coarse;
@@ -473,7 +473,7 @@ static void kinds_share_their_levels(void **state)
         cast_make(&a.c, &d);
     }
     assert_int_equal(noh_stage_spawn(a.c.stage, 0, NULL, &a.actors[0], NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(a.c.stage, a.actors[0], &finest, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(a.c.stage, a.actors[0], &finest, NULL), NOH_OK);
     frame(&a, 0, 1);
     coarse = finest_shown(&a);
     assert_true(coarse > 0);

@@ -27,7 +27,7 @@ static const uint8_t cloth[2][2][4] = { { { 200, 180, 160, 255 }, { 220, 30, 20,
                                         { { 20, 200, 90, 255 }, { 99, 99, 99, 255 } } };
 
 /* What each actor wears. */
-static const noh_look looks[ACTORS] = {
+static const noh_appearance looks[ACTORS] = {
     { .pixels = 1e-4f },
     { .pixels = 1e-4f, .tint = { 255, 128, 0, 255 }, .texture_set = 0 },
     { .pixels = 1e-4f, .tint = { 90, 255, 255, 128 }, .texture_set = 1 },
@@ -35,7 +35,7 @@ static const noh_look looks[ACTORS] = {
     { .pixels = 1e-4f, .tint = { 40, 10, 250, 255 }, .texture_set = 2 },
 };
 
-static const uint8_t *texel_of(const noh_look *look)
+static const uint8_t *texel_of(const noh_appearance *look)
 {
     return look->texture_set == 2 ? cloth[1][0] : cloth[0][look->texture_set];
 }
@@ -127,7 +127,7 @@ static void wardrobe_make(wardrobe *w, gpu *g)
     for (uint32_t i = 0; i < ACTORS; i++) {
         const noh_place place = { .position = { (float)i, 0.0f, 0.0f } };
         assert_int_equal(noh_stage_spawn(w->stage, w->apart ? i : 0, &place, &w->actors[i], NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(w->stage, w->actors[i], &looks[i], NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(w->stage, w->actors[i], &looks[i], NULL), NOH_OK);
     }
     noh_view_orbit(&w->view, middle, 0.0f, 0.0f, 1.45f, WIDTH, HEIGHT);
 }
@@ -316,10 +316,10 @@ static void own_shaders_are_given_user_values(void **state)
         w.desc.user_values = way < 2;
         wardrobe_make(&w, g);
         for (uint32_t a = 0; a < ACTORS; a++) {
-            noh_look look = looks[a];
+            noh_appearance look = looks[a];
             for (uint32_t i = 0; i < 3; i++) look.user[i] = (float)((a + 1u) >> i & 1u);
             look.user[3] = 7.0f;
-            assert_int_equal(noh_actor_set_look(w.stage, w.actors[a], &look, NULL), NOH_OK);
+            assert_int_equal(noh_actor_set_appearance(w.stage, w.actors[a], &look, NULL), NOH_OK);
         }
         assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
         memory = test_aligned(NULL, noh_stage_shader_size(w.stage));
@@ -472,9 +472,9 @@ static void a_set_is_one_draw(void **state)
     for (uint32_t f = 0; f < 200; f++) {
         uint32_t worn = 0, sets = 0;
         for (uint32_t i = 0; i < ACTORS; i++) {
-            const noh_look look = { .tint = { (uint8_t)test_random_below(&r, 256), 9, 9, 9 },
-                                    .texture_set = test_random_below(&r, 3) };
-            assert_int_equal(noh_actor_set_look(w.stage, w.actors[i], &look, NULL), NOH_OK);
+            const noh_appearance look = { .tint = { (uint8_t)test_random_below(&r, 256), 9, 9, 9 },
+                                          .texture_set = test_random_below(&r, 3) };
+            assert_int_equal(noh_actor_set_appearance(w.stage, w.actors[i], &look, NULL), NOH_OK);
             worn |= 1u << look.texture_set;
         }
         for (uint32_t i = 0; i < 3; i++) sets += worn >> i & 1u;
@@ -499,7 +499,7 @@ static void set_trim(const wardrobe *w, uint32_t pack, uint32_t texture, uint32_
 
 static void sets_are_found_and_checked(void **state)
 {
-    noh_look look = { .texture_set = 3 };
+    noh_appearance look = { .texture_set = 3 };
     gpu *g = fixture_gpu();
     wardrobe w;
     (void)state;
@@ -524,9 +524,9 @@ static void sets_are_found_and_checked(void **state)
     assert_string_equal(noh_stage_name(w.stage, 0, NOH_NAME_TEXTURE_SET, 1), "red");
     assert_string_equal(noh_stage_name(w.stage, 0, NOH_NAME_TEXTURE_SET, 0), "");
     assert_null(noh_stage_name(w.stage, 0, NOH_NAME_TEXTURE_SET, 3));
-    assert_int_equal(noh_actor_set_look(w.stage, w.actors[0], &look, &said), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_set_appearance(w.stage, w.actors[0], &look, &said), NOH_ERR_ARG);
     look.texture_set = 2;
-    assert_int_equal(noh_actor_set_look(w.stage, w.actors[0], &look, &said), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(w.stage, w.actors[0], &look, &said), NOH_OK);
     wardrobe_close(&w);
     fixture_expect_no_errors();
 }

@@ -118,7 +118,7 @@ static void the_picture_is_that_of_the_parts(void **state)
     const noh_gl_device device = device_of(g);
     noh_stage_view view;
     noh_gl_camera camera;
-    const noh_look finest = { .pixels = 1e-4f };
+    const noh_appearance finest = { .pixels = 1e-4f };
     float sphere[4];
     noh_actor actor;
     canvas to;
@@ -136,7 +136,7 @@ static void the_picture_is_that_of_the_parts(void **state)
         noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "smile"), 1.0f, 1.0f, NULL),
         NOH_OK);
     assert_int_equal(noh_actor_sphere(c.stage, actor, sphere, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &finest, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &finest, NULL), NOH_OK);
     noh_view_orbit(&view, sphere, 0.4f, 0.1f, 1.4f * sphere[3], WIDTH, HEIGHT);
     assert_int_equal(noh_stage_frame(c.stage, 0, &view, NULL, NULL, NULL), NOH_OK);
     draw(&c, &to, by_stage);

@@ -679,8 +679,8 @@ static void each_actor_of_a_crowd_has_its_own_wrinkles(void **state)
     for (uint32_t i = 0; i < ACTORS; i++) spawn(&many, i, i);
     together = crowd_draw(&many);
     for (uint32_t i = 0; i < ACTORS; i++) {
-        const noh_look look = { .wrinkle_models = NOH_WRINKLE_BY_AREA };
-        assert_int_equal(noh_actor_set_look(many.stage, many.actors[i], &look, NULL), NOH_OK);
+        const noh_appearance look = { .wrinkle_models = NOH_WRINKLE_BY_AREA };
+        assert_int_equal(noh_actor_set_appearance(many.stage, many.actors[i], &look, NULL), NOH_OK);
     }
     smooth = crowd_draw(&many); /* what a crowd without regions would show */
     crowd_open(&one, 1);
@@ -711,14 +711,14 @@ static void looks_smooth_wrinkles_out(void **state)
     crowd_open(&c, 1);
     spawn(&c, 0, 0);
     for (int i = 0; i < 3; i++) {
-        const noh_look look = { .smoothed = smoothed[i] };
-        assert_int_equal(noh_actor_set_look(c.stage, c.actors[0], &look, NULL), NOH_OK);
+        const noh_appearance look = { .smoothed = smoothed[i] };
+        assert_int_equal(noh_actor_set_appearance(c.stage, c.actors[0], &look, NULL), NOH_OK);
         pictures[i] = crowd_draw(&c);
     }
     assert_true(differing(pictures[0], pictures[2], 0) > differing(pictures[1], pictures[2], 0));
     assert_true(differing(pictures[1], pictures[2], 0) > 50);
-    const noh_look unknown = { .wrinkle_models = 8 };
-    assert_int_equal(noh_actor_set_look(c.stage, c.actors[0], &unknown, &said), NOH_ERR_ARG);
+    const noh_appearance unknown = { .wrinkle_models = 8 };
+    assert_int_equal(noh_actor_set_appearance(c.stage, c.actors[0], &unknown, &said), NOH_ERR_ARG);
     for (int i = 0; i < 3; i++) free(pictures[i]);
     crowd_close(&c);
 }

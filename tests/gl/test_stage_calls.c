@@ -96,7 +96,7 @@ static noh_result call_cut(game *g, noh_error *error)
 
 static noh_result call_look(game *g, noh_error *error)
 {
-    noh_look look;
+    noh_appearance look;
     memset(&look, 0, sizeof look);
     look.hidden = below(g, 8) == 0;
     look.posed = below(g, 4) == 0;
@@ -105,7 +105,7 @@ static noh_result call_look(game *g, noh_error *error)
     look.texture_set = below(g, 6) == 0;
     look.wrinkle_models = below(g, 6) ? 0 : (uint8_t)below(g, 256);
     for (int i = 0; i < 4; i++) look.tint[i] = (uint8_t)below(g, 256);
-    return noh_actor_set_look(g->c.stage, somebody(g), &look, error);
+    return noh_actor_set_appearance(g->c.stage, somebody(g), &look, error);
 }
 
 static noh_result call_attach(game *g, noh_error *error)

@@ -47,8 +47,8 @@ static inline void frame(shot *s)
 
 static inline void set_level(shot *s, uint32_t level)
 {
-    const noh_look look = { .level = 1u + level };
-    assert_int_equal(noh_actor_set_look(s->c.stage, s->actor, &look, NULL), NOH_OK);
+    const noh_appearance look = { .level = 1u + level };
+    assert_int_equal(noh_actor_set_appearance(s->c.stage, s->actor, &look, NULL), NOH_OK);
     s->view.cut = 1;
     frame(s);
 }
@@ -66,7 +66,7 @@ static inline void make_unlit(shot *s, uint32_t kind)
 
 static inline void open_shot_as(shot *s, uint32_t kind, int unlit)
 {
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     noh_gl_device d;
     size_t bytes;
     float sphere[4];
@@ -78,7 +78,7 @@ static inline void open_shot_as(shot *s, uint32_t kind, int unlit)
     s->c.desc.gpu = &noh_stage_on_gl;
     cast_make(&s->c, &d);
     assert_int_equal(noh_stage_spawn(s->c.stage, kind, NULL, &s->actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(s->c.stage, s->actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(s->c.stage, s->actor, &posed, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(s->c.stage, 0, NULL, NULL, NULL, NULL), NOH_OK);
     assert_int_equal(noh_actor_sphere(s->c.stage, s->actor, sphere, NULL), NOH_OK);
     s->size = sphere[3];

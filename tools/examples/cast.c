@@ -98,13 +98,13 @@ static int enter(cast *c)
 {
     for (uint32_t i = 0; i < ACTORS; i++) {
         const noh_place place = { .position = { 1.4f * (float)(i % 5u) - 2.8f, 0.0f, -1.6f * (float)(i / 5u) } };
-        const noh_look look = { .tint = { 255, (uint8_t)(205u + 25u * (i % 3u)), (uint8_t)(190u + 59u * i % 66u),
-                                          255 } };
+        const noh_appearance look = { .tint = { 255, (uint8_t)(205u + 25u * (i % 3u)), (uint8_t)(190u + 59u * i % 66u),
+                                                255 } };
         const noh_play walk = { .speed = 58000 + 900 * (int32_t)i, .start_ticks = 7001 * (int64_t)i };
         noh_error e;
         if (noh_stage_spawn(c->stage, i >= HEROES, &place, &c->actors[i], &e) ||
             noh_actor_play(c->stage, c->actors[i], 0, "walk", &walk, &e) ||
-            noh_actor_set_look(c->stage, c->actors[i], &look, &e))
+            noh_actor_set_appearance(c->stage, c->actors[i], &look, &e))
             return start_fail(&gl, "actor", &e);
         (void)noh_actor_play(c->stage, c->actors[i], 1, "speak", NULL, NULL); /* if the pack has this clip */
     }

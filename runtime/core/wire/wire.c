@@ -280,13 +280,13 @@ noh_result noh_wire_pack(const noh_wire *w, noh_pack *pack, noh_error *error)
     return NOH_OK;
 }
 
-int noh_wire_whole(const noh_wire *w)
+int noh_wire_is_complete(const noh_wire *w)
 {
     NOH_ASSERT(w);
     return w->phase == WIRE_WHOLE;
 }
 
-uint32_t noh_wire_taken(const noh_wire *w)
+uint32_t noh_wire_bytes_read(const noh_wire *w)
 {
     NOH_ASSERT(w);
     return w->taken;

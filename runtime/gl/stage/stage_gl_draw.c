@@ -55,7 +55,7 @@ static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
 static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_mesh *m = &d->k->meshes[mesh];
-    const noh_look *look = &actor_at(d, place)->look;
+    const noh_appearance *look = &actor_at(d, place)->look;
     const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
     float regions[NOH_WRINKLE_REGIONS];
     noh_wrinkles wrinkles;
@@ -140,7 +140,7 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
 
 static uint32_t wears(const drawing *d, uint32_t place)
 {
-    const noh_look *look = &actor_at(d, place)->look;
+    const noh_appearance *look = &actor_at(d, place)->look;
     return look->texture_set | (uint32_t)look->wrinkle_models << 16 | (uint32_t)look->smoothed << 24;
 }
 

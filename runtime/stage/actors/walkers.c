@@ -134,9 +134,10 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     if (result) return result;
     const noh_stage_kind *k = kind_of(stage, desc, 1u + (desc->idle != NULL) + (desc->run != NULL));
     if (!k || (k->set.roots && !k->desc->root_told)) {
-        return noh_fail(error, NOH_ERR_ARG,
-                        "walkers need root_told, a base layer with a track for each clip, and feet_modifier of their kind",
-                        desc->kind, 0);
+        return noh_fail(
+            error, NOH_ERR_ARG,
+            "walkers need root_told, a base layer with a track for each clip, and feet_modifier of their kind",
+            desc->kind, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
     if (result) return result;
@@ -182,7 +183,7 @@ static noh_result start(const noh_walkers *w, const noh_stage_kind *k, noh_contr
     return result;
 }
 
-noh_result noh_walkers_put(noh_walkers *walkers, uint32_t index, noh_stage *stage, noh_actor actor, uint32_t agent,
+noh_result noh_walkers_add(noh_walkers *walkers, uint32_t index, noh_stage *stage, noh_actor actor, uint32_t agent,
                            const float heading[2], noh_error *error)
 {
     noh_stage_kind *k;

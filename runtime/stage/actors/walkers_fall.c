@@ -103,7 +103,7 @@ static void fall_down(walker *r, noh_crowd *crowd)
 {
     noh_crowd_agent agent;
     r->pace = noh_crowd_agent_stepped(crowd, r->agent, &agent) ? agent.speed : 0.0f;
-    noh_crowd_pace(crowd, r->agent, 0.0f);
+    noh_crowd_set_speed(crowd, r->agent, 0.0f);
     memset(&r->fall, 0, sizeof r->fall);
     r->fallen = 1;
 }
@@ -130,7 +130,7 @@ static int tend(noh_walkers *w, walker *r, noh_crowd *crowd, noh_stage *stage, u
     if (!r->begun && !is_down(stage, actor)) stand_up(w, r, &a->place);
     if (noh_fall_lasts(&r->fall, stage, actor)) return 1;
     (void)noh_actor_stop(stage, actor, layer, FADE_TICKS, NULL);
-    noh_crowd_pace(crowd, r->agent, r->pace);
+    noh_crowd_set_speed(crowd, r->agent, r->pace);
     r->fallen = 0;
     return 0;
 }

@@ -58,7 +58,7 @@ noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3
 
 noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t *ticks, noh_error *error)
 {
-    const char *clips[NOH_RISE_CLIPS_MAX], *name;
+    const char *clips[NOH_GET_UP_CLIPS_MAX], *name;
     noh_get_up how = { .clips = clips, .layer = layer };
     noh_stage_actor *a;
     noh_stage_kind *k;
@@ -68,7 +68,7 @@ noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uin
     noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     if (!b) return result;
     const uint32_t kind = (uint32_t)(k - stage->kinds);
-    for (uint32_t i = 0; how.clip_count < NOH_RISE_CLIPS_MAX; i++) {
+    for (uint32_t i = 0; how.clip_count < NOH_GET_UP_CLIPS_MAX; i++) {
         name = noh_stage_name(stage, kind, NOH_NAME_CLIP, i);
         if (!name) break;
         if (noh_name_begins(name, NOH_RISE_CLIPS)) clips[how.clip_count++] = name;

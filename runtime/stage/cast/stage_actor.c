@@ -446,7 +446,7 @@ noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error
 
 #define WRINKLE_MODELS_ALL (NOH_WRINKLE_BY_AREA | NOH_WRINKLE_BY_REGION | NOH_WRINKLE_BY_CHANNEL)
 
-noh_result noh_actor_set_look(noh_stage *stage, noh_actor actor, const noh_look *look, noh_error *error)
+noh_result noh_actor_set_appearance(noh_stage *stage, noh_actor actor, const noh_appearance *look, noh_error *error)
 {
     noh_stage_actor *a = NULL;
     noh_stage_kind *k = NULL;

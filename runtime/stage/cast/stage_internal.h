@@ -60,7 +60,7 @@ typedef struct noh_stage_actor {
     noh_root_pose moved; /* by the last step */
     noh_place place;     /* normalised */
     noh_place before;    /* at the end of the step before the last one */
-    noh_look look;
+    noh_appearance look;
     uint32_t generation;
     uint32_t alive;
     uint32_t next_free;  /* index + 1; 0: the last */
@@ -103,7 +103,7 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_look) == 48, look);
+NOH_STATIC_ASSERT(sizeof(noh_appearance) == 48, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 240, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_modifier_head) == 16, stage_modifier_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);

@@ -129,14 +129,14 @@ static noh_due choose_detail(const noh_stage_kind *k, noh_character *ch, const n
 {
     float error_m[NOH_UPDATE_RATE_COUNT], of_inner[NOH_UPDATE_RATE_COUNT];
     if (!inner || !k->table.update_error_m) {
-        return noh_character_look(ch, &k->table, settings, pixels_per_metre);
+        return noh_character_select_lod(ch, &k->table, settings, pixels_per_metre);
     }
     noh_time_lod_error(noh_character_controller(ch), k->table.update_error_m, error_m);
     noh_time_lod_error(inner, k->table.update_error_m, of_inner);
     for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
         error_m[r] = of_inner[r] > error_m[r] ? of_inner[r] : error_m[r];
     }
-    return noh_character_look_given(ch, &k->table, settings, pixels_per_metre, error_m);
+    return noh_character_select_lod_for(ch, &k->table, settings, pixels_per_metre, error_m);
 }
 
 static void choose(noh_stage *s, noh_stage_kind *k, uint32_t index)

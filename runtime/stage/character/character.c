@@ -214,20 +214,20 @@ uint32_t noh_character_step(noh_character *ch, const noh_clip_set *set, uint32_t
     return noh_controller_step(noh_character_controller(ch), set, ticks, fn, user);
 }
 
-noh_due noh_character_look(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
-                           float pixels_per_metre)
+noh_due noh_character_select_lod(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                 float pixels_per_metre)
 {
     float update_error_m[NOH_UPDATE_RATE_COUNT];
     NOH_ASSERT(ch && table && settings);
     if (table->update_error_m) {
         noh_time_lod_error(noh_character_controller(ch), table->update_error_m, update_error_m);
     }
-    return noh_character_look_given(ch, table, settings, pixels_per_metre,
-                                    table->update_error_m ? update_error_m : NULL);
+    return noh_character_select_lod_for(ch, table, settings, pixels_per_metre,
+                                        table->update_error_m ? update_error_m : NULL);
 }
 
-noh_due noh_character_look_given(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
-                                 float pixels_per_metre, const float *update_error_m)
+noh_due noh_character_select_lod_for(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                     float pixels_per_metre, const float *update_error_m)
 {
     NOH_ASSERT(ch && table && settings);
     noh_controller *c = noh_character_controller(ch);

@@ -35,11 +35,11 @@ void noh_character_set_instance(noh_character *ch, uint32_t instance);
 /* The game's clock up to which the character was stepped, in ticks. */
 int64_t noh_character_clock(const noh_character *ch);
 
-/* As noh_character_look, when more plays than the controller has.
+/* As noh_character_select_lod, when more plays than the controller has.
  * shapes  update_error_m[NOH_UPDATE_RATE_COUNT] of everything that plays (noh_time_lod_error); NULL: full update
  *         rate */
-noh_due noh_character_look_given(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
-                                 float pixels_per_metre, const float *update_error_m);
+noh_due noh_character_select_lod_for(noh_character *ch, const noh_lod_table *table, const noh_lod_settings *settings,
+                                     float pixels_per_metre, const float *update_error_m);
 
 /* Ticks since an update was due, for noh_schedule_offer. */
 uint32_t noh_character_late(const noh_character *ch);

@@ -202,7 +202,7 @@ static void begin_anew(noh_crowd *crowd, uint32_t index)
     if (crowd->obstacle_count) memset(CROWD_ARRAY(crowd_round, crowd, round) + index, 0, sizeof(crowd_round));
 }
 
-noh_result noh_crowd_put(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error)
+noh_result noh_crowd_add(noh_crowd *crowd, uint32_t index, const noh_crowd_agent *agent, noh_error *error)
 {
     NOH_ASSERT(crowd && agent && index < crowd->agent_max);
     if (!is_place(agent->position) || !is_place(agent->goal) || !is_place(agent->velocity) ||
@@ -252,7 +252,7 @@ void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
     for (int i = 0; i < 2; i++) crowd->home[i] -= (double)by[i];
 }
 
-void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
+void noh_crowd_set_goal(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);
     const float absolute[2] = { within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR) };
@@ -264,7 +264,7 @@ void noh_crowd_aim(noh_crowd *crowd, uint32_t index, const float goal[2])
     if (crowd->obstacle_count && way > 0.0f) CROWD_ARRAY(crowd_round, crowd, round)[index].nearest += way;
 }
 
-void noh_crowd_pace(noh_crowd *crowd, uint32_t index, float speed)
+void noh_crowd_set_speed(noh_crowd *crowd, uint32_t index, float speed)
 {
     NOH_ASSERT(crowd && index < crowd->agent_max);
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;

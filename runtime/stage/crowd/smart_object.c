@@ -293,7 +293,7 @@ void noh_smart_leave(noh_smart *smart, uint32_t agent)
     a->phase = NOH_SMART_AWAY;
 }
 
-int noh_smart_ask(noh_smart *smart, uint32_t agent, uint32_t need, const float at[2])
+int noh_smart_request(noh_smart *smart, uint32_t agent, uint32_t need, const float at[2])
 {
     NOH_ASSERT(smart && at && agent < smart->agent_max);
     smart_agent *a = &agents_of(smart)[agent];

@@ -135,12 +135,12 @@ static void packs_come_back_to_the_byte(void **state)
             noh_pack pack;
             for (size_t at = 0; at < out.count;) {
                 const size_t now = out.count - at < pieces[k] ? out.count - at : pieces[k];
-                assert_false(noh_wire_whole(r.wire));
+                assert_false(noh_wire_is_complete(r.wire));
                 if (noh_wire_push(r.wire, out.bytes + at, now, &error)) fail_msg("%s", error.what);
                 at += now;
-                assert_int_equal(noh_wire_taken(r.wire), at);
+                assert_int_equal(noh_wire_bytes_read(r.wire), at);
             }
-            assert_true(noh_wire_whole(r.wire));
+            assert_true(noh_wire_is_complete(r.wire));
             assert_int_equal(noh_wire_pack(r.wire, &pack, NULL), NOH_OK);
             assert_int_equal(pack.byte_count, all[i].byte_count);
             assert_memory_equal(pack.bytes, all[i].bytes, pack.byte_count);
@@ -166,13 +166,13 @@ static void coarse_levels_come_first(void **state)
         assert_int_equal(noh_wire_push(r.wire, out.bytes + at++, 1, NULL), NOH_OK);
     }
     assert_true(at < out.count / 2u);
-    assert_false(noh_wire_whole(r.wire));
+    assert_false(noh_wire_is_complete(r.wire));
     assert_memory_equal(first.bytes, coarse_face.pack.bytes, first.byte_count);
     coarse = test_mesh(&first, 0);
     whole = test_mesh(&face.pack, 0);
     assert_int_equal(noh_mesh_source(&coarse), noh_mesh_source(&whole));
     assert_int_equal(noh_wire_push(r.wire, out.bytes + at, out.count - at, NULL), NOH_OK);
-    assert_true(noh_wire_whole(r.wire));
+    assert_true(noh_wire_is_complete(r.wire));
     assert_int_equal(noh_wire_pack(r.wire, &last, NULL), NOH_OK);
     assert_memory_equal(last.bytes, face.pack.bytes, face.pack.byte_count);
     assert_memory_equal(first.bytes, coarse_face.pack.bytes, first.byte_count);
@@ -215,11 +215,11 @@ static void no_part_is_the_whole(void **state)
     (void)state;
     for (size_t i = 0; i + 1u < out.count; i++) {
         assert_int_equal(noh_wire_push(r.wire, out.bytes + i, 1, NULL), NOH_OK);
-        assert_false(noh_wire_whole(r.wire));
+        assert_false(noh_wire_is_complete(r.wire));
         assert_int_equal(noh_wire_pack(r.wire, &pack, &error), NOH_ERR_NOT_FOUND);
     }
     assert_int_equal(noh_wire_push(r.wire, out.bytes + out.count - 1u, 1, NULL), NOH_OK);
-    assert_true(noh_wire_whole(r.wire));
+    assert_true(noh_wire_is_complete(r.wire));
     assert_int_equal(noh_wire_push(r.wire, "x", 1, &error), NOH_ERR_DATA);
     end(&r);
     buffer_free(&out);
@@ -239,7 +239,7 @@ static void every_flipped_bit_is_refused(void **state)
             assert_true(noh_wire_info_read(out.bytes, out.count, &info, NULL) != NOH_OK);
         assert_int_equal(noh_wire_init(r.memory, noh_wire_size(), &desc, &r.wire, NULL), NOH_OK);
         if (noh_wire_push(r.wire, out.bytes, out.count, &error) == NOH_OK) {
-            assert_false(noh_wire_whole(r.wire)); /* a length that grew: the file seems cut short */
+            assert_false(noh_wire_is_complete(r.wire)); /* a length that grew: the file seems cut short */
         } else {
             assert_non_null(error.what);
             assert_true(error.where <= out.count);
@@ -482,7 +482,7 @@ static void rounding_is_worth_it(void **state)
     assert_true(out.count < exact.count * 3u / 4u);
     r = begin(out.bytes, out.count);
     assert_int_equal(noh_wire_push(r.wire, out.bytes, out.count, NULL), NOH_OK);
-    assert_true(noh_wire_whole(r.wire));
+    assert_true(noh_wire_is_complete(r.wire));
     assert_memory_equal(r.block, k.bytes, k.pack.byte_count);
     end(&r);
     buffer_free(&out);

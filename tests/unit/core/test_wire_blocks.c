@@ -102,7 +102,7 @@ static void comes_back(const uint8_t *bytes, size_t count, const byte_buffer *wi
         const size_t now = wire->count - at < piece ? wire->count - at : piece;
         if (noh_wire_push(w, wire->bytes + at, now, &error)) fail_msg("%s", error.what);
     }
-    assert_true(noh_wire_whole(w));
+    assert_true(noh_wire_is_complete(w));
     assert_memory_equal(desc.block, bytes, count);
     free(desc.block);
     free(memory);
@@ -185,7 +185,7 @@ static noh_result push(const byte_buffer *wire, size_t count, noh_error *error, 
     noh_result result;
     assert_int_equal(noh_wire_init(memory, sizeof memory, &desc, &w, NULL), NOH_OK);
     result = noh_wire_push(w, wire->bytes, count, error);
-    *whole = noh_wire_whole(w);
+    *whole = noh_wire_is_complete(w);
     return result;
 }
 

@@ -27,10 +27,10 @@ static void floor_at(under *u, float y)
 
 static noh_actor posed(cast *c, uint32_t kind, const noh_place *place)
 {
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, kind, place, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &look, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
     return actor;
 }

@@ -187,7 +187,7 @@ static void memory_is_exact(void **state)
     play(&g, ch, 0, track_of(WALK, 1.0f));
     for (int frame = 0; frame < 40; frame++) {
         noh_character_step(ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(ch, &g.table, &g.settings, 0.001f) != NOH_DUE_NOT) update(&g, ch);
+        if (noh_character_select_lod(ch, &g.table, &g.settings, 0.001f) != NOH_DUE_NOT) update(&g, ch);
     }
     for (size_t i = 0; i < 256; i++) assert_true(memory[i] == 0xa5 && memory[256 + g.size + i] == 0xa5);
     free(memory);
@@ -255,7 +255,7 @@ static void at_the_full_update_rate_it_is_the_exact_pose(void **state)
     play(&g, g.ch, 1, track_of(WAVE, 0.5f));
     for (int frame = 0; frame < 50; frame++) {
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        assert_true(noh_character_look(g.ch, &g.table, &g.settings, 1e9f) != NOH_DUE_NOT);
+        assert_true(noh_character_select_lod(g.ch, &g.table, &g.settings, 1e9f) != NOH_DUE_NOT);
         update(&g, g.ch);
         take_palette(g.ch, shown);
         take_floats(g.ch, floats);
@@ -281,7 +281,7 @@ static void at_low_update_rates_the_error_is_as_measured(void **state)
             play(&g, g.ch, 0, track_of(clip, 1.0f));
             for (int frame = 0; frame < 1200; frame++) {
                 noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-                if (noh_character_look(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT)
+                if (noh_character_select_lod(g.ch, &g.table, &g.settings, scale_for(errors[clip][rate])) != NOH_DUE_NOT)
                     update(&g, g.ch);
                 assert_int_equal(g.ch->lod.update_rate, rate);
                 take_palette(g.ch, shown);
@@ -307,13 +307,13 @@ static void a_change_begins_with_what_is_shown(void **state)
     play(&g, g.ch, 0, track_of(WAVE, 1.0f));
     for (int frame = 0; frame < 200; frame++) {
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, 1e-3f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, 1e-3f) != NOH_DUE_NOT) update(&g, g.ch);
         if (frame < 2 || frame % 11) continue;
         take_palette(g.ch, before);
         take_floats(g.ch, floats[0]);
         noh_character_sphere(g.ch, spheres[0]);
         play(&g, g.ch, 0, track_of(frame % 2 ? WAVE : LEAN, 1.0f));
-        assert_int_equal(noh_character_look(g.ch, &g.table, &g.settings, 1e-3f), NOH_DUE);
+        assert_int_equal(noh_character_select_lod(g.ch, &g.table, &g.settings, 1e-3f), NOH_DUE);
         update(&g, g.ch);
         take_palette(g.ch, shown);
         take_floats(g.ch, floats[1]);
@@ -352,7 +352,7 @@ static void cross_fades_stay_near_the_measured_error(void **state)
             woken = noh_character_clock(g.ch);
         }
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, scale_for((float)measured)) != NOH_DUE_NOT)
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, scale_for((float)measured)) != NOH_DUE_NOT)
             update(&g, g.ch);
         take_palette(g.ch, shown);
         true_palette(&g, g.ch, truth, floats);
@@ -374,7 +374,7 @@ static void the_sphere_holds_what_is_shown(void **state)
     play(&g, g.ch, 0, track_of(LEAN, 1.0f));
     for (int frame = 0; frame < 600; frame++) {
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, 1e-3f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, 1e-3f) != NOH_DUE_NOT) update(&g, g.ch);
         take_palette(g.ch, shown);
         noh_character_sphere(g.ch, sphere);
         for (uint32_t j = 0; j < JOINTS; j++) {
@@ -408,7 +408,7 @@ static void dropped_joints_follow_their_parents(void **state)
     g.table.update_error_m = NULL;
     play(&g, g.ch, 0, track_of(RUN, 1.0f));
     noh_character_step(g.ch, &g.s.set, 5000, NULL, NULL);
-    assert_int_equal(noh_character_look(g.ch, &g.table, &g.settings, 10.0f), NOH_DUE_AT_ONCE);
+    assert_int_equal(noh_character_select_lod(g.ch, &g.table, &g.settings, 10.0f), NOH_DUE_AT_ONCE);
     assert_int_equal(noh_character_joint_work(g.ch), 9);
     g.s.samples = 0;
     update(&g, g.ch);
@@ -421,7 +421,7 @@ static void dropped_joints_follow_their_parents(void **state)
     assert_int_equal(g.s.samples, 1);
     g.joints[1].error_m = 1.0f;
     noh_character_cut(g.ch);
-    assert_int_equal(noh_character_look(g.ch, &g.table, &g.settings, 10.0f), NOH_DUE_AT_ONCE);
+    assert_int_equal(noh_character_select_lod(g.ch, &g.table, &g.settings, 10.0f), NOH_DUE_AT_ONCE);
     assert_int_equal(noh_character_joint_work(g.ch), JOINTS);
     stage_close(&g);
 }
@@ -443,8 +443,8 @@ static void skins_of_all_packs_are_posed(stage *g, const noh_skin *skin, int has
         const float scale = frame < 5 ? 1e6f : scale_for(errors[RUN][NOH_UPDATE_RATE_15]);
         noh_character_step(g->ch, &g->s.set, FRAME, NULL, NULL);
         noh_character_step(own.ch, &own.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g->ch, &g->table, &g->settings, scale)) update(g, g->ch);
-        if (noh_character_look(own.ch, &own.table, &own.settings, scale)) update(&own, own.ch);
+        if (noh_character_select_lod(g->ch, &g->table, &g->settings, scale)) update(g, g->ch);
+        if (noh_character_select_lod(own.ch, &own.table, &own.settings, scale)) update(&own, own.ch);
         noh_character_skin(g->ch, skin, a);
         noh_character_skin(own.ch, skin, b);
         take_palette(g->ch, palette);
@@ -497,7 +497,7 @@ static void the_pose_may_be_changed_between_the_halves(void **state)
     stage_open(&g);
     play(&g, g.ch, 0, track_of(WALK, 1.0f));
     noh_character_step(g.ch, &g.s.set, 100, NULL, NULL);
-    noh_character_look(g.ch, &g.table, &g.settings, 1e9f);
+    noh_character_select_lod(g.ch, &g.table, &g.settings, 1e9f);
     update(&g, g.ch);
     take_palette(g.ch, plain);
     noh_character_update_begin(g.ch, &g.s.set, &g.scratch);
@@ -594,8 +594,8 @@ static void keys_fire_the_same_with_and_without_lod(void **state)
         noh_character_step(g.ch, &g.s.set, ticks, note, &with);
         waiting += ticks;
         if (frame / 100 % 4) { /* seen */
-            noh_due due = noh_character_look(g.ch, &g.table, &g.settings,
-                                             powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
+            noh_due due = noh_character_select_lod(g.ch, &g.table, &g.settings,
+                                                   powf(10.0f, test_random_float(&r, -2.0f, 4.0f)));
             rates |= 1u << g.ch->lod.update_rate;
             if (due == NOH_DUE_AT_ONCE || (due == NOH_DUE && test_random_below(&r, 3))) update(&g, g.ch);
         }
@@ -621,7 +621,7 @@ static void a_copy_plays_the_same_on_its_own(void **state)
     play(&g, g.ch, 0, track_of(WALK, 1.0f));
     for (int frame = 0; frame < 13; frame++) {
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
     }
     array = test_aligned(NULL, COPIES * g.size);
     for (uint32_t i = 0; i < COPIES; i++) memcpy(array + i * g.size, g.ch, noh_character_bytes(g.ch));
@@ -630,7 +630,7 @@ static void a_copy_plays_the_same_on_its_own(void **state)
             noh_character *ch = (noh_character *)(void *)(array + i * g.size);
             if (frame == 10 && i % 2) noh_controller_set_speed(noh_character_controller(ch), 0, 3 * NOH_SPEED_ONE);
             noh_character_step(ch, &g.s.set, FRAME, NULL, NULL);
-            if (noh_character_look(ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, ch);
+            if (noh_character_select_lod(ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, ch);
             take_palette(ch, i == 0 ? first : other);
             if (i && i % 2 == 0) assert_memory_equal(first, other, sizeof first);
         }
@@ -652,7 +652,7 @@ static void damaged_characters_do_no_harm(void **state)
     play(&g, g.ch, 0, track_of(WALK, 1.0f));
     for (int frame = 0; frame < 13; frame++) {
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
     }
     good = test_aligned(g.ch, g.size);
     assert_int_equal(noh_character_check(g.ch, g.size, &g.s.set, &g.table, NULL), NOH_OK);
@@ -667,7 +667,7 @@ static void damaged_characters_do_no_harm(void **state)
         }
         accepted++;
         noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
-        if (noh_character_look(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
+        if (noh_character_select_lod(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
         if (g.ch->time.posed) take_palette(g.ch, shown);
     }
     assert_true(refused > 8u * 32u && accepted > 0);
@@ -704,7 +704,7 @@ static void a_crowd_keeps_its_budget(void **state)
             float scale = scale_for(errors[WALK][i % 4 ? i % 4 : 1]);
             noh_due due;
             noh_character_step(ch, &g.s.set, FRAME, NULL, NULL);
-            due = noh_character_look(ch, &g.table, &g.settings, scale);
+            due = noh_character_select_lod(ch, &g.table, &g.settings, scale);
             if (due == NOH_DUE_AT_ONCE) {
                 update(&g, ch);
                 noh_schedule_spend(&schedule, 1);
@@ -742,12 +742,12 @@ static void a_cut_shows_the_new_level_at_once(void **state)
         g.table.update_error_m = NULL;
         g.settings.shares[NOH_LOD_MESH] = 0.5f;
         g.settings.shares[NOH_LOD_UPDATES] = 0.5f;
-        (void)noh_character_look(g.ch, &g.table, &g.settings, 1e-3f);
+        (void)noh_character_select_lod(g.ch, &g.table, &g.settings, 1e-3f);
         assert_int_equal(g.ch->lod.mesh, 1);
         assert_int_equal(noh_character_controller(g.ch)->lod, 1);
         (void)noh_character_step(g.ch, &g.s.set, FRAME, NULL, NULL);
         if (cut) noh_character_cut(g.ch);
-        (void)noh_character_look(g.ch, &g.table, &g.settings, 1e3f);
+        (void)noh_character_select_lod(g.ch, &g.table, &g.settings, 1e3f);
         assert_int_equal(g.ch->lod.mesh, 0);
         assert_int_equal(noh_character_controller(g.ch)->lod, 0);
         assert_true((noh_lod_fade(&g.ch->lod, noh_character_clock(g.ch)) < 1.0f) == !cut);

@@ -34,7 +34,7 @@ static noh_crowd_desc field_of(uint32_t agents, float side)
 static void put(noh_crowd *crowd, uint32_t index, float x, float z, float to_x, float to_z)
 {
     const noh_crowd_agent a = { { x, z }, { 0.0f, 0.0f }, { to_x, to_z }, 0.25f, 1.3f, 0, index };
-    assert_int_equal(noh_crowd_put(crowd, index, &a, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(crowd, index, &a, NULL), NOH_OK);
 }
 
 static noh_crowd_agent stepped(const noh_crowd *crowd, uint32_t index)
@@ -120,7 +120,7 @@ static void one_that_holds_its_place_is_walked_around(void **state)
     noh_crowd *crowd = made(&desc);
     (void)state;
     for (uint32_t i = 1; i < 8u; i++) put(crowd, i, -6.0f - (float)i, 0.1f * (float)i, 8.0f, 0.6f * (float)i);
-    assert_int_equal(noh_crowd_put(crowd, 0, &post, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(crowd, 0, &post, NULL), NOH_OK);
     assert_true(nearest(crowd, 8, 20.0f) > 0.49f);
     assert_true(apart(stepped(crowd, 0).position, post.position) == 0.0f);
     for (uint32_t i = 1; i < 8u; i++) assert_true(stepped(crowd, i).position[0] > 7.0f);
@@ -190,7 +190,7 @@ static void none_gets_through_a_wall(void **state)
     for (uint32_t i = 0; i < 200u; i++) {
         const float row = (float)(i / 20u), column = (float)(i % 20u) - 10.0f;
         const noh_crowd_agent a = { { -0.5f - row, column }, { 9.0f, 0.0f }, { 5.0f, 0.0f }, 0.25f, 3.75f, 0, i };
-        assert_int_equal(noh_crowd_put(crowd, i, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, i, &a, NULL), NOH_OK);
     }
     for (int step = 0; step < 300; step++) {
         float before[200];
@@ -230,7 +230,7 @@ static noh_crowd *mixed(uint32_t jobs, uint32_t turn)
                                     i % 31u ? 1.0f + 0.02f * (float)(i % 20u) : 0.0f,
                                     i % 5u ? 0 : NOH_CROWD_ORCA,
                                     i };
-        assert_int_equal(noh_crowd_put(crowd, (i * 7u + turn) % 300u, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, (i * 7u + turn) % 300u, &a, NULL), NOH_OK);
     }
     return crowd;
 }
@@ -328,7 +328,7 @@ static void bad_values_are_refused(void **state)
     noh_crowd_agent a;
     (void)state;
 #define REFUSED(field, value)                                                                         \
-    (a = good, a.field = (value), assert_int_equal(noh_crowd_put(crowd, 3, &a, &error), NOH_ERR_ARG), \
+    (a = good, a.field = (value), assert_int_equal(noh_crowd_add(crowd, 3, &a, &error), NOH_ERR_ARG), \
      assert_int_equal(error.where, 3))
     REFUSED(position[0], NAN);
     REFUSED(position[1], INFINITY);
@@ -360,8 +360,8 @@ static void extremes_stay_finite(void **state)
     (void)state;
     for (uint32_t i = 0; i < 40u; i++) {
         put(crowd, i, 500.0f + 0.3f * (float)(i % 7u), -800.0f, 500.0f, -790.0f);
-        noh_crowd_aim(crowd, i, goals[i % 3u]);
-        noh_crowd_pace(crowd, i, i % 2u ? NAN : 1e9f);
+        noh_crowd_set_goal(crowd, i, goals[i % 3u]);
+        noh_crowd_set_speed(crowd, i, i % 2u ? NAN : 1e9f);
     }
     run(crowd, 10.0f);
     for (uint32_t i = 0; i < 40u; i++) {

@@ -44,7 +44,7 @@ static noh_crowd *made(const noh_field *ground, uint32_t agents, uint32_t fields
 static void put(noh_crowd *crowd, uint32_t index, float x, float z, float to_x, float to_z)
 {
     const noh_crowd_agent a = { { x, z }, { 0.0f, 0.0f }, { to_x, to_z }, 0.25f, 1.3f, 0, index };
-    assert_int_equal(noh_crowd_put(crowd, index, &a, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(crowd, index, &a, NULL), NOH_OK);
 }
 
 static noh_crowd_agent after(noh_crowd *crowd, uint32_t index, float seconds)

@@ -49,7 +49,7 @@ static void enter(scene *s, uint32_t id)
                                 id % 29u ? 1.3f : 0.0f,
                                 flags[id % 8u],
                                 id };
-    assert_int_equal(noh_crowd_put(s->crowd, index_of(s, id), &a, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(s->crowd, index_of(s, id), &a, NULL), NOH_OK);
     noh_crowd_follow(s->crowd, index_of(s, id), id % 3u < 2u ? id % 3u : NOH_NONE);
 }
 
@@ -90,7 +90,7 @@ static void change(scene *s, uint32_t step)
         enter(s, id);
     } else {
         const float x = chance(s), goal[2] = { x, chance(s) };
-        noh_crowd_aim(s->crowd, index_of(s, id), goal);
+        noh_crowd_set_goal(s->crowd, index_of(s, id), goal);
     }
 }
 

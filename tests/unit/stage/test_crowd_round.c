@@ -85,7 +85,7 @@ static noh_crowd *made(const noh_crowd_obstacle *walls, uint32_t count, uint32_t
 static void put(noh_crowd *crowd, uint32_t index, const float from[2], const float to[2])
 {
     const noh_crowd_agent a = { { from[0], from[1] }, { 0.0f, 0.0f }, { to[0], to[1] }, 0.25f, 1.4f, 0, index };
-    assert_int_equal(noh_crowd_put(crowd, index, &a, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(crowd, index, &a, NULL), NOH_OK);
 }
 
 static float off(const noh_crowd *crowd, uint32_t index, const float to[2])
@@ -270,7 +270,7 @@ static void who_stands_in_a_gap_is_walked_round(void **state)
         for (int o = 0; o < 8; o++) {
             noh_crowd *crowd = made(walls, 2, count + 1u);
             const noh_crowd_agent stands = { { 0, 3.375f }, { 0, 0 }, { 0, 3.375f }, 0.25f, 0.0f, 0, 100 };
-            assert_int_equal(noh_crowd_put(crowd, count, &stands, NULL), NOH_OK);
+            assert_int_equal(noh_crowd_add(crowd, count, &stands, NULL), NOH_OK);
             for (uint32_t i = 0; i < count; i++) {
                 const float x = 5.0f + 0.6f * (float)i, z = 0.5f * (float)o;
                 const float from[2] = { -x, z }, to[2] = { x, z };

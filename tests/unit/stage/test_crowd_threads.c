@@ -69,7 +69,7 @@ static noh_crowd *made(uint32_t job_count)
         const noh_crowd_agent a = {
             { r[0], r[1] }, { 0.0f, 0.0f }, { r[2], r[3] }, 0.25f, i % 17u ? 1.3f : 0.0f, flags[i % 5u], i
         };
-        assert_int_equal(noh_crowd_put(crowd, i, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, i, &a, NULL), NOH_OK);
     }
     return crowd;
 }

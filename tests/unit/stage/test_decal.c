@@ -11,7 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-
 /* A mask in front of the camera, and where a ray through a pixel meets it. */
 typedef struct target {
     cast c;
@@ -22,12 +21,12 @@ typedef struct target {
 /* Of the cast's packs, as they are. */
 static void show_target(target *t)
 {
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     float sphere[4];
     t->c.desc.full_detail = 1;
     cast_make(&t->c, NULL);
     assert_int_equal(noh_stage_spawn(t->c.stage, MASKS, NULL, &t->actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(t->c.stage, t->actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(t->c.stage, t->actor, &posed, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(t->c.stage, 0, NULL, NULL, NULL, NULL), NOH_OK);
     assert_int_equal(noh_actor_sphere(t->c.stage, t->actor, sphere, NULL), NOH_OK);
     noh_view_orbit(&t->view, sphere, 0.3f, 0.1f, 1.0f * sphere[3], 640, 360);

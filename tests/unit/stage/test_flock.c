@@ -279,7 +279,7 @@ static noh_crowd *flock(uint32_t flags, uint32_t turn)
                                     1.5f,
                                     flags,
                                     i };
-        assert_int_equal(noh_crowd_put(crowd, (i * 3u + turn) % 80u, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, (i * 3u + turn) % 80u, &a, NULL), NOH_OK);
     }
     return crowd;
 }
@@ -326,7 +326,7 @@ static float alike(uint32_t flags)
     static const float goals[2][2] = { { -1000.0f, 1000.0f }, { 1000.0f, 1000.0f } };
     noh_crowd *crowd = flock(flags, 0);
     float nearest, result;
-    for (uint32_t i = 0; i < 80u; i++) noh_crowd_aim(crowd, i, goals[i * 3u / 2u % 2u]);
+    for (uint32_t i = 0; i < 80u; i++) noh_crowd_set_goal(crowd, i, goals[i * 3u / 2u % 2u]);
     for (int i = 0; i < 30 * 3; i++) noh_crowd_step(crowd, NOH_CROWD_STEP_TICKS);
     result = polarisation(crowd, &nearest);
     free(crowd);

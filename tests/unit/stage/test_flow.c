@@ -152,7 +152,7 @@ static void one_walks_through_a_maze_and_stops(void **state)
     noh_crowd_agent now = a;
     uint32_t steps = 0;
     (void)state;
-    assert_int_equal(noh_crowd_put(crowd, 0, &a, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(crowd, 0, &a, NULL), NOH_OK);
     noh_crowd_field_aim(crowd, 0, goal);
     noh_crowd_follow(crowd, 0, 0);
     assert_int_equal(noh_crowd_field_build(crowd, 1000000), 0);
@@ -232,7 +232,7 @@ static uint32_t hash_after(uint32_t jobs, uint32_t turn, uint32_t steps)
         const float x = -14.0f + 2.4f * (float)(i % 12u), z = -15.0f + 0.6f * (float)(i / 12u);
         const noh_crowd_agent a = { { x, z }, { 0.0f, 0.0f }, { -x, -z }, 0.25f, 1.3f, i % 6u ? 0 : NOH_CROWD_ORCA, i };
         const uint32_t index = (i * 7u + turn) % 120u;
-        assert_int_equal(noh_crowd_put(crowd, index, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, index, &a, NULL), NOH_OK);
         noh_crowd_follow(crowd, index, i % 4u < 3u ? i % 4u : NOH_NONE);
     }
     for (uint32_t i = 0; i < 3u; i++) noh_crowd_field_aim(crowd, i, (float[2]){ 4.0f * (float)i, 13.0f });
@@ -297,7 +297,7 @@ static void extremes_stay_finite(void **state)
     (void)state;
     for (uint32_t i = 0; i < 8u; i++) {
         const noh_crowd_agent a = { { 200.0f * (float)i, -90.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f }, 0.25f, 1.3f, 0, i };
-        assert_int_equal(noh_crowd_put(crowd, i, &a, NULL), NOH_OK);
+        assert_int_equal(noh_crowd_add(crowd, i, &a, NULL), NOH_OK);
         noh_crowd_follow(crowd, i, i % 4u);
     }
     for (uint32_t i = 0; i < 4u; i++) noh_crowd_field_aim(crowd, i, goals[i]);

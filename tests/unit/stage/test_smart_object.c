@@ -219,7 +219,7 @@ static uint32_t act(town *t, model_town *m, uint32_t agent, uint32_t what, uint3
     const uint32_t need = chance(seed, NEEDS);
     const float x = (float)chance(seed, 40u), at[2] = { x, (float)chance(seed, 40u) };
     if (what < 60u) {
-        const int asked = noh_smart_ask(t->smart, agent, need, at);
+        const int asked = noh_smart_request(t->smart, agent, need, at);
         assert_int_equal(asked, model_ask(m, t, agent, need, at));
         return (uint32_t)asked;
     }
@@ -283,7 +283,7 @@ static void none_starves_where_all_ask(void **state)
     for (uint32_t i = 0; i < AGENTS; i++) noh_smart_enter(t.smart, i, NULL);
     for (uint32_t step = 0; step < 40000u; step++) {
         for (uint32_t i = 0; i < AGENTS; i++) {
-            (void)noh_smart_ask(t.smart, i, 0, at);
+            (void)noh_smart_request(t.smart, i, 0, at);
             served[i] += (uint32_t)noh_smart_arrive(t.smart, i);
         }
         noh_smart_step(t.smart, 800u);
@@ -316,7 +316,7 @@ static void an_object_knows_what_is_done_with_it(void **state)
     noh_smart_enter(smart, 1, NULL);
     assert_int_equal(noh_smart_most(smart, 0, 0.4f), 0);
     assert_int_equal(noh_smart_most(smart, 0, 0.5f), NOH_NONE);
-    assert_int_equal(noh_smart_ask(smart, 0, 0, at), 1);
+    assert_int_equal(noh_smart_request(smart, 0, 0, at), 1);
     assert_int_equal(noh_smart_slot_at(smart, 0)->use_clip, 8);
     assert_int_equal(noh_smart_arrive(smart, 0), 1);
     for (uint32_t tick = 0; tick < 24000u + 96000u + 12000u; tick += 1000u) {
@@ -329,8 +329,8 @@ static void an_object_knows_what_is_done_with_it(void **state)
     }
     noh_smart_use_of(smart, 0, &use);
     assert_int_equal(use.phase, NOH_SMART_FREE);
-    assert_int_equal(noh_smart_ask(smart, 0, 0, at), 1);
-    assert_int_equal(noh_smart_ask(smart, 1, 0, at), 1);
+    assert_int_equal(noh_smart_request(smart, 0, 0, at), 1);
+    assert_int_equal(noh_smart_request(smart, 1, 0, at), 1);
     noh_smart_step(smart, 47999u);
     noh_smart_use_of(smart, 1, &use);
     assert_int_equal(use.phase, NOH_SMART_WAITING);

@@ -268,7 +268,7 @@ static void names_are_found(void **state)
 static void a_face_is_played_over_a_body(void **state)
 {
     noh_actor actor;
-    noh_look look = { .posed = 1 };
+    noh_appearance look = { .posed = 1 };
     const noh_play at_once = { .fade_ticks = 1 };
     float before[12], after[12];
     uint32_t hand, smile;
@@ -280,7 +280,7 @@ static void a_face_is_played_over_a_body(void **state)
     hand = noh_stage_find(c.stage, PUPPETS, NOH_NAME_JOINT, noh_stage_name(c.stage, PUPPETS, NOH_NAME_JOINT, 20));
     smile = noh_stage_find(c.stage, PUPPETS, NOH_NAME_FLOAT, "smile");
     assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &look, NULL), NOH_OK);
     for (int i = 0; i < 2; i++) { /* it shows in each frame, though no time passes */
         assert_int_equal(noh_stage_frame(c.stage, 0, NULL, NULL, NULL, NULL), NOH_OK);
         assert_non_null(noh_actor_floats(c.stage, actor));
@@ -409,7 +409,7 @@ static void take_joints(const cast *c, noh_actor actor, float *out)
 static void inertia_takes_over_without_a_leap(void **state)
 {
     const noh_play leap = { .fade_ticks = 12000, .flags = NOH_PLAY_INERTIA }, cut = { .fade_ticks = 1 };
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     float before[64 * 12], after[64 * 12], steps[3] = { 0, 0, 0 };
     noh_actor actor;
     cast c;
@@ -419,7 +419,7 @@ static void inertia_takes_over_without_a_leap(void **state)
     cast_make(&c, NULL);
     for (int way = 0; way < 3; way++) { /* in between, by inertia, by a cut */
         assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &look, NULL), NOH_OK);
         assert_int_equal(noh_actor_play(c.stage, actor, 0, "dance", NULL, NULL), NOH_OK);
         for (int f = 0; f < 45; f++) {
             assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
@@ -448,7 +448,7 @@ static void inertia_takes_over_without_a_leap(void **state)
 /* How far joints leap when a clip of another name begins. */
 static float leap_at_a_change(const noh_play *play)
 {
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     float before[64 * 12], after[64 * 12], most = 0.0f;
     noh_actor actor;
     cast k;
@@ -456,7 +456,7 @@ static float leap_at_a_change(const noh_play *play)
     k.kinds[PUPPETS].root_axes = 0;
     cast_make(&k, NULL);
     assert_int_equal(noh_stage_spawn(k.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(k.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(k.stage, actor, &look, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(k.stage, actor, 0, "walk", NULL, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(k.stage, 30 * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
     take_joints(&k, actor, before);
@@ -485,7 +485,7 @@ static void clips_play_beside_each_other(void **state)
     static const char *const clips[] = { "walk", "dance", "bow" };
     const noh_play beside = { .fade_ticks = 1, .flags = NOH_PLAY_BESIDE };
     const noh_play wrong = { .flags = NOH_PLAY_BESIDE | NOH_PLAY_INERTIA };
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     float alone[64 * 12], mixed[64 * 12];
     const noh_clip_set *set;
     noh_actor actor;
@@ -497,7 +497,7 @@ static void clips_play_beside_each_other(void **state)
     k.kinds[PUPPETS].root_axes = 0; /* what is compared is the pose */
     cast_make(&k, NULL);
     assert_int_equal(noh_stage_spawn(k.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(k.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(k.stage, actor, &look, NULL), NOH_OK);
     c = noh_actor_controller(k.stage, actor, &set);
     for (uint32_t i = 0; i < 2; i++) {
         const noh_track *track;
@@ -627,7 +627,7 @@ static void who_is_behind_the_camera_is_not_posed(void **state)
 static void spheres_hold_every_vertex(void **state)
 {
     noh_actor actor;
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     float joints[64 * 12], matrices[64 * 12];
     cast c;
     (void)state;
@@ -635,7 +635,7 @@ static void spheres_hold_every_vertex(void **state)
     cast_make(&c, NULL);
     assert_true(c.plan.kinds[PUPPETS].joint_count <= 64);
     assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &look, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(c.stage, actor, 0, "dance", NULL, NULL), NOH_OK);
     for (int f = 0; f < 60; f++) {
         float sphere[4];
@@ -694,7 +694,7 @@ static void whoever_was_never_posed_is_culled_by_where_clips_may_take_it(void **
     (void)state;
     for (uint32_t n = 0; n < TEST_COUNT(names); n++) {
         const char *input = test_asset(names[n]);
-        const noh_look look = { .posed = 1 };
+        const noh_appearance look = { .posed = 1 };
         double worst = 0.0;
         uint8_t *bytes;
         size_t count;
@@ -711,7 +711,7 @@ static void whoever_was_never_posed_is_culled_by_where_clips_may_take_it(void **
         cast_make(&c, NULL);
         assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, &actor, NULL), NOH_OK);
         assert_int_equal(noh_actor_sphere(c.stage, actor, reach, NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, actor, &look, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &look, NULL), NOH_OK);
         for (uint32_t i = 0; noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i); i++) {
             assert_int_equal(
                 noh_actor_play(c.stage, actor, 0, noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i), NULL, NULL), NOH_OK);
@@ -859,7 +859,7 @@ static void a_damaged_state_does_no_harm(void **state)
 static void what_hangs_on_a_joint_goes_with_it(void **state)
 {
     noh_actor puppet, mask;
-    const noh_look look = { .posed = 1 };
+    const noh_appearance look = { .posed = 1 };
     const noh_place up = { { 0.0f, 0.25f, 0.0f }, { 0, 0, 0, 0 }, 0.5f };
     float joint[12], sphere[4];
     noh_stage_view view = cast_view(0, 9.0f);
@@ -870,7 +870,7 @@ static void what_hangs_on_a_joint_goes_with_it(void **state)
     cast_make(&c, NULL);
     assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, NULL, &puppet, NULL), NOH_OK);
     assert_int_equal(noh_stage_spawn(c.stage, MASKS, &up, &mask, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c.stage, puppet, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, puppet, &look, NULL), NOH_OK);
     assert_int_equal(noh_actor_attach(c.stage, mask, puppet, 20, NULL), NOH_OK);
     assert_int_equal(noh_actor_attach(c.stage, puppet, mask, 0, &said), NOH_ERR_NOT_FOUND); /* a mask has no joints */
     assert_int_equal(noh_actor_attach(c.stage, mask, puppet, 4000, &said), NOH_ERR_NOT_FOUND);
@@ -907,7 +907,7 @@ static void joint_of(const cast *c, noh_actor actor, float joint[12])
 static void attachments_on_attachments(void **state)
 {
     const noh_place up = { { 0.0f, 0.25f, 0.1f }, { 0, 0, 0.6f, 0.8f }, 0.75f };
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     const uint32_t most = NOH_ATTACH_DEPTH_MAX + 1u;
     noh_actor a[NOH_ATTACH_DEPTH_MAX + 3u];
     float before[2][12], after[12], local[12], last[12];
@@ -920,7 +920,7 @@ static void attachments_on_attachments(void **state)
     cast_make(&c, NULL);
     for (uint32_t i = 0; i < most + 2u; i++) {
         assert_int_equal(noh_stage_spawn(c.stage, PUPPETS, i ? &up : NULL, &a[i], NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, a[i], &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, a[i], &posed, NULL), NOH_OK);
         if (!i) assert_int_equal(noh_actor_play(c.stage, a[i], 0, "dance", NULL, NULL), NOH_OK);
     }
     for (uint32_t i = most - 1u; i > 0; i--) attach(&c, a[i], a[i - 1u]); /* from the end on */
@@ -979,7 +979,7 @@ static void attachments_on_attachments(void **state)
 static void a_carrier_out_of_view_is_posed(void **state)
 {
     const noh_place far = { { 0.0f, 0.0f, 30.0f }, { 0, 0, 0, 0 }, 1.0f };
-    const noh_look hidden = { .hidden = 1 }, plain = { 0 };
+    const noh_appearance hidden = { .hidden = 1 }, plain = { 0 };
     float before[12], after[12], sphere[4];
     const noh_play bows = { .fade_ticks = 1, .start_ticks = 24000 };
     noh_actor actors[3];
@@ -1004,10 +1004,10 @@ static void a_carrier_out_of_view_is_posed(void **state)
     }
     assert_int_equal(noh_actor_joint(c.stage, actors[0], head, after, NULL), NOH_OK);
     assert_true(hypotf(hypotf(after[3] - before[3], after[7] - before[7]), after[11] - before[11]) > 0.01f);
-    assert_int_equal(noh_actor_set_look(c.stage, actors[0], &hidden, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actors[0], &hidden, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     assert_int_equal(noh_stage_stats_of(c.stage)->seen, 0);
-    assert_int_equal(noh_actor_set_look(c.stage, actors[0], &plain, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actors[0], &plain, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     assert_true(noh_stage_stats_of(c.stage)->seen > 0);
     cast_close(&c);
@@ -1077,11 +1077,11 @@ static void a_ray_goes_through_its_pixel(void **state)
 /* One puppet that is posed in each frame, of a kind that is changed by the caller first. */
 static noh_actor one_puppet(cast *c, uint32_t level)
 {
-    const noh_look look = { .posed = 1, .level = level };
+    const noh_appearance look = { .posed = 1, .level = level };
     noh_actor actor;
     cast_make(c, NULL);
     assert_int_equal(noh_stage_spawn(c->stage, PUPPETS, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &look, NULL), NOH_OK);
     return actor;
 }
 
@@ -1165,7 +1165,7 @@ static void levels_are_those_of_the_meshes(void **state)
 static void detail_is_told_as_it_is_shown(void **state)
 {
     const noh_place middle = { .position = { 0.0f, 0.8f, -2.0f } };
-    const noh_look look = { .level = 2 };
+    const noh_appearance look = { .level = 2 };
     noh_actor_detail d, before = { 0, 0, 1.0f, 0, 0, 0.0f, 0.0f };
     uint32_t fades = 0, first = 0;
     noh_stage_view view;
@@ -1193,7 +1193,7 @@ static void detail_is_told_as_it_is_shown(void **state)
     assert_int_equal(d.level, c.plan.kinds[MASKS].level_count - 1u);
     assert_true(fades == d.level - first && fades > 1);
     assert_true(d.joint_count == 0 && d.influence_count == 0);
-    assert_int_equal(noh_actor_set_look(c.stage, mask, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, mask, &look, NULL), NOH_OK);
     assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     assert_int_equal(noh_actor_detail_of(c.stage, mask, &d, NULL), NOH_OK);
     assert_true(d.level == 1 && d.level_before == 1 && d.fade >= 1.0f);

@@ -7,7 +7,7 @@
 #define STEP (NOH_TICKS_PER_SECOND / 30)
 #define JOINTS_MAX 64u
 
-static const noh_look posed = { .posed = 1 };
+static const noh_appearance posed = { .posed = 1 };
 static noh_error said;
 
 static void step(cast *c)
@@ -26,7 +26,7 @@ static noh_actor enter(cast *c, uint32_t kind, const char *clip)
 {
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, kind, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     if (clip) assert_int_equal(noh_actor_play(c->stage, actor, 0, clip, NULL, NULL), NOH_OK);
     return actor;
 }
@@ -255,14 +255,14 @@ static void nothing_leaps(void **state)
     (void)state;
     for (uint32_t d = 0; d < TEST_COUNT(distances); d++) {
         float last[12 * JOINTS_MAX], now[12 * JOINTS_MAX];
-        const noh_look seen = { .pixels = 1.0f };
+        const noh_appearance seen = { .pixels = 1.0f };
         uint32_t stepped = 0, wanted = 0, updates = 0;
         noh_actor actor;
         cast c;
         cast_open(&c);
         cast_make(&c, NULL);
         actor = enter(&c, PUPPETS, "walk");
-        assert_int_equal(noh_actor_set_look(c.stage, actor, &seen, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &seen, NULL), NOH_OK);
         for (uint32_t f = 0; f < 1500; f++) {
             const uint32_t ticks = 200u + test_random_below(&r, 700);
             float worst = 0.0f, alpha;

@@ -195,9 +195,9 @@ static void everything_shown_lies_in_the_sphere(void **state)
         const float at[3] = { test_random_float(&r, -9, 9), test_random_float(&r, -1, 1),
                               test_random_float(&r, -9, 9) };
         const noh_actor actor = come(&f.c, 0, at, test_random_float(&r, 0, 6), test_random_float(&r, 0.1f, 4.0f));
-        const noh_look look = { .posed = 1, .level = 1u + test_random_below(&r, 3) };
+        const noh_appearance look = { .posed = 1, .level = 1u + test_random_below(&r, 3) };
         const noh_play play = { .start_ticks = test_random_below(&r, 30000), .fade_ticks = 1 };
-        assert_int_equal(noh_actor_set_look(f.c.stage, actor, &look, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(f.c.stage, actor, &look, NULL), NOH_OK);
         assert_int_equal(noh_actor_play(f.c.stage, actor, 0, "bend", &play, NULL), NOH_OK);
         for (int frame = 0; frame < 3; frame++) {
             double part;
@@ -252,7 +252,7 @@ static noh_stage_view look_closely(const double at[3], uint32_t seed)
 static void a_view_of_any_vertex_sees_it_in_the_first_frame(void **state)
 {
     static const float head[3] = { 3.0f, 0.5f, -1.0f }, origin[3] = { 1.0f, 2.0f, 3.0f };
-    const noh_look posed = { .posed = 1 }, usual = { 0 };
+    const noh_appearance posed = { .posed = 1 }, usual = { 0 };
     test_random r = test_random_from(6);
     figure f;
     (void)state;
@@ -265,7 +265,7 @@ static void a_view_of_any_vertex_sees_it_in_the_first_frame(void **state)
         float sphere[4];
         some s;
         hold_all(&f.c, actor, &r, -90.0f, 90.0f);
-        assert_int_equal(noh_actor_set_look(f.c.stage, actor, &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(f.c.stage, actor, &posed, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame(f.c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
         s = one_vertex(&f.c, actor, &r);
         view = look_closely(s.at, round);
@@ -275,7 +275,7 @@ static void a_view_of_any_vertex_sees_it_in_the_first_frame(void **state)
         assert_int_equal(noh_stage_despawn(f.c.stage, actor, NULL), NOH_OK);
         actor = come(&f.c, 0, origin, 0.5f, 1.5f);
         hold_all(&f.c, actor, &again, -90.0f, 90.0f);
-        assert_int_equal(noh_actor_set_look(f.c.stage, actor, &usual, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(f.c.stage, actor, &usual, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame(f.c.stage, CAST_STEP, round & 1u ? &view : &shadow, NULL, NULL, NULL), NOH_OK);
         if (noh_stage_stats_of(f.c.stage)->seen != 1) fail_msg("round %u: it is not seen", (unsigned)round);
         assert_int_equal(noh_stage_despawn(f.c.stage, actor, NULL), NOH_OK);
@@ -294,11 +294,11 @@ static void a_ray_at_any_vertex_hits(void **state)
     cast_make(&f.c, NULL);
     for (uint32_t round = 0; round < 40; round++) {
         const noh_actor actor = come(&f.c, 0, origin, 0.5f, 1.5f);
-        const noh_look look = { .level = 1 };
+        const noh_appearance look = { .level = 1 };
         const double middle[3] = { 1.0, 2.0, 3.0 };
         noh_stage_view view = look_closely(middle, round);
         view.height_px = 300;
-        assert_int_equal(noh_actor_set_look(f.c.stage, actor, &look, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(f.c.stage, actor, &look, NULL), NOH_OK);
         if (round & 1u) hold_all(&f.c, actor, &r, -3.0f, 4.0f);
         for (int i = 0; i < 2; i++)
             assert_int_equal(noh_stage_frame(f.c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
@@ -666,7 +666,7 @@ static void what_hangs_on_a_scaled_figure_is_measured_where_it_hangs(void **stat
 static void what_hangs_on_a_stretched_joint_is_held_and_hit(void **state)
 {
     static const float origin[3] = { 0.0f, 0.0f, 0.0f };
-    const noh_look look = { .level = 1 };
+    const noh_appearance look = { .level = 1 };
     uint32_t hits = 0, rays = 0;
     test_random r = test_random_from(8);
     noh_actor on, hung;
@@ -686,7 +686,7 @@ static void what_hangs_on_a_stretched_joint_is_held_and_hit(void **state)
     on = come(&f.c, 0, origin, 0.0f, 1.0f);
     hung = come(&f.c, 0, origin, 0.7f, 0.5f);
     assert_int_equal(noh_actor_attach(f.c.stage, hung, on, 4, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(f.c.stage, hung, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(f.c.stage, hung, &look, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(f.c.stage, on, 0, "way", NULL, NULL), NOH_OK);
     for (uint32_t round = 0; round < 20; round++) {
         noh_stage_view view;

@@ -35,12 +35,12 @@ static void joints_turn(const noh_stage *stage, noh_actor actor, const char *cli
 static void play_a_day(cast *c, uint32_t kind, const noh_pack_clip *clip, uint32_t duration)
 {
     const noh_play play = { .fade_ticks = 1, .loop = NOH_LOOP_REPEAT };
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     uint64_t passed[KEYS_MAX] = { 0 };
     int64_t left = DAY_TICKS;
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, kind, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(c->stage, actor, 0, clip->name, &play, NULL), NOH_OK);
     for (uint32_t step = 0; left > 0; step++) {
         const uint32_t ticks = step_ticks(step, left);

@@ -46,10 +46,10 @@ static void close_cast(cast *c)
 
 static noh_actor enter(const cast *c, const char *clip, const noh_place *place)
 {
-    static const noh_look posed = { .posed = 1 };
+    static const noh_appearance posed = { .posed = 1 };
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, 0, place, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     if (clip) assert_int_equal(noh_actor_play(c->stage, actor, 0, clip, NULL, NULL), NOH_OK);
     return actor;
 }
@@ -537,7 +537,7 @@ static void a_person_that_does_not_fit_is_refused(void **state)
 /* Out of view nothing is lived through; an hour later a face goes on at once. */
 static void an_hour_unseen_is_skipped(void **state)
 {
-    static const noh_look unseen = { .posed = 0 }, posed = { .posed = 1 };
+    static const noh_appearance unseen = { .posed = 0 }, posed = { .posed = 1 };
     const noh_kind_face face = alive();
     noh_face_pose pose;
     noh_actor actor;
@@ -548,10 +548,10 @@ static void an_hour_unseen_is_skipped(void **state)
     actor = enter(&c, "idle", NULL);
     assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", 1.0f, 0, 480000, 0, NULL), NOH_OK);
     run(&c, 60);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &unseen, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &unseen, NULL), NOH_OK);
     for (int i = 0; i < 60; i++)
         assert_int_equal(noh_stage_frame(c.stage, 60 * NOH_TICKS_PER_SECOND, NULL, NULL, NULL, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &posed, NULL), NOH_OK);
     run(&c, 2);
     assert_int_equal(noh_actor_face(c.stage, actor, &pose, NULL), NOH_OK);
     assert_true(pose.emotions[NOH_EMOTION_JOY] == 0.0f && pose.blink == 0.0f);

@@ -49,10 +49,10 @@ static ball names_of(const noh_stage *s)
 
 static noh_actor enter(const cast *c)
 {
-    static const noh_look posed = { .posed = 1 };
+    static const noh_appearance posed = { .posed = 1 };
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, 0, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     return actor;
 }
 

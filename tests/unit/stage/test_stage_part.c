@@ -131,7 +131,7 @@ static void double_float(noh_modifier_work *w)
 /* Parts run in the order of the desc, each over what the one before has left; what the game holds is over all. */
 static void parts_set_floats_in_their_order(void **state)
 {
-    static const noh_look posed = { .posed = 1 };
+    static const noh_appearance posed = { .posed = 1 };
     uint32_t index = 0;
     const noh_modifier parts[2] = { { .name = "set", .modify = set_float, .user = &index },
                                     { .name = "double", .modify = double_float, .user = &index, .scratch_bytes = 16 } };
@@ -151,7 +151,7 @@ static void parts_set_floats_in_their_order(void **state)
         index = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "jawOpen");
         assert_true(index != NOH_NONE);
         assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, &actor, NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &posed, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
         assert_true(noh_actor_floats(c.stage, actor)[index] == 0.5f);
         assert_true(noh_actor_modifier(c.stage, actor, 0) && !noh_actor_modifier(c.stage, actor, 2));
@@ -206,7 +206,7 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
 {
     static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
     static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
-    static const noh_look posed = { .posed = 1 };
+    static const noh_appearance posed = { .posed = 1 };
     const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
     const float aside[3] = { 6.0f, 1.5f, 3.0f };
     noh_kind_face face;
@@ -244,7 +244,7 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
     for (int i = 0; i < 2; i++) {
         noh_actor *actor = i ? &stands : &lies;
         assert_int_equal(noh_stage_spawn(c.stage, 0, NULL, actor, NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, *actor, &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, *actor, &posed, NULL), NOH_OK);
         assert_int_equal(noh_actor_play(c.stage, *actor, 0, "walk", NULL, NULL), NOH_OK);
         assert_int_equal(noh_actor_set_face_flags(c.stage, *actor, NOH_FACE_NO_WANDER, NULL), NOH_OK);
     }

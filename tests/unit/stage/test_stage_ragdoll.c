@@ -40,12 +40,12 @@ static void close_cast(cast *c)
 
 static noh_actor enter(const cast *c, float x)
 {
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     const noh_place place = { { x, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, 0, &place, &actor, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(c->stage, actor, 0, "walk", NULL, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     return actor;
 }
 
@@ -145,7 +145,7 @@ static void it_falls_far_away(void **state)
         const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, base[1] };
         const noh_world world = { .planes = &plane, .plane_count = 1, .friction = 0.6f };
         const noh_kind_ragdoll ragdoll = { .count = 1, .substeps = 20, .world = &world };
-        const noh_look posed = { .posed = 1 };
+        const noh_appearance posed = { .posed = 1 };
         const noh_place place = { { base[0], base[1], base[2] }, { 0, 0, 0, 0 }, 0.0f };
         noh_actor actor;
         cast c;
@@ -154,7 +154,7 @@ static void it_falls_far_away(void **state)
         cast_make(&c, NULL);
         assert_int_equal(noh_stage_spawn(c.stage, 0, &place, &actor, NULL), NOH_OK);
         assert_int_equal(noh_actor_play(c.stage, actor, 0, "idle", NULL, NULL), NOH_OK);
-        assert_int_equal(noh_actor_set_look(c.stage, actor, &posed, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &posed, NULL), NOH_OK);
         run(&c, 20);
         assert_int_equal(noh_actor_fall(c.stage, actor, &said), NOH_OK);
         for (uint32_t f = 0; f < 120; f++) {

@@ -273,10 +273,10 @@ static void open_swingers(cast *c, uint32_t actors, int without)
 
 static noh_actor enter(const cast *c, const noh_place *place, const char *clip)
 {
-    const noh_look look = { .pixels = 0.02f }; /* posed in every frame, however far */
+    const noh_appearance look = { .pixels = 0.02f }; /* posed in every frame, however far */
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, 0, place, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &look, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &look, NULL), NOH_OK);
     assert_int_equal(noh_actor_play(c->stage, actor, 0, clip, NULL, NULL), NOH_OK);
     return actor;
 }

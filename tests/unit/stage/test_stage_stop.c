@@ -40,10 +40,10 @@ static void close_stage(cast *c)
 
 static noh_actor enter(const cast *c)
 {
-    static const noh_look posed = { .posed = 1 };
+    static const noh_appearance posed = { .posed = 1 };
     noh_actor actor;
     assert_int_equal(noh_stage_spawn(c->stage, 0, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(c->stage, actor, &posed, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c->stage, actor, &posed, NULL), NOH_OK);
     return actor;
 }
 
@@ -283,7 +283,7 @@ static void a_fade_that_is_posed_seldom(void **state)
 {
     const float middle[3] = { 0.0f, 1.0f, 0.0f };
     noh_stage_view view;
-    noh_look plain;
+    noh_appearance plain;
     noh_actor actor;
     shape rest, last;
     float way;
@@ -295,7 +295,7 @@ static void a_fade_that_is_posed_seldom(void **state)
     frame(&c);
     rest = shape_of(&c, actor);
     memset(&plain, 0, sizeof plain);
-    assert_int_equal(noh_actor_set_look(c.stage, actor, &plain, NULL), NOH_OK);
+    assert_int_equal(noh_actor_set_appearance(c.stage, actor, &plain, NULL), NOH_OK);
     hold(&c, actor, BODY, "bow", 1.0f);
     for (int f = 0; f < 30; f++) assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     last = shape_of(&c, actor);

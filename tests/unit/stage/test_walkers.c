@@ -137,15 +137,15 @@ static noh_actor enter(street *s, uint32_t index, const float at[2], const float
     const noh_crowd_agent agent = { { at[0], at[1] }, { 0, 0 }, { goal[0], goal[1] }, RADIUS, speed, 0, index };
     const float x = goal[0] - at[0], z = goal[1] - at[1], length = hypotf(x, z);
     const float heading[2] = { x / length, z / length };
-    noh_look look;
+    noh_appearance look;
     noh_actor actor;
     noh_error said;
     memset(&look, 0, sizeof look);
     look.posed = 1;
-    assert_int_equal(noh_crowd_put(s->crowd, index, &agent, NULL), NOH_OK);
+    assert_int_equal(noh_crowd_add(s->crowd, index, &agent, NULL), NOH_OK);
     assert_int_equal(noh_stage_spawn(s->cast.stage, 0, NULL, &actor, NULL), NOH_OK);
-    assert_int_equal(noh_actor_set_look(s->cast.stage, actor, &look, NULL), NOH_OK);
-    if (noh_walkers_put(s->walkers, index, s->cast.stage, actor, index, heading, &said)) fail_msg("%s", said.what);
+    assert_int_equal(noh_actor_set_appearance(s->cast.stage, actor, &look, NULL), NOH_OK);
+    if (noh_walkers_add(s->walkers, index, s->cast.stage, actor, index, heading, &said)) fail_msg("%s", said.what);
     return actor;
 }
 
@@ -433,7 +433,7 @@ static void aim_again(street *s, int is_ahead, uint32_t *seed)
             const float x = 10.0f * chance(seed), goal[2] = { x, 10.0f * chance(seed) };
             float heading[2];
             assert_true(noh_walkers_heading(s->walkers, i, heading));
-            noh_crowd_aim(s->crowd, i, goal);
+            noh_crowd_set_goal(s->crowd, i, goal);
             const float way[2] = { goal[0] - a.position[0], goal[1] - a.position[1] };
             if (!is_ahead || way[0] * heading[0] + way[1] * heading[1] > 0.7f * hypotf(way[0], way[1])) break;
         }
@@ -676,7 +676,7 @@ static void what_walkers_cannot_use_is_refused(void **state)
     assert_int_equal(noh_walkers_init(s.walkers_memory, bytes, &desc, s.cast.stage, &w, &said), NOH_ERR_ARG);
     desc.feet_modifier = 0;
     assert_int_equal(noh_walkers_size(&desc), 0);
-    assert_int_equal(noh_walkers_put(s.walkers, 3, s.cast.stage, (noh_actor){ 0 }, 0, NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_walkers_add(s.walkers, 3, s.cast.stage, (noh_actor){ 0 }, 0, NULL, &said), NOH_ERR_NOT_FOUND);
     close_street(&s);
 }
 

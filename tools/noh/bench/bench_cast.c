@@ -98,10 +98,10 @@ static int enter(cast *c, uint32_t index, float pixels)
                             .speed = 60000 + 11 * (int32_t)index,
                             .start_ticks = 7001 * (int64_t)index,
                             .loop = NOH_LOOP_REPEAT };
-    const noh_look look = { .pixels = pixels };
+    const noh_appearance look = { .pixels = pixels };
     noh_actor actor;
     noh_error e = { NOH_OK, "", 0, 0 };
-    if (noh_stage_spawn(c->stage, 0, &place, &actor, &e) || noh_actor_set_look(c->stage, actor, &look, &e) ||
+    if (noh_stage_spawn(c->stage, 0, &place, &actor, &e) || noh_actor_set_appearance(c->stage, actor, &look, &e) ||
         noh_actor_play(c->stage, actor, 0, noh_stage_name(c->stage, 0, NOH_NAME_CLIP, index % clips), &play, &e))
         return tool_fail_error("bench: actor", &e);
     return 0;
@@ -253,7 +253,8 @@ static void run_by_hand(void *self, uint32_t frame)
         (void)noh_character_step(ch, &k->set, FRAME_TICKS, NULL, NULL);
         scale = scale_of(h, i);
         if (scale <= 0.0f) continue;
-        if (noh_character_look(ch, &k->table, &stage->desc.lod, scale * k->actors[i].place.scale) != NOH_DUE_NOT) {
+        if (noh_character_select_lod(ch, &k->table, &stage->desc.lod, scale * k->actors[i].place.scale) !=
+            NOH_DUE_NOT) {
             noh_character_update(ch, &k->set, &k->skeleton, k->joint_radii, &h->scratch);
             noh_stage_measure_shown(stage, k, i, stage->jobs[0].matrices);
         }

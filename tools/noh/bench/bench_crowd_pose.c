@@ -78,7 +78,7 @@ static void run_lod(void *self, uint32_t frame)
         if (!w->seen) {
             continue;
         }
-        if (noh_character_look(ch, &w->table, &w->settings, c->scales[i]) != NOH_DUE_NOT) {
+        if (noh_character_select_lod(ch, &w->table, &w->settings, c->scales[i]) != NOH_DUE_NOT) {
             noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
         }
         c->shown = noh_character_palette(ch, c->palette, c->skeleton.joint_count);
@@ -281,7 +281,7 @@ static int check(crowd_work *w)
                             c->scratch.floats);
         noh_local_to_model(&c->skeleton, c->scratch.local, c->skeleton.joint_count, c->scratch.model);
         noh_model_to_palette(&c->skeleton, c->scratch.model, c->skeleton.joint_count, c->expected);
-        noh_character_look(ch, &w->table, &w->settings, 1e9f);
+        noh_character_select_lod(ch, &w->table, &w->settings, 1e9f);
         noh_character_update(ch, &c->set, &c->skeleton, NULL, &c->scratch);
         if (memcmp(noh_character_palette(ch, c->palette, c->skeleton.joint_count), c->expected, bytes) != 0) {
             return tool_fail("bench", "crowd/pose and full-rate give different poses");

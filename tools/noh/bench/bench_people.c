@@ -92,7 +92,7 @@ static int open_walkers(people *p, const pack_file *file)
     for (uint32_t i = 0; i < p->who.kind.actor_count; i++) {
         noh_actor actor;
         if (noh_stage_spawn(p->stage, 0, NULL, &actor, &error) ||
-            noh_walkers_put(p->walkers, i, p->stage, actor, i, NULL, &error)) {
+            noh_walkers_add(p->walkers, i, p->stage, actor, i, NULL, &error)) {
             return tool_fail_error(file->path, &error);
         }
     }

@@ -53,7 +53,7 @@ static void run_unpack(void *self, uint32_t frame)
     noh_wire *wire;
     (void)frame;
     b->failed |= noh_wire_init(b->state, noh_wire_size(), &desc, &wire, NULL) ||
-                 noh_wire_push(wire, b->wired.bytes, b->wired.count, NULL) || !noh_wire_whole(wire);
+                 noh_wire_push(wire, b->wired.bytes, b->wired.count, NULL) || !noh_wire_is_complete(wire);
 }
 
 static void run_copy(void *self, uint32_t frame)

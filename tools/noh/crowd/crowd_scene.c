@@ -106,7 +106,7 @@ static void aim_door(crowd_scene *s, uint32_t index)
         goal[0] = x < -half ? -half : x > half ? half : x;
         goal[1] = 0.5f;
     }
-    noh_crowd_aim(s->crowd, index, goal);
+    noh_crowd_set_goal(s->crowd, index, goal);
 }
 
 static uint32_t build_door(crowd_scene *s, noh_crowd_obstacle *walls)
@@ -138,7 +138,7 @@ static void aim_square(crowd_scene *s, uint32_t index)
 {
     if (!is_within(s, index, 1.0f)) return;
     const float to_x = s->extent * chance(s), goal[2] = { to_x, s->extent * chance(s) };
-    noh_crowd_aim(s->crowd, index, goal);
+    noh_crowd_set_goal(s->crowd, index, goal);
 }
 
 /* ---- shared by scenes with flow fields: agents walk from goal to goal ---- */
@@ -272,13 +272,13 @@ static void aim_stalls(crowd_scene *s, uint32_t index)
 {
     if (s->rest[index]) {
         if (--s->rest[index]) return;
-        noh_crowd_pace(s->crowd, index, s->kind->speed);
+        noh_crowd_set_speed(s->crowd, index, s->kind->speed);
         follow_another(s, index);
     } else if (s->field[index] == NO_FIELD) {
         follow_another(s, index);
     } else if (is_within(s, index, STALL_REACH)) {
         s->rest[index] = 150u + choice(s, 300u);
-        noh_crowd_pace(s->crowd, index, 0.0f);
+        noh_crowd_set_speed(s->crowd, index, 0.0f);
     }
 }
 
@@ -364,7 +364,7 @@ static int open_crowd(crowd_scene *s, const crowd_scene_options *o)
             { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f }, s->kind->radius, s->kind->speed, o->flags, i
         };
         s->kind->place(s, i, &a);
-        if (noh_crowd_put(s->crowd, i, &a, &error)) return tool_fail(s->kind->name, "%s", error.what);
+        if (noh_crowd_add(s->crowd, i, &a, &error)) return tool_fail(s->kind->name, "%s", error.what);
         s->now[i] = a;
         if (s->kind->fields) follow_another(s, i);
         (void)noh_crowd_agent_stepped(s->crowd, i, &s->now[i]);

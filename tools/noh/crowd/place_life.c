@@ -139,7 +139,7 @@ static void choose_goal(place_life *l, uint32_t index)
     if (!p->goal_count) {
         (void)find_room(l, 0, at);
         h->goal = NOH_NONE;
-        noh_crowd_aim(l->crowd, index, at);
+        noh_crowd_set_goal(l->crowd, index, at);
         return;
     }
     uint32_t goal = (uint32_t)(chance(l) * (float)p->goal_count);
@@ -148,7 +148,7 @@ static void choose_goal(place_life *l, uint32_t index)
     at[0] = p->goals[goal].at[0] + way * cosf(angle);
     at[1] = p->goals[goal].at[1] + way * sinf(angle);
     h->goal = goal;
-    noh_crowd_aim(l->crowd, index, at);
+    noh_crowd_set_goal(l->crowd, index, at);
     noh_crowd_follow(l->crowd, index, goal);
 }
 
@@ -170,7 +170,7 @@ static int enter(place_life *l, uint32_t index)
     a->radius = p->radius;
     a->speed = h->speed;
     a->id = index;
-    if (noh_crowd_put(l->crowd, index, a, &error)) return tool_fail("crowd", "%s", error.what);
+    if (noh_crowd_add(l->crowd, index, a, &error)) return tool_fail("crowd", "%s", error.what);
     for (uint32_t n = 0; n < NOH_SMART_NEEDS_MAX; n++) needs[n] = chance(l);
     if (l->smart) noh_smart_enter(l->smart, index, needs);
     choose_goal(l, index);
@@ -229,7 +229,7 @@ static void go_to_slot(place_life *l, uint32_t index, const noh_smart_use *use)
     const float *at = noh_smart_slot_at(l->smart, use->slot)->at;
     const uint32_t field = l->place->goal_count + use->object;
     const int is_near = distance(l->now[index].position, at) < NEAR_M || field >= l->fields;
-    noh_crowd_aim(l->crowd, index, at);
+    noh_crowd_set_goal(l->crowd, index, at);
     noh_crowd_follow(l->crowd, index, is_near ? NOH_NONE : field);
     l->people[index].goal = is_near ? NOH_NONE : field;
 }
@@ -241,9 +241,9 @@ static void act(place_life *l, uint32_t index, const noh_smart_use *use)
     if (use->phase == NOH_SMART_GOING) {
         go_to_slot(l, index, use);
     } else if (use->phase == NOH_SMART_ENTERING) {
-        noh_crowd_pace(l->crowd, index, 0.0f);
+        noh_crowd_set_speed(l->crowd, index, 0.0f);
     } else if (use->phase == NOH_SMART_FREE && h->phase >= NOH_SMART_GOING) {
-        noh_crowd_pace(l->crowd, index, h->speed);
+        noh_crowd_set_speed(l->crowd, index, h->speed);
         choose_goal(l, index);
     }
     h->phase = use->phase;
@@ -256,7 +256,7 @@ static void use(place_life *l, uint32_t index)
     noh_smart_use_of(l->smart, index, &u);
     if (u.phase == NOH_SMART_FREE) {
         const uint32_t need = noh_smart_most(l->smart, index, WANTS);
-        if (need != NOH_NONE) (void)noh_smart_ask(l->smart, index, need, at);
+        if (need != NOH_NONE) (void)noh_smart_request(l->smart, index, need, at);
     } else if (u.phase == NOH_SMART_GOING && distance(at, noh_smart_slot_at(l->smart, u.slot)->at) < THERE_M) {
         (void)noh_smart_arrive(l->smart, index);
         l->people[index].was_anywhere = 1;
@@ -335,7 +335,7 @@ void place_life_set_down(place_life *l, uint32_t index, int is_down)
     inhabitant *h = &l->people[index];
     if (is_down && !h->is_down && l->smart) (void)noh_smart_release(l->smart, index);
     if (!is_down && h->is_down) {
-        noh_crowd_pace(l->crowd, index, h->speed);
+        noh_crowd_set_speed(l->crowd, index, h->speed);
         choose_goal(l, index);
     }
     h->is_down = is_down != 0;

@@ -84,13 +84,13 @@ static float share_of(uint32_t person, uint32_t which)
     return (float)((x ^ (x >> 16)) >> 8) / 16777216.0f;
 }
 
-static noh_look look_of(uint32_t person)
+static noh_appearance look_of(uint32_t person)
 {
     static const uint8_t robes[][3] = { { 255, 255, 255 }, { 255, 208, 188 }, { 205, 220, 255 }, { 236, 244, 208 },
                                         { 255, 238, 188 }, { 228, 208, 255 }, { 186, 186, 192 }, { 255, 204, 220 } };
     const uint8_t *robe = robes[(uint32_t)(share_of(person, 0) * 8.0f)];
     const float shade = 0.6f + 0.4f * share_of(person, 1);
-    noh_look look;
+    noh_appearance look;
     memset(&look, 0, sizeof look);
     for (int i = 0; i < 3; i++) look.tint[i] = (uint8_t)(shade * (float)robe[i]);
     look.tint[3] = 255;
@@ -107,7 +107,7 @@ float place_scene_height(const place_file *place, const float at[2])
 static int enter(place_scene *s, uint32_t person)
 {
     static const char *const faces[] = { "smile", "surprise", "frown", "anger" };
-    const noh_look look = look_of(person);
+    const noh_appearance look = look_of(person);
     const float *at = place_life_agent(s->life, person)->position;
     noh_place place = { .rotation = { 0.0f, 0.0f, 0.0f, 1.0f }, .scale = 1.0f };
     const float turn = 6.2831853f * share_of(person, 2), heading[2] = { sinf(turn), cosf(turn) };
@@ -116,8 +116,9 @@ static int enter(place_scene *s, uint32_t person)
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_actor *a = &s->actors[person];
     place.position[1] = place_scene_height(s->place, at);
-    if (noh_stage_spawn(s->stage, PLACE_PEOPLE, &place, a, &error) || noh_actor_set_look(s->stage, *a, &look, &error) ||
-        noh_walkers_put(s->walkers, person, s->stage, *a, person, heading, &error)) {
+    if (noh_stage_spawn(s->stage, PLACE_PEOPLE, &place, a, &error) ||
+        noh_actor_set_appearance(s->stage, *a, &look, &error) ||
+        noh_walkers_add(s->walkers, person, s->stage, *a, person, heading, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
     if (shown != NOH_NONE) (void)noh_actor_hold_float(s->stage, *a, shown, share_of(person, 5), 1.0f, NULL);

@@ -280,12 +280,12 @@ static int open_actors(figure *f)
     return body && body->has_faces ? figure_live(f, SETTLE_S, 0.0) : 0; /* eyes take their time to turn */
 }
 
-int figure_set_look(figure *f, const noh_look *look)
+int figure_set_look(figure *f, const noh_appearance *look)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     f->look = *look;
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
-        if (noh_actor_set_look(f->stage, f->actors[k], &f->look, &error)) {
+        if (noh_actor_set_appearance(f->stage, f->actors[k], &f->look, &error)) {
             return tool_fail_error(f->desc.file->path, &error);
         }
     }
@@ -372,8 +372,8 @@ int figure_frame(figure *f, const noh_stage_view *views, uint32_t view_count)
 
 int figure_pose(figure *f)
 {
-    const noh_look own = f->look;
-    noh_look posed = own;
+    const noh_appearance own = f->look;
+    noh_appearance posed = own;
     int status;
     posed.posed = 1;
     status = figure_set_look(f, &posed);

@@ -97,7 +97,7 @@ typedef struct figure {
     uint32_t faces_found; /* a bit for each kind */
     drawn_hair hair;
     noh_modifier hair_parts[NOH_MODIFIERS_MAX]; /* of its kind: the others, then the hair */
-    uint32_t *nodes;                                /* of all kinds, one after another */
+    uint32_t *nodes;                            /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
     gpu *g; /* NULL: nothing is drawn */
@@ -117,7 +117,7 @@ typedef struct figure {
     float floor;           /* y of the ground where the body has none */
     noh_stage_view seen;   /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
-    noh_look look; /* of all actors */
+    noh_appearance look; /* of all actors */
 } figure;
 
 /* desc, stage_desc and plan alone.
@@ -161,7 +161,7 @@ uint32_t figure_triangles(const figure *f, uint32_t level);
 
 int figure_reset(figure *f);
 /* How all actors are drawn, from now on. */
-int figure_set_look(figure *f, const noh_look *look);
+int figure_set_look(figure *f, const noh_appearance *look);
 
 /* Play a clip, by every kind that has it. play: as noh_actor_play, but at once where fade_ticks is 0. An unknown name
  * is an error that suggests the nearest. */

@@ -63,8 +63,8 @@ static int turn_to(figure *f, double degrees)
 int figure_live(figure *f, double seconds, double turn)
 {
     const uint32_t step = NOH_TICKS_PER_SECOND / 60u;
-    const noh_look own = f->look;
-    noh_look posed = own;
+    const noh_appearance own = f->look;
+    noh_appearance posed = own;
     int64_t ticks = noh_ticks_from_seconds(seconds > 0.0 ? seconds : 0.0);
     noh_error error = { NOH_OK, "", 0, 0 };
     int status;

@@ -64,10 +64,10 @@ static int step_fall(const figure *f, noh_fall *fall, const float *impulse)
 
 int figure_fall(figure *f, const float impulse[3], double seconds)
 {
-    const noh_look own = f->look;
+    const noh_appearance own = f->look;
     const int steps = (int)(seconds * 60.0 + 0.5);
     noh_fall fall = { 0, 0, 0 };
-    noh_look posed = own;
+    noh_appearance posed = own;
     int status;
     posed.posed = 1;
     status = figure_set_look(f, &posed);

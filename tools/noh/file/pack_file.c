@@ -37,7 +37,7 @@ static int unpack(pack_file *file, const char *subject)
     }
     if (!result) result = noh_wire_init(memory, noh_wire_size(), &desc, &wire, &error);
     if (!result) result = noh_wire_push(wire, file->file.data, file->file.bytes, &error);
-    if (!result && !noh_wire_whole(wire)) {
+    if (!result && !noh_wire_is_complete(wire)) {
         result = noh_fail(&error, NOH_ERR_DATA, "the wire form was cut short", file->file.bytes, info.file_bytes);
     }
     free(memory);

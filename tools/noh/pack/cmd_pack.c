@@ -176,7 +176,7 @@ static int check_back(packing *p)
     if (!memory || !desc.block) {
         status = tool_fail(p->a->pack, "out of memory");
     } else if (noh_wire_init(memory, noh_wire_size(), &desc, &wire, &error) ||
-               noh_wire_push(wire, p->out.bytes, p->out.count, &error) || !noh_wire_whole(wire) ||
+               noh_wire_push(wire, p->out.bytes, p->out.count, &error) || !noh_wire_is_complete(wire) ||
                memcmp(desc.block, whole->bytes, whole->byte_count) != 0) {
         status = tool_fail(
             p->a->pack,

@@ -23,10 +23,10 @@ static uint32_t whole(float value, float most)
 
 static noh_result spawn(session_stage *s, const session_input *in, noh_error *error)
 {
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     const noh_place place = { { in->numbers[0], 0.0f, in->numbers[1] }, { 0.0f, in->numbers[2], 0.0f, 1.0f }, 1.0f };
     const noh_result result = noh_stage_spawn(s->stage, 0, &place, &s->actors[in->actor], error);
-    return result ? result : noh_actor_set_look(s->stage, s->actors[in->actor], &posed, error);
+    return result ? result : noh_actor_set_appearance(s->stage, s->actors[in->actor], &posed, error);
 }
 
 static noh_result play(session_stage *s, const session_input *in, noh_error *error)

@@ -16,7 +16,7 @@
 
 static const struct {
     const char *name;
-    noh_look look;
+    noh_appearance look;
 } rows[SHEET_WRINKLE_ROWS] = { { "without", { .smoothed = 255 } },
                                { "by area", { .wrinkle_models = NOH_WRINKLE_BY_AREA } },
                                { "by region", { .wrinkle_models = NOH_WRINKLE_BY_REGION } },

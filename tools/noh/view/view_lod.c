@@ -31,16 +31,16 @@ void view_lod_next(view_lod *d, const view_model *m)
 
 /* ---- a frame ---- */
 
-static void set_look(const figure *f, const noh_look *look)
+static void set_look(const figure *f, const noh_appearance *look)
 {
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
-        (void)noh_actor_set_look(f->stage, f->actors[k], look, NULL);
+        (void)noh_actor_set_appearance(f->stage, f->actors[k], look, NULL);
     }
 }
 
 void view_lod_look(const view_lod *d, const figure *f)
 {
-    noh_look look = { 0 };
+    noh_appearance look = { 0 };
     look.wrinkle_models = (uint8_t)d->wrinkle_models;
     look.smoothed = (uint8_t)(255.5f - 255.0f * d->wrinkles);
     if (d->by_pixels) {
@@ -53,7 +53,7 @@ void view_lod_look(const view_lod *d, const figure *f)
 
 void view_lod_begin(const view_lod *d, view_model *m)
 {
-    const noh_look posed = { .posed = 1 };
+    const noh_appearance posed = { .posed = 1 };
     if (m->show_bones) {
         set_look(m->figure, &posed);
     } else {
