@@ -98,7 +98,7 @@ static int crowd_row(void)
         agent.goal[0] = -agent.position[0];
         agent.goal[1] = -agent.position[1];
         agent.flags = i % 7u == 0 ? NOH_CROWD_ORCA : i % 11u == 0 ? NOH_CROWD_FLOCK : 0u;
-        (void)noh_crowd_put(crowd, i, &agent, NULL);
+        (void)noh_crowd_add(crowd, i, &agent, NULL);
     }
     for (uint32_t i = 0; i < CROWD_STEPS; i++) noh_crowd_step(crowd, NOH_CROWD_STEP_TICKS);
     printf("crowd %08x agents %08x\n", AGENTS, noh_crowd_hash(crowd));
