@@ -116,8 +116,8 @@ typedef struct noh_pack_graph {
 } noh_pack_graph;
 
 /* Get a graph by index and check it: as with compressed clips, noh_pack_open has only compared its checksum.
- * errors  NOT_FOUND index past the last graph (where: the index, need: the count); DATA a fault in the chunk (where: the
- *         byte in the pack). *graph is then unchanged */
+ * errors  NOT_FOUND index past the last graph (where: the index, need: the count); DATA a fault in the chunk (where:
+ *         the byte in the pack). *graph is then unchanged */
 noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_graph *graph, noh_error *error);
 
 /* Find a graph by name.

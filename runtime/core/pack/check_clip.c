@@ -1,5 +1,5 @@
-/* check_clip.c: the checker of clips. The compressed clip inside the chunk is checked by noh_clip_init when it is opened:
- * its bytes alone say whether they are right. */
+/* check_clip.c: the checker of clips. noh_clip_init checks the compressed clip inside the chunk when it opens it: the
+ * clip's bytes alone say whether they are right. */
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
