@@ -156,7 +156,7 @@ static void nodes_are_checked(void **state)
     refused(TWO "layer b walk run by=v mask=n\n", 8, "there is no mask 'n'");
     refused(TWO "space b walk 0 run by=v\n", 8, "the place of a node is missing");
     refused(TWO "space b walk 1 run 1 by=v\n", 8, "'run' is not above 'walk'");
-    refused(TWO "space b walk 1 1 run 1 1 by=v,v\n", 8, "two points are in one place");
+    refused(TWO "space b walk 1 1 run 1 1 by=v,v\n", 8, "two points are equal");
     refused(TWO "space b walk 1 1 run 1 by=v,v\n", 8, "the second coordinate of a node is missing");
     refused(TWO "select b walk run by=v\n", 8, "'v' must be an enum or an integer here");
     refused(TWO "select b walk run by=e fade=0.1 inertia=0.1\n", 8, "fade or inertia, not both");

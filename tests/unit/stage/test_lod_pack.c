@@ -415,9 +415,9 @@ static void bad_descs_are_named(void **state)
     assert_int_equal(noh_pack_mesh_at(&t.pack, 0, &other, NULL), NOH_OK); /* another skeleton moves it */
     desc = t.desc;
     desc.mesh = &other;
-    expect_bad(&desc, "mesh");
+    expect_bad(&desc, "the skeleton of the set");
     assert_int_equal(noh_pack_mesh_at(&t.clips, FOUR, &other, NULL), NOH_OK); /* of another pack */
-    expect_bad(&desc, "mesh");
+    expect_bad(&desc, "the skeleton of the set");
     close_table(&t);
 }
 
