@@ -1,6 +1,5 @@
-/* modules.h: what a kind of character may do beyond clips: faces that live, eyes and bodies that look, hands that reach,
- * feet that stand on the ground, ragdolls, springs, hair, and modifiers of your own. A kind names the modules it wants;
- * what it does not name takes no memory. */
+/* modules.h: what actors can do besides playing clips: live faces, gaze, reaching hands, feet on the ground, ragdolls,
+ * springs, hair, and modifiers that you write. A kind lists the modules that it uses; the others take no memory. */
 
 #ifndef NOH_MODULES_H
 #define NOH_MODULES_H
@@ -23,11 +22,10 @@ extern "C" {
  * Functions that change a pose between the clips and what is drawn: look at a point, put feet on the
  * ground, swing hair.
  *
- * A modifier is given the local pose and the floats that clips and graphs made, and changes them. A kind lists its
- * modifiers (noh_kind_desc.modifiers); they run in that order, each on what the one before left. What a modifier
- * remembers of an actor is state of the stage, of as many bytes as the modifier asks for: saved, restored, hashed and
- * forked with everything else. The game reads and writes the same bytes between frames (noh_actor_modifier): where to
- * look, what to fear.
+ * A modifier changes the local pose and the floats that clips and graphs have computed. A kind lists its modifiers in
+ * noh_kind_desc.modifiers. They run in that order, each on the result of the previous one. A modifier has state_bytes
+ * of state for each actor. The stage saves, restores, hashes and forks them with all other state. The game reads and
+ * writes the same bytes between frames with noh_actor_modifier, for example to set the point to look at.
  *
  *   typedef struct gaze { float target[3], turned; } gaze;
  *   static void look(noh_modifier_work *w) { gaze *g = w->state; ... w->local[head].rotation ... }
@@ -35,50 +33,51 @@ extern "C" {
  *   kind.modifiers = modifiers, kind.modifier_count = 1;
  *   ((gaze *)noh_actor_modifier(stage, actor, 0))->target[0] = 1.0f;
  *
- * A modifier runs in the jobs of a frame, on any thread, so it keeps a contract:
- *   - it reads the work, its own state and what `user` points to, and writes local, floats, state and scratch alone;
- *   - it calls no function of the stage but those below; the rest of the library's are fine where their own comments
- *     allow it;
- *   - its result depends on these alone: no clock, no address, no random numbers but those of its state. Then results
- *     have the same bits for any number of jobs, and after a restore.
- * It is called only where the actor is posed: not out of view, and at a distance less often than once a frame, for the
- * tick that the pose will be shown at. So it moves its state on by `ticks` as they come, not by frames; time that
- * passed out of view comes as one call with `cut`.
+ * A modifier runs in the jobs of a frame, on any thread. It must keep these rules:
+ *   - Read only the work, its own state and the data at `user`. Write only local, floats, state and scratch.
+ *   - Call no functions of the stage except the noh_modifier_ functions below. Other functions of the library are
+ *     allowed if their comments permit it on any thread.
+ *   - Compute results only from this input. Use no clock and no addresses, and keep random numbers in the state. Results
+ *     then have the same bits for any number of jobs, and after a restore.
+ * It is called only when the actor is posed: not out of view, and less than once a frame at a distance. The pose is for
+ * the tick at which it will be shown. Advance the state by `ticks`, not by frames. When an actor comes back into view,
+ * its first call has `cut` set.
  *
  * Threads: as above; noh_actor_modifier on the stage's thread, outside of steps and frames. */
 
-/* What a modifier is given. */
+/* Input and output of a modifier. */
 typedef struct noh_modifier_work {
     noh_actor actor;
     const noh_skeleton *skeleton; /* joint_count 0 in a kind without one */
     noh_transform *local;         /* [skeleton->joint_count] read and write; parents come before their children */
-    uint32_t joint_count;         /* the first so many were sampled at this detail; the others have the bind pose */
+    uint32_t joint_count;         /* joints sampled at this level, from the first; the others have the bind pose */
     uint32_t level;               /* of the actor, 0 the finest */
-    float pixels_per_metre; /* at the actor's nearest point; NOH_MODIFIER_FULL_DETAIL where all is shown in full */
-    noh_place place;        /* of the actor after the last step. Of one that hangs on another it is the other's:
-                                   * where the joint is, is not known yet */
-    int64_t clock;          /* tick of the stage's clock that the pose is for: the present one, or a later one */
-    uint32_t ticks;         /* since that of the pose before; 0 after a cut, or where that was for a later tick */
-    uint32_t cut;           /* 1: nothing to go on from: the actor is new, has leapt, or was out of view */
-    void *state;            /* [state_bytes] of this modifier and actor, aligned to 16; zeros when it is spawned */
-    void *scratch;          /* [scratch_bytes] of the job, aligned to 16; undefined */
+    float pixels_per_metre;       /* at the actor's nearest point; NOH_MODIFIER_FULL_DETAIL without LOD */
+    noh_place place; /* of the actor after the last step. For an attached actor: its parent's place, because
+                             * the parent's joint is not posed yet */
+    int64_t clock;   /* the pose's tick on the stage's clock: the current tick or a later one */
+    uint32_t ticks;  /* since the previous pose; 0 after a cut, or if the previous pose was for a later tick */
+    uint32_t cut;    /* 1: no previous pose to continue from: new, teleported, or was out of view */
+    void *state;     /* [state_bytes] of this modifier and actor, aligned to 16; zeros when it is spawned */
+    void *scratch;   /* [scratch_bytes] of the job, aligned to 16; undefined */
     const void *user;
     const struct noh_stage *stage; /* private, as are all below */
     const void *kind;
     float *floats, *model;
-    double home[3]; /* a point near the actor, and its place from there, which is exact far from the origin */
+    double home[3]; /* a point near the actor; near_place is relative to it, for precision far from the origin */
     float near_place[3];
-    float home_moved[3]; /* since the pose before: states count from `home`, and are less by so much */
+    float home_moved[3]; /* change of `home` since the previous pose; to be subtracted from state relative to it */
 } noh_modifier_work;
 
-/* Model-space matrices of all joints, as the local pose stands now: made anew by each call, and valid until the next
- * one or the end of the modifier. To get to the world multiply by that of the place.
+/* Get the model-space matrices of all joints for the current local pose. Each call computes them again; they are valid
+ * until the next call or the end of the modifier. Multiply by the matrix of `place` to get world matrices.
  * shapes   [skeleton->joint_count][12]
  * returns  NULL in a kind without a skeleton */
 const float *noh_modifier_model(noh_modifier_work *work);
 
-/* A float as it stands now, and a new value. Floats are counted as noh_stage_find does; one that takes its value from a
- * namesake is the namesake. In a pack without nodes whose kind has clips, weights of targets cannot be set: 0. */
+/* Get or set a float, by its index from noh_stage_find. Floats with the same name share one value.
+ * returns  of noh_modifier_set_float: 0 if the float cannot be set, as the weights of targets in a pack without nodes
+ *          whose kind has clips */
 float noh_modifier_float(const noh_modifier_work *work, uint32_t index);
 int noh_modifier_set_float(noh_modifier_work *work, uint32_t index, float value);
 
@@ -86,18 +85,19 @@ int noh_modifier_set_float(noh_modifier_work *work, uint32_t index, float value)
 typedef struct noh_modifier {
     const char *name; /* for messages; borrowed */
     void (*modify)(noh_modifier_work *work);
-    /* What is wrong with a state that comes from outside (noh_stage_set_state), a constant text; NULL: it is good.
-     * Without this function any bytes are good */
+    /* Check a state passed to noh_stage_set_state. Returns a string constant that describes the fault; NULL: valid.
+     * Without this function all bytes are valid */
     const char *(*check)(const void *user, const void *state);
-    const void *user;       /* for all of them; read by jobs at the same time; must outlive the stage */
+    const void *user;       /* shared by all actors; read by several jobs at once; must outlive the stage */
     uint32_t state_bytes;   /* of each actor */
     uint32_t scratch_bytes; /* of each job; modifiers of all kinds share it */
-    /* The world's origin moves by `by` (noh_stage_shift_origin): points of the world in a state become less by it */
+    /* noh_stage_shift_origin was called: subtract `by` from world points in the state */
     void (*shift)(const void *user, void *state, const float by[3]);
 } noh_modifier;
 
-/* The state of a modifier of an actor, to read and to write; modifier: its index in noh_kind_desc.modifiers. Valid
- * until the actor goes. NULL: the actor is gone, has no such modifier, or a frame has begun. */
+/* Get the state of an actor's modifier, to read and to write. Valid until the actor is despawned.
+ * modifier  index in noh_kind_desc.modifiers
+ * returns   NULL if the actor is gone or has no such modifier, or during a frame */
 void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier);
 
 /* ======== actor hair ========
@@ -108,8 +108,8 @@ void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier);
  *   noh_wig_points  where its control hairs are
  *   noh_wig_seen    where its head is, as it was shown
  *
- * Control hairs (low_life.h) are state of the stage like all that modifiers have (modules.h): planned, saved, forked and
- * hashed, with the same bits for any number of jobs. noh_gl.h draws them.
+ * Control hairs (low_life.h) are state of a modifier: the stage plans, saves, forks and hashes them, with the same bits
+ * for any number of jobs. noh_gl.h draws them.
  *
  * Threads: as modules.h. `wind` may be changed between frames. */
 
@@ -124,13 +124,15 @@ typedef struct noh_wig {
 noh_result noh_wig_make(const noh_haircut *cut, const noh_pack *pack, uint32_t skeleton, noh_wig *out,
                         noh_error *error);
 
-/* The modifier; the wig and its haircut must outlive the stage. Of each actor 16 bytes and those of noh_hair_size. */
+/* Get the modifier. The wig and its haircut must outlive the stage.
+ * memory  16 bytes and noh_hair_size, in each actor */
 noh_modifier noh_wig_modifier(const noh_wig *wig);
 
-/* shapes  state: of noh_actor_modifier; points[hair_count][point_count][3], head space; at rest where none was posed */
+/* shapes  state: of noh_actor_modifier; points[hair_count][point_count][3], head space; at rest if the actor was not
+ *         posed yet */
 void noh_wig_points(const noh_wig *wig, const void *state, float *points);
 
-/* Where the head of an actor is, as the last frame showed it.
+/* Get where the head of an actor was drawn in the last frame.
  * shapes   world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each view that sees
  *          it
  * returns  0 if it was not shown; nothing is written then */
@@ -206,14 +208,14 @@ const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
  *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
  *   kind.modifiers = modifiers, kind.modifier_count = 4;
  *
- * The order of modifiers is that of the frame: what looks comes before feet; hands and springs come after them.
- * The state is a noh_feet: planned, saved, restored, forked and hashed with the stage. The game moves places along the
- * ground as roughly as it likes, from step to step; bodies follow smoothly.
- * At a detail without the feet's joints, and without ground, poses stay as they are. An actor that hangs on another has
- * no place of its own that a modifier could know: its kind should have no such modifier.
+ * List gaze before feet, and hands and springs after them: feet move the body. The state is a noh_feet; the stage plans,
+ * saves, restores, forks and hashes it. The game may move places along the ground in coarse steps; bodies follow
+ * smoothly.
+ * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
+ * whose actors are attached to others: a modifier does not know their own place.
  * Threads: the ground is read by jobs at the same time. */
 
-/* What the feet of a kind have in common. */
+/* Data shared by the feet of a kind's actors. */
 typedef struct noh_kind_feet {
     noh_feet_rig rig; /* of the kind's skeleton */
     noh_ground ground;
@@ -223,32 +225,32 @@ typedef struct noh_kind_feet {
 noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
 
 /* ======== ragdolls of actors ========
- * Actors that fall.
+ * Actors that become ragdolls.
  *
- *   noh_ragdoll_module      for noh_kind_desc.ragdoll: how many actors of a kind may fall at once, and on what
+ *   noh_ragdoll_module      for noh_kind_desc.ragdoll: most ragdolls at once, and the world they collide with
  *   noh_actor_fall          turn an actor into a ragdoll
  *   noh_actor_hit           an impulse at a point; a standing actor falls
- *   noh_actor_get_up        back to its clips, from where it lies
- *   noh_actor_kill          it falls and stays down; noh_actor_revive
- *   noh_actor_hold_body     parts that its clips move, and joints with strength
- *   noh_actor_body          whether it stands, falls, lies or gets up
+ *   noh_actor_get_up        return to clips from where the actor lies
+ *   noh_actor_kill          the actor falls and stays down; noh_actor_revive
+ *   noh_actor_hold_body     bodies moved by clips, and joints with strength
+ *   noh_actor_body          whether the actor stands, falls, lies or gets up
  *
- * A falling actor starts in its last pose, at the velocities between that pose and the one before. Its clips play on,
- * but its bodies make the pose, and its place moves with the first body, so that it is seen, lit and heard where it
+ * A fall starts from the actor's last pose, with the velocities between its last two poses. Clips continue to play, but
+ * the bodies determine the pose. The actor's place follows its first body, so it is culled, lit and heard where it
  * lies. The bodies come from the pack's table (noh build --ragdoll) or from the names of its joints.
  *
- * Getting up: among clips that begin on the ground, the one whose pelvis lies most like the ragdoll's is played. The
- * place moves under it, on the ground, and the difference between the poses decays from the bodies' velocities.
+ * Getting up plays the clip whose first pose has a pelvis most like the ragdoll's. The actor's place moves to the
+ * pelvis, on the ground. The difference between the poses decays, starting with the bodies' velocities.
  *
- * It falls alike at any distance from the origin that a place can have: bodies are kept from an origin near to them.
- * What is inside an obstacle as it begins to fall comes out at NOH_PUSH_OUT_SPEED (body.h) and is not thrown.
+ * Precision does not depend on the distance from the origin: bodies are stored relative to a nearby origin. Bodies
+ * inside an obstacle at the start of a fall leave it at NOH_PUSH_OUT_SPEED (body.h), without an impulse.
  *
- * For one limp limb, hold all bodies, release the limb, and let the actor fall: the limb hangs from a body that clips
- * move. For a fall with strength, give joints a `hertz`: they turn towards the angles of the clips.
+ * For one limp limb, hold all bodies except those of the limb, then let the actor fall. For a fall with strength, set
+ * noh_body_hold.hertz: joints then turn towards the angles of the clips.
  *
- * All of it is part of the stage's state: 1,488 bytes an actor (NOH_ACTOR_RAGDOLL_BYTES), and 1,824 bytes for each that
- * falls at once; saved, restored, forked and hashed. Dolls are stepped by noh_stage_step, on its thread. Errors:
- * NOT_FOUND the actor is gone; ARG its kind has no ragdolls, or a value is out of range.
+ * Memory: 1,488 bytes for each actor (NOH_ACTOR_RAGDOLL_BYTES) and 1,824 bytes for each ragdoll at once, part of the
+ * stage's state: saved, restored, forked and hashed. noh_stage_step steps ragdolls on its own thread.
+ * errors   of all: NOT_FOUND the actor is gone; ARG its kind has no ragdolls, or a value is out of range
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 7; it leaves hand-over and getting up open */
 
 typedef struct noh_kind_ragdoll {
@@ -262,27 +264,27 @@ typedef struct noh_kind_ragdoll {
  * ragdoll  read by plans and by init. NULL: none */
 noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
 
-/* Let an actor fall; one that falls already is not changed.
- * errors  also ARG its place has a scale, or it hangs on another actor; LIMIT `count` actors of the kind are down */
+/* Turn an actor into a ragdoll. No effect if it is one already.
+ * errors  also ARG the actor's scale is not 1, or it is attached; LIMIT `count` actors of the kind are down */
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* Let an actor fall with a push.
- * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, of which much is
- *         spread over all bodies, up to a limit of about 40 m/s (noh_ragdoll_push)
+ * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, spread
+ *         over the bodies and limited to about 40 m/s (noh_ragdoll_push)
  * errors  as noh_actor_fall; also ARG not finite */
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                          noh_error *error);
 
 typedef struct noh_get_up {
-    const char *const *clips; /* [clip_count] that begin on the ground, such as one from the front and one from the
-                               * back; NULL: none, it returns to what plays */
+    const char *const *clips; /* [clip_count] names of clips that begin on the ground, such as one from the front and
+                               * one from the back; NULL: blend back to the clips that play */
     uint32_t clip_count;
-    uint32_t layer;       /* on which it is played, once, alone */
-    uint32_t blend_ticks; /* in which the ragdoll's pose becomes the clip's; default (0) 19,200: 0.4 s */
+    uint32_t layer;       /* layer that plays the clip, once, alone */
+    uint32_t blend_ticks; /* blend from the ragdoll's pose to the clip; default (0) 19,200: 0.4 s */
 } noh_get_up;
 
-/* Let an actor get up; one that stands is not changed. Its ragdoll becomes free. With noh_kind_desc.inertia, fingers
- * and other joints without a body follow as smoothly; without it they jump.
+/* Make an actor get up and free its ragdoll. No effect if it stands. Joints without a body, such as fingers, blend only
+ * with noh_kind_desc.inertia; without it they jump.
  * how      NULL: zeros
  * chosen   index in `clips`, NOH_NONE without; may be NULL
  * errors   also NOT_FOUND the kind has no such clip (where: which); ARG it is dead, or the layer; LIMIT as
@@ -290,21 +292,21 @@ typedef struct noh_get_up {
 noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *chosen,
                             noh_error *error);
 
-/* Let an actor fall; noh_actor_get_up then refuses it until it is revived. Its ragdoll becomes free once it lies still;
- * a hit takes one again.
+/* Turn an actor into a ragdoll that cannot get up until noh_actor_revive. Its ragdoll is freed once it lies still; a hit
+ * takes one again.
  * errors   as noh_actor_fall */
 noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error);
 noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error);
 
-/* How much clips move a body while its actor falls. All zeros: not at all, it is limp. */
+/* How much clips move a body of a falling actor. All zeros: limp. */
 typedef struct noh_body_hold {
-    uint32_t held;  /* 1: clips move it, whatever is in the way; for the first body: clips move the place, too */
+    uint32_t held;  /* 1: clips move it, through obstacles too; for the first body: clips also move the place */
     float hertz;    /* how fast the joint to its parent turns to the angle of the clips: 0 limp, 20 follows closely. A
                      * ragdoll with strength does not fall asleep */
-    float animated; /* 0..1: how much of its shown rotation is that of the clips */
+    float animated; /* 0..1: share of the clips in its shown rotation */
 } noh_body_hold;
 
-/* Set it for the body that begins at a joint, and for all below. It stays until it is set again.
+/* Set how clips move the body that begins at a joint, and all bodies below it, until it is set again.
  * errors  also ARG no body begins there or below (where: the joint) */
 noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint, const noh_body_hold *hold,
                                noh_error *error);
@@ -319,48 +321,51 @@ typedef enum noh_body_state {
 noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor);
 
 /* ======== pushes and falls ========
- * What most games do with actors that fall: push them, wait until they lie still, play the right clip for
- * getting up.
+ * What most games do with ragdolls: push actors, wait until they lie still, and play the right clip to get up.
  *
  *   noh_kind_can_fall   whether a kind can have ragdolls, or why not
  *   noh_push_away       a level push away from an eye
  *   noh_actor_push      at a point, or at the chest
- *   noh_actor_rise      get up by the clips named for it
- *   noh_fall_step       wait, and get up in time
- *   noh_fall_lasts      whether a fall is still under way
+ *   noh_actor_rise      get up with a clip chosen by its name
+ *   noh_fall_step       wait, then get up
+ *   noh_fall_lasts      whether a fall is still in progress
  *
- * A noh_fall is the game's, one for each actor that may fall, zeros at first; noh_fall_step comes before each step of
- * the stage. Errors are those of modules.h. Threads: as the stage. */
+ * Keep a noh_fall for each actor that may fall, zero at first, and call noh_fall_step before each step of the stage.
+ * errors   as the section on ragdolls of actors
+ * Threads: as the stage. */
 
-#define NOH_RISE_CLIPS "get_up"                                   /* how the names of clips for getting up begin */
-#define NOH_FALL_STAY_TICKS (NOH_TICKS_PER_SECOND / 5u)           /* it lies still for so long */
+#define NOH_RISE_CLIPS "get_up"                                   /* prefix of the names of clips for getting up */
+#define NOH_FALL_STAY_TICKS (NOH_TICKS_PER_SECOND / 5u)           /* time that it lies still */
 #define NOH_FALL_WAIT_TICKS (4u * (uint32_t)NOH_TICKS_PER_SECOND) /* then it gets up, at rest or not */
 
 typedef struct noh_fall {
-    uint32_t down_ticks, still_ticks; /* since it fell; since it has lain still */
+    uint32_t down_ticks, still_ticks; /* since the fall; since the actor came to rest */
     uint32_t rise_ticks;              /* until the clip for getting up ends; 0: none plays */
 } noh_fall;
 
-/* The bodies that a kind's ragdolls would have: of mesh and skeleton, and of the mass of `ragdoll` where that is given.
- * errors  NOT_FOUND, ARG, LIMIT: why it cannot fall */
+/* Get the bodies that a kind's ragdolls would have, from its mesh and skeleton, and the mass of `ragdoll` if it is set.
+ * errors  NOT_FOUND, ARG, LIMIT: why the kind cannot have ragdolls */
 noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, noh_error *error);
 
-/* shapes  eye[3], point[3]: of one world; impulse[3]: level, in the unit of `strength` (newton seconds). Zeros where
- * the point is straight above or below the eye */
+/* Get a horizontal impulse at a point, away from an eye.
+ * shapes  eye[3], point[3]: in one space; impulse[3]: level, in the unit of `strength` (newton seconds). Zeros if
+ *         the point is straight above or below the eye */
 void noh_push_away(const float eye[3], const float point[3], float strength, float impulse[3]);
 
-/* shapes  point[3] as noh_stage_pick finds it, in the world's units. NULL: its chest, three quarters of the way up from
- *         its place to its highest joint, which needs a pose
+/* Push an actor at a point, or at its chest, so that it falls.
+ * shapes  point[3] from noh_stage_pick, in the world's units. NULL: the chest, three quarters of the way up from the
+ *         actor's place to its highest joint; the actor must have been posed
  *         impulse[3] newton seconds */
 noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                           noh_error *error);
 
-/* noh_actor_get_up by the clips of its kind whose names begin with NOH_RISE_CLIPS; without any, back to what plays.
- * layer  on which the clip plays, once
- * ticks  until it is up; may be NULL */
+/* Call noh_actor_get_up with the kind's clips whose names begin with NOH_RISE_CLIPS. Without such clips, the actor
+ * blends back to the clips that play.
+ * layer  that plays the clip, once
+ * ticks  until the actor is up; may be NULL */
 noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t *ticks, noh_error *error);
 
-/* Call it before noh_stage_step, with the same ticks. An actor that has lain still for NOH_FALL_STAY_TICKS, or has been
+/* Call before noh_stage_step, with the same ticks. An actor that has lain still for NOH_FALL_STAY_TICKS, or has been
  * down for NOH_FALL_WAIT_TICKS, gets up. */
 noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t ticks,
                          noh_error *error);
@@ -369,87 +374,87 @@ noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint
 int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor);
 
 /* ======== springs ========
- * Springs of a kind: chains of its joints that swing as its actors move.
+ * Springs of a kind: chains of joints that swing as its actors move.
  *
- *   noh_springs_module                   for noh_kind_desc.springs: those of the mesh's pack (noh build --springs)
- *   noh_springs_of_pack                  what a pack has
- *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all actors that have it
+ *   noh_springs_module                   for noh_kind_desc.springs: the springs of the mesh's pack (noh build --springs)
+ *   noh_springs_of_pack                  get the springs of a pack
+ *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all its actors
  *   noh_springs_modifier                 the modifier that runs them, for noh_kind_desc.modifiers
  *
- * noh_springs_module is all that the springs of a pack need: the stage makes them, and runs them after everything else
- * that changes a pose. The other calls are for springs that the game describes itself.
+ * For the springs of a pack noh_springs_module is enough: the stage creates them and runs them after all other
+ * modifiers. The other calls are for springs described by the game.
  *
- * What swings is state of the stage, planned, saved, forked and hashed with all else, and has the same bits for any
- * number of jobs. Each chain is a spring of low_life.h, carried by the parent of its first joint as clips, faces and the
- * modifiers before have posed it. Clips that move a joint of a chain are overruled: its rest is the bind pose.
+ * The stage plans, saves, forks and hashes the state of springs. It has the same bits for any number of jobs. Each chain
+ * is a noh_spring (low_life.h), moved by the parent of its first joint as posed by clips, faces and earlier modifiers.
+ * Springs replace what clips do to the joints of a chain; chains rest in the bind pose.
  *
- * A chain that looks shorter than NOH_SPRINGS_FADE_PIXELS fades into its rest, and stands at rest, at no cost, from
- * half of that length down; it begins anew from rest, and fades in. All chains are at rest after a cut.
+ * A chain shorter than NOH_SPRINGS_FADE_PIXELS on the screen fades to its rest. Below half of that length it stays at
+ * rest and costs nothing. Larger again, it starts from rest and fades in. All chains are at rest after a cut.
  * Threads: noh_springs_init as any init; afterwards it is read only. */
 
-/* Rows, chains and capsules are those of format.h. All is read at init. */
+/* Rows, chains and capsules: see format.h. All are read at init. */
 typedef struct noh_springs_desc {
     noh_skeleton skeleton; /* of the kinds that use it */
     float metres;          /* of one unit of the skeleton: noh_skeleton_header.unit_cm / 100 */
     const noh_spring_row *rows;
     uint32_t row_count; /* 1..NOH_JOINTS_MAX */
     uint32_t chain_count;
-    const noh_spring_chain *chains; /* they come in this order: one that hangs on another behind it */
+    const noh_spring_chain *chains; /* simulated in this order: a chain attached to another comes after it */
     const noh_spring_capsule *colliders;
     uint32_t collider_count; /* 0..NOH_SPRING_COLLIDERS_MAX */
-    float restitution;       /* noh_spring_desc.restitution of all chains; 0 of a pack's */
+    float restitution;       /* noh_spring_desc.restitution of all chains; 0 for a pack's springs */
 } noh_springs_desc;
 
 typedef struct noh_springs noh_springs;
 
-/* For noh_kind_desc.springs: the springs that the mesh's pack has for the kind's skeleton swing. At no cost where the
- * pack has none. */
+/* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the pack
+ * has none. */
 noh_module noh_springs_module(void);
 
-/* What a pack has for one of its skeletons; it points into the pack.
- * returns  0: there are none, and *desc is untouched */
+/* Get the springs that a pack has for one of its skeletons. `desc` points into the pack.
+ * returns  0: the pack has none, and *desc is untouched */
 int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc);
 
-/* Bytes of each actor and of each job that their modifier will have; of a desc that noh_springs_init takes. */
+/* Get the state_bytes and scratch_bytes of the modifier, for a valid desc. */
 void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes);
 
-/* The modifier; the springs must outlive the stage. Of each actor: 4 bytes a chain rounded up to 16, and a noh_spring
- * each. The kind's skeleton is that of the desc: a kind with fewer joints is not swung. */
+/* Get the modifier. The springs must outlive the stage. The kind must have the desc's skeleton; springs do not move a
+ * kind with fewer joints.
+ * memory  in each actor: 4 bytes for each chain, rounded up to 16, and a noh_spring for each */
 noh_modifier noh_springs_modifier(const noh_springs *springs);
 
 /* ======== faces of actors ========
- * Faces of actors: they blink, look, feel, breathe, and are never still.
+ * Faces of actors: blinking, gaze, emotions, breathing, and small idle motion.
  *
- *   noh_face_module           for noh_kind_desc.face: one line makes a kind's actors alive
- *   noh_kind_find_eyes        where its eyes are, where no joints say so
+ *   noh_face_module           for noh_kind_desc.face: give a kind's actors live faces
+ *   noh_kind_find_eyes        find the eyes of a kind without eye joints
  *   noh_actor_look_at         a point of the world; noh_actor_look_at_actor: another actor's eyes
- *   noh_actor_set_emotion     an emotion by name: comes, holds and goes
+ *   noh_actor_set_emotion     an emotion by name, with onset, hold and fade
  *   noh_actor_set_activity    resting, talking, reading
- *   noh_actor_set_visemes     mouth shapes that come live, of an ear or a network
- *   noh_actor_set_face_flags  calm, or without one of the things that a face does by itself
- *   noh_actor_seed_face       another person
- *   noh_actor_set_identity    a person of face.h
- *   noh_actor_blink           now
- *   noh_actor_face            what shows
+ *   noh_actor_set_visemes     live mouth shapes, such as from a microphone or the network
+ *   noh_actor_set_face_flags  calm, or with some automatic motion turned off
+ *   noh_actor_seed_face       change the seed of automatic motion
+ *   noh_actor_set_identity    the facial shape of a person (face.h)
+ *   noh_actor_blink           blink now
+ *   noh_actor_face            get the current face
  *
- * A face moves what the kind has: morph targets by recipes (face.h), and joints of head, neck, chest and eyes by
- * name. It changes the pose before the modifiers of the game (modules.h) do: over what clips say, below floats that
- * are held. A clip of speech (noh speak) tells it how much of the mouth is taken, by its named floats "speech" and
- * "lips-shut": an emotion leaves the mouth as far as it says.
+ * A face moves morph targets by recipes (face.h), and joints of head, neck, chest and eyes by name, as far as the kind
+ * has them. It changes the pose after clips and before the game's modifiers; held floats override it. The named floats
+ * "speech" and "lips-shut" of a speech clip (noh speak) give the share of the mouth that speech uses; emotions leave
+ * that share alone.
  *
- * All of it is state of the stage: 336 bytes an actor (NOH_ACTOR_FACE_BYTES), saved, restored, forked and hashed. A
- * face out of view rests, and goes on when it is seen again. Errors: NOT_FOUND the actor is gone; ARG its kind has no
- * face, or a value is out of range. */
+ * Memory: 336 bytes for each actor (NOH_ACTOR_FACE_BYTES), part of the stage's state: saved, restored, forked and
+ * hashed. A face out of view pauses until it is visible again.
+ * errors  of all: NOT_FOUND the actor is gone; ARG its kind has no face, or a value is out of range */
 
-/* Zero is a good value for all where the kind has joints for its eyes. Strings and recipes are read at init. */
+/* Zero is a good value for all fields if the kind has eye joints. Strings and recipes are read at init. */
 typedef struct noh_kind_face {
-    /* `eyes`: their centres in model space at rest, whatever the joints; both zero: where the joints of the eyes are */
+    /* face.eyes: centres in model space at rest, used instead of eye joints; both zero: at the eye joints */
     noh_face_desc face;
-    const noh_face_recipe *const *recipes; /* [recipe_count] the best first; default (NULL) the pack's own, if it
-                                            * brings one, then the three built in */
+    const noh_face_recipe *const *recipes; /* [recipe_count] the best first; default (NULL) the pack's recipe, if
+                                            * any, then the three built-in recipes */
     uint32_t recipe_count;
-    /* Joints; default (NULL) looked for under the names that they usually have, "": none. Without a head the eyes turn
-     * alone */
+    /* Joint names; default (NULL) found by common names; "": none. Without a head joint only the eyes turn */
     const char *head, *neck, *chest, *eyes[2];
     uint32_t flags; /* NOH_FACE_* of new actors */
     noh_face_rules rules;
@@ -459,60 +464,60 @@ typedef struct noh_kind_face {
  * face  read by plans and by init. NULL: none */
 noh_module noh_face_module(const noh_kind_face *face);
 
-/* Where the eyes of a kind are at rest, for noh_kind_face.face.eyes: the joints of the eyes; without these behind what
- * its recipes blink with, or turn eyes with: the middle of what moves on each side, 0.19 of their distance further in.
- * kind     mesh, skeleton, nodes and face (none: as zeros) as a stage would be given them
- * scratch  [scratch_bytes] aligned to NOH_MEMORY_ALIGN, yours again afterwards; noh_kind_find_eyes_size tells how much
- * shapes   eyes: centres of the left and the right one, model space
- * errors   NOT_FOUND nothing tells: no face; ARG scratch is NULL or misaligned; MEMORY it is too small (need: its
- *          bytes). *eyes is then untouched */
+/* Find the eyes of a kind at rest, for noh_kind_face.face.eyes: at the eye joints, or without eye joints behind the
+ * vertices that its targets for blinking or gaze move, on each side. Depth behind these: 0.19 of the eyes' distance.
+ * kind     mesh, skeleton, nodes and face (NULL: zeros) as for a stage
+ * scratch  [scratch_bytes] at least noh_kind_find_eyes_size, aligned to NOH_MEMORY_ALIGN; not kept
+ * shapes   eyes: centres of the left and the right eye, model space
+ * errors   NOT_FOUND no eye joints and no targets for blinking or gaze; ARG scratch is NULL or misaligned; MEMORY
+ *          scratch is too small (need: bytes). eyes are then untouched */
 noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t scratch_bytes, float eyes[2][3],
                               noh_error *error);
 size_t noh_kind_find_eyes_size(const noh_kind_desc *kind);
 
-/* Look at a point from now on, wherever the actor goes.
+/* Make an actor look at a fixed point, also while it moves.
  * point  world; NULL: ahead
  * errors also ARG not finite */
 noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float point[3], noh_error *error);
 
-/* Look between the eyes of another one, or at the middle of one without a face, where they are as it stands at rest in
- * its place. Once it is gone: ahead. */
+/* Make an actor look between another actor's eyes, or at its middle if it has no face. The other actor's rest pose in
+ * its place is used. The actor looks ahead once the other is gone. */
 noh_result noh_actor_look_at_actor(noh_stage *stage, noh_actor actor, noh_actor other, noh_error *error);
 
-/* emotion  "joy", "sadness", "surprise", "fear", "anger", "disgust", "contempt"; all else as noh_face_set_emotion */
+/* emotion  "joy", "sadness", "surprise", "fear", "anger", "disgust", "contempt"; the rest as noh_face_set_emotion */
 noh_result noh_actor_set_emotion(noh_stage *stage, noh_actor actor, const char *emotion, float amount,
                                  uint32_t onset_ticks, uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error);
 
 noh_result noh_actor_set_activity(noh_stage *stage, noh_actor actor, noh_activity activity, noh_error *error);
 
-/* From now on, beside what clips say.
- * shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: says nothing */
+/* Set live mouth shapes, until set again. They add to the speech of clips.
+ * shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: none */
 noh_result noh_actor_set_visemes(noh_stage *stage, noh_actor actor, const float *visemes, noh_error *error);
 
 noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t flags, noh_error *error);
 
-/* A new face by this seed, which looks ahead and feels nothing. A new actor's seed is its id. */
+/* Start the face again with this seed, looking ahead and without emotion. A new actor's seed is its id. */
 noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed, noh_error *error);
 
-/* Make the actor a person: its floats of the identity's targets are held (noh_actor_hold_float) at these weights, and
- * its blinks shut this person's lids. Costs as many held floats as weights are not 0.
- * shapes  mesh that the identity was made of, of the kind's pack; weights[target_count] of noh_identity_random; NULL:
- *         the mesh's own face again
- * errors  also NOT_FOUND the kind has no float of a target's name; LIMIT held_float_count is too small (need: it). The
- *         actor is then as it was */
+/* Give an actor the face of a person: hold the floats of the identity's targets (noh_actor_hold_float) at these weights,
+ * and adapt blinks to the lids. Takes a held float for each weight that is not 0.
+ * mesh    of the kind's pack, as used to make the identity
+ * shapes  weights[target_count] of noh_identity_random; NULL: back to the mesh's own face
+ * errors  also NOT_FOUND the kind has no float with a target's name; LIMIT held_float_count is too small (need: the
+ *         count). The actor is then unchanged */
 noh_result noh_actor_set_identity(noh_stage *stage, noh_actor actor, const noh_identity *identity, const noh_mesh *mesh,
                                   const float *weights, noh_error *error);
 
 noh_result noh_actor_blink(noh_stage *stage, noh_actor actor, noh_error *error);
 
-/* As it is now. */
+/* Get the current face. */
 noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose *pose, noh_error *error);
 
 /* ======== gaze and reach of actors ========
  * Actors that look at points and reach for them.
  *
  *   noh_gaze_modifier    a modifier of a kind (modules.h) that turns spine, neck, head and eyes
- *   noh_reach_modifier   one that puts hands on points
+ *   noh_reach_modifier   a modifier that puts hands on points
  *
  *   noh_gaze_rig_make(&pack, 0, &gaze.rig, &error);
  *   const noh_modifier modifiers[] = { noh_gaze_modifier(&gaze), noh_feet_modifier(&feet),
@@ -520,21 +525,20 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
  *   noh_gaze *g = noh_actor_modifier(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;
  *   noh_reach *r = noh_actor_modifier(stage, actor, 2);     r->hands[0].point[1] = 1.0f, r->hands[0].wants = 1;
  *
- * Points are the world's: the game sets them whenever they move. What looks comes before feet, hands come after them,
- * because feet move the body. States are a noh_gaze and a noh_reach: planned, saved, restored, forked and hashed with
- * the stage.
+ * Points are in the world; the game sets them when they move. List gaze before feet and reach after them: feet move the
+ * body. States are a noh_gaze and a noh_reach; the stage plans, saves, restores, forks and hashes them.
  *
- * In a kind with a face the gaze modifier leaves poses alone: head and eyes are the face's (noh_actor_look_at). At a
- * detail without the rig's joints poses stay as they are. An actor that hangs on another has no place of its own that a
- * modifier could know: its kind should have no such modifier. */
+ * In a kind with a face the gaze modifier does nothing: the face turns head and eyes (noh_actor_look_at). The pose is
+ * unchanged at a LOD level without the rig's joints. Do not use these modifiers in a kind whose actors are attached to
+ * others: a modifier does not know their own place. */
 
-/* What the gazes of a kind have in common. */
+/* Data shared by the gaze of a kind's actors. */
 typedef struct noh_kind_gaze {
     noh_gaze_rig rig;      /* of the kind's skeleton */
     noh_ik_look_desc head; /* zeros: as in body.h */
 } noh_kind_gaze;
 
-/* They must outlive the stage. */
+/* gaze, rig  must outlive the stage */
 noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze);
 noh_modifier noh_reach_modifier(const noh_reach_rig *rig);
 
