@@ -18,7 +18,7 @@ extern "C" {
  * How the library reports errors.
  *
  * Bad data, too little memory, missing capabilities and driver errors are reported as a noh_result; outputs are then
- * untouched. A caller's bug (a NULL that is not allowed, an index past a count) is an assert: assert.h.
+ * untouched. A caller's bug (a NULL that is not allowed, an index past a count) fails an assertion.
  * Threads: no state; any thread. */
 
 /* A check at compile time that works in C99. */

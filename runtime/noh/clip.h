@@ -223,7 +223,7 @@ typedef struct noh_change_desc {
  * Timing does not depend on how time is split into steps:
  *   - noh_controller_step advances time from event to event;
  *   - keys are delivered exactly once, ordered by the tick at which play passes them, then track, direction of play and
- *     index (events.h has the definition). An event's tick is the first tick by whose end its key was passed;
+ *     index. An event's tick is the first tick by whose end its key was passed;
  *   - the callback may change the controller. The change takes effect at the event's tick, in the same step: a track
  *     started by an event at tick n is at its start position at n, and its own keys fire from n + 1 on. Keys of other
  *     tracks passed at tick n are still delivered, with the weights their tracks had at n. The callback may call every

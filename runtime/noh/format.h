@@ -26,10 +26,9 @@ extern "C" {
 
 #define NOH_FOURCC(a, b, c, d) ((uint32_t)(a) | ((uint32_t)(b) << 8) | ((uint32_t)(c) << 16) | ((uint32_t)(d) << 24))
 
-/* Every type of chunk, in the order in which they come in a pack, so that no chunk refers to a later one. This list is
- * all that the reader, the checkers and the converter know of the types: to add one, see the guide, add_a_chunk.md.
- * X(NAME, name, tag, many): many is 1 where a pack may have several; name is that of the checker, noh_check_name in
- * pack/check_name.c */
+/* All types of chunks, in their order in a pack: no chunk refers to a later one. The reader, the checkers and the
+ * converter use this list; the guide explains how to add a type.
+ * X(NAME, name, tag, many): many is 1 if a pack may have several; the checker is noh_check_ and the name */
 #define NOH_CHUNKS(X)                                            \
     X(STRINGS, strings, NOH_FOURCC('S', 'T', 'R', 'S'), 0)       \
     X(TEXTURE, texture, NOH_FOURCC('T', 'X', 'T', 'R'), 1)       \
@@ -555,8 +554,8 @@ typedef struct noh_springs_header {
     uint32_t reserved[4];
 } noh_springs_header;
 
-/* ---- CHUNK_HAIR, none or one: header, points, patches, spheres. A haircut for low_life.h. Head space is model space in
- * the bind pose, in metres, moving with the joint. Libraries older than this chunk refuse a pack with it (unknown
+/* ---- CHUNK_HAIR, none or one: header, points, patches, spheres. A haircut for low_life.h. Head space is model space
+ * in the bind pose, in metres, moving with the joint. Libraries older than this chunk refuse a pack with it (unknown
  * type). ---- */
 
 typedef struct noh_pack_hair_header {
@@ -596,9 +595,9 @@ typedef struct noh_pack_terrain_header {
 } noh_pack_terrain_header;
 NOH_STATIC_ASSERT(sizeof(noh_pack_terrain_header) == 48, pack_terrain_header);
 
-/* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph (low_motion.h) whose nodes, parameters,
- * clips and joints have names; graph.h checks it and binds it to clips and a skeleton when it is opened. Kinds,
- * conditions, curves, loops and flags are constants of low_motion.h, clip.h and low_motion.h. ---- */
+/* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph (low_motion.h) whose nodes,
+ * parameters, clips and joints have names; graph.h checks it and binds it to clips and a skeleton when it is opened.
+ * Kinds, conditions, curves, loops and flags are constants of low_motion.h, clip.h and low_motion.h. ---- */
 
 #define NOH_PACK_GRAPH_NONE 0xffffu
 

@@ -250,8 +250,8 @@ typedef struct noh_gl_api {
     int etc2;         /* 1: the context supports ETC2 and EAC textures, as OpenGL ES does, desktop GL from 4.3 or with
                        * GL_ARB_ES3_compatibility, and WebGL 2 with WEBGL_compressed_texture_etc */
 
-    /* Decoder for contexts without ETC2. NULL after noh_gl_api_load: set it to noh_etc2_decode (low_core.h) before making
-     * textures; otherwise the decoder is not linked. */
+    /* Decoder for contexts without ETC2. NULL after noh_gl_api_load: set it to noh_etc2_decode (low_core.h) before
+     * making textures; otherwise the decoder is not linked. */
     void (*decode)(uint32_t format, const uint8_t *blocks, uint32_t count, uint8_t *texels);
 } noh_gl_api;
 
@@ -500,7 +500,7 @@ const char *noh_gl_shader_text(const char *name);
 
 /* Render state that draws change; only the fields in `kept` are valid. */
 typedef struct noh_gl_raster {
-    uint16_t kept, enabled; /* bits of gl_state.c */
+    uint16_t kept, enabled; /* private bits */
     uint16_t depth_func, front_face;
     uint16_t blend[6];              /* source and destination of colour, of alpha; equation of both */
     uint8_t color_mask, depth_mask; /* bit c: channel c */

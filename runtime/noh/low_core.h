@@ -208,8 +208,8 @@ uint32_t noh_mesh_influences(const noh_mesh *mesh, uint32_t vertex, uint32_t joi
  *   noh_etc2_decode   a row of blocks to texels
  *   noh_eac_decode    one channel of a block
  *
- * For contexts without ETC2 (desktop GL below 4.3, WebGL 2 on most desktops), renderers on the CPU, and rays (deform.h),
- * which read alpha. A program that uses none of these does not link the decoders.
+ * For contexts without ETC2 (desktop GL below 4.3, WebGL 2 on most desktops), renderers on the CPU, and rays
+ * (deform.h), which read alpha. A program that uses none of these does not link the decoders.
  *
  * Threads: no state; any thread. */
 

@@ -43,7 +43,8 @@ const char *noh_gl_geometry_defines(const noh_gl_api *api);
  *
  * Threads: the context's own thread, for every function. */
 
-/* Label an object "what of", or "what" if `of` is NULL or "". The label is cut to NOH_GL_LABEL_BYTES.
+/* Label an object with `what` and `of`, separated by a space, or with `what` alone if `of` is NULL or "". The label is
+ * cut to NOH_GL_LABEL_BYTES.
  * kind  GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or GL_RENDERBUFFER
  * name  the object, which must have been bound at least once */
 void noh_gl_label(const noh_gl_api *api, unsigned kind, unsigned name, const char *what, const char *of);
@@ -173,8 +174,8 @@ typedef struct noh_gl_program_desc {
 
 /* Compile, link and label a program. Leaves program 0 in use; `program` is untouched on error.
  * log     [log_bytes], NULL with 0: no log. Empty on success, otherwise "NAME: STAGE: " and the driver's log, cut to
- *         fit and always zero-terminated. For the library's shaders, comments in shaders.gen.c explain its source
- *         numbers
+ *         fit and always zero-terminated. For the library's shaders, comments in their generated source
+ *         explain its source numbers
  * memory  none
  * errors  ARG a stage is missing or has too many pieces; DATA a stage does not compile or link (`what` names it; where:
  *         the GL stage, 0: linking), or it reads an input that is not in `inputs` (where: the location); GL, MEMORY the
@@ -403,8 +404,8 @@ void noh_gl_morph_delete(noh_gl_morph *morph);
 /* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
 void noh_gl_morph_forget(noh_gl_morph *morph);
 
-/* Make the GL objects again in a new context (gl_device.h). Weights stay; the next noh_gl_morph_update accumulates every
- * instance. `log` as in noh_gl_program_create.
+/* Make the GL objects again in a new context (gl_device.h). Weights stay; the next noh_gl_morph_update accumulates
+ * every instance. `log` as in noh_gl_program_create.
  * errors  GL, MEMORY, DATA as noh_gl_morph_init; it then has no GL objects, and restore may be called again */
 noh_result noh_gl_morph_restore(noh_gl_morph *morph, char *log, size_t log_bytes, noh_error *error);
 

@@ -554,8 +554,8 @@ void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleto
  *   noh_spring_ends                    ends of the joints
  *   noh_spring_check                   check a spring from outside
  *
- * Each joint's end is a point with inertia, pulled towards its rest direction, at a fixed distance from the joint. The
- * motion is that of the reference implementation of VRMC_springBone 1.0 at 60 Hz, at any frame rate: the chain advances
+ * Each joint's end is a point with inertia, pulled towards its rest direction, at a fixed distance from the joint. At
+ * any frame rate it moves like the reference implementation of VRMC_springBone 1.0 at 60 Hz: the chain advances
  * in steps of 1/60 s, with carrier and colliders interpolated, and the result is interpolated between the last two
  * steps. The reference itself settles in 0.37 to 1.33 s as frame rates change from 15 to 240 Hz, because its drag is
  * per frame.
@@ -649,9 +649,9 @@ void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, floa
  *   noh_gaze_init       look ahead
  *   noh_gaze_step       turn a pose: within a cone, at a limited speed
  *
- * The head turns as in body.h (noh_ik_look_step): towards a target outside its cone as far as it can. Spine and neck take
- * their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter of
- * the angle themselves. Animation of eye joints in clips is overwritten.
+ * The head turns as in body.h (noh_ik_look_step): towards a target outside its cone as far as it can. Spine and neck
+ * take their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter
+ * of the angle themselves. Animation of eye joints in clips is overwritten.
  *
  * For bodies without an animated face: faces (face.h, modules.h) have their own gaze.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 11, "Look-At Inverse Kinematics", which turns
@@ -662,7 +662,7 @@ void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, floa
  * of the spine have no legs below them. The body must face +z in the bind pose. Without eye joints, the eyes are at the
  * middle of the head's skin.
  * pack     joint names, and skinned meshes of that skeleton
- * errors   NOT_FOUND no joint's name contains 'head', or as noh_pack_skeleton_at */
+ * errors   NOT_FOUND no joint has a name that contains 'head', or as noh_pack_skeleton_at */
 noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error);
 
 /* The state of a gaze. A copy continues identically; zeros look ahead. */
@@ -702,7 +702,7 @@ void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_de
 noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *rig, noh_error *error);
 
 typedef struct noh_reach_hand {
-    float point[3]; /* for callers that store the target here (stage/stage_reach.h); unused by noh_reach_step */
+    float point[3]; /* for callers that store the target here; unused by noh_reach_step */
     float part;     /* 0..1 fraction of the time to reach, before easing */
     uint32_t wants; /* 1: it reaches, while set */
     uint32_t unused[3];

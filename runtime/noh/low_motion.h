@@ -234,7 +234,7 @@ void noh_event_queue_clear(noh_event_queue *queue);
  *            step size = 2^(NOH_CLIP_STEP_TOP - id / 4)
  *   32 + 1   wild rotations: unit quaternion of width 10, then a sign bit
  *   last     symbol: number of frequencies, 0..frames of the segment, or 0..frames / 2 if it is split
- *   triples  frequencies last - 1 down to 1, all three components at once; see clip_coefs_internal.h
+ *   triples  frequencies last - 1 down to 1, all three components at once
  *   dc       frequency 0: per component a category symbol, then bits and sign
  * The high part of a split segment has the frequencies from frames / 2 up of each track that is not raw: their number,
  * as a symbol like `last`, then triples down to frames / 2. Playback of half of the frames skips it.
@@ -245,7 +245,7 @@ void noh_event_queue_clear(noh_event_queue *queue);
  *
  * Threads: constants. */
 
-#define NOH_CLIP_VERSION 5u /* raised for new tables too: clip_tables.c is part of the format */
+#define NOH_CLIP_VERSION 5u /* also raised for new coding tables: they are part of the format */
 
 #define NOH_CLIP_FLAG_WIDE 1u  /* cache rotations as floats: 16 bits are too few for some joint's lever */
 #define NOH_CLIP_FLAG_SCALE 2u /* some joint's scale differs from its bind pose */
@@ -504,7 +504,7 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
  *   MASK      b over a where the mask allows, by t
  *   SPACE_1D, SPACE_2D   see low_motion.h
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch immediately and let the difference decay
- *             (inertial_internal.h)
+ *             (inertialization)
  *   SELECT    the child whose number a parameter holds; a change cross-fades, or switches by inertia
  *   ONE_SHOT  b plays once over a, where the mask allows, each time a parameter triggers it
  * t, x and y are parameters of the instance, or constants. A clip that animates no joints, or no floats, leaves them to

@@ -115,7 +115,7 @@ void noh_lod_set_mesh(noh_lod *d, const noh_lod_table *table, uint32_t level, fl
  * not fade. */
 void noh_lod_cut(noh_lod *d);
 
-/* From the next choice on, take no finer mesh level than this one, because finer ones have no memory (lod_pools.h). 0:
+/* From the next choice on, take no finer mesh level than this one, because finer ones have no memory. 0:
  * no limit. mesh_wanted is still the level within the quality setting; error_m is for the level shown. */
 void noh_lod_set_limit(noh_lod *d, uint32_t level);
 
@@ -209,7 +209,7 @@ typedef struct noh_time_probe {
  *   due = noh_character_select_lod(ch, table, settings, scale)      characters in view: chooses LOD levels
  *   noh_character_update(ch, set, skeleton, radii, &scratch)  characters that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    drawn characters: skinning matrices (low_stage.h)
- * A scheduler can spread updates within a time budget (scheduler.h). Change tracks through noh_character_controller,
+ * A scheduler can spread updates within a time budget. Change tracks through noh_character_controller,
  * then call noh_character_wake. After a memcpy, give the copy its own update phase with noh_character_set_instance.
  *
  * Bytes: 160 for the head, plus the controller (clip.h), plus two poses of 48 per joint and 4 per float, each
@@ -350,7 +350,7 @@ size_t noh_lod_pack_size(const noh_lod_pack_desc *desc);
  *
  * A clip built without a mesh has errors of points at a shell distance from the joints. For a mesh with larger radii
  * they are scaled up in proportion: safe, but several times too high. Build clips together with their mesh (noh build
- * BODY MOVES, also with --only anim), or measure them at load time (joint_lod.h, low_stage.h).
+ * BODY MOVES, also with --only anim), or measure them at load time.
  *
  * A clip built with its mesh has exact errors of a few hundred vertices at each update rate; vertices between them may
  * have slightly larger errors (noh_time_lod_points_measure). These errors assume that the set extracts root motion: the

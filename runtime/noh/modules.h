@@ -37,8 +37,8 @@ extern "C" {
  *   - Read only the work, its own state and the data at `user`. Write only local, floats, state and scratch.
  *   - Call no functions of the stage except the noh_modifier_ functions below. Other functions of the library are
  *     allowed if their comments permit it on any thread.
- *   - Compute results only from this input. Use no clock and no addresses, and keep random numbers in the state. Results
- *     then have the same bits for any number of jobs, and after a restore.
+ *   - Compute results only from this input. Use no clock and no addresses, and keep random numbers in the state.
+ *     Results then have the same bits for any number of jobs, and after a restore.
  * It is called only when the actor is posed: not out of view, and less than once a frame at a distance. The pose is for
  * the tick at which it will be shown. Advance the state by `ticks`, not by frames. When an actor comes back into view,
  * its first call has `cut` set.
@@ -208,8 +208,8 @@ const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
  *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
  *   kind.modifiers = modifiers, kind.modifier_count = 4;
  *
- * List gaze before feet, and hands and springs after them: feet move the body. The state is a noh_feet; the stage plans,
- * saves, restores, forks and hashes it. The game may move places along the ground in coarse steps; bodies follow
+ * List gaze before feet, and hands and springs after them: feet move the body. The state is a noh_feet; the stage
+ * plans, saves, restores, forks and hashes it. The game may move places along the ground in coarse steps; bodies follow
  * smoothly.
  * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
  * whose actors are attached to others: a modifier does not know their own place.
@@ -245,7 +245,7 @@ noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
  * Precision does not depend on the distance from the origin: bodies are stored relative to a nearby origin. Bodies
  * inside an obstacle at the start of a fall leave it at NOH_PUSH_OUT_SPEED (body.h), without an impulse.
  *
- * For one limp limb, hold all bodies except those of the limb, then let the actor fall. For a fall with strength, set
+ * For one limp limb, hold all bodies except the limb's, then let the actor fall. For a fall with strength, set
  * noh_body_hold.hertz: joints then turn towards the angles of the clips.
  *
  * Memory: 1,488 bytes for each actor (NOH_ACTOR_RAGDOLL_BYTES) and 1,824 bytes for each ragdoll at once, part of the
@@ -292,8 +292,8 @@ typedef struct noh_get_up {
 noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *chosen,
                             noh_error *error);
 
-/* Turn an actor into a ragdoll that cannot get up until noh_actor_revive. Its ragdoll is freed once it lies still; a hit
- * takes one again.
+/* Turn an actor into a ragdoll that cannot get up until noh_actor_revive. Its ragdoll is freed once it lies still; a
+ * hit takes one again.
  * errors   as noh_actor_fall */
 noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error);
 noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error);
@@ -376,7 +376,7 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 /* ======== springs ========
  * Springs of a kind: chains of joints that swing as its actors move.
  *
- *   noh_springs_module                   for noh_kind_desc.springs: the springs of the mesh's pack (noh build --springs)
+ *   noh_springs_module                   for noh_kind_desc.springs: the springs of the pack (noh build --springs)
  *   noh_springs_of_pack                  get the springs of a pack
  *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all its actors
  *   noh_springs_modifier                 the modifier that runs them, for noh_kind_desc.modifiers
@@ -384,7 +384,7 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
  * For the springs of a pack noh_springs_module is enough: the stage creates them and runs them after all other
  * modifiers. The other calls are for springs described by the game.
  *
- * The stage plans, saves, forks and hashes the state of springs. It has the same bits for any number of jobs. Each chain
+ * The stage plans, saves, forks and hashes the state of springs. It has the same bits for any number of jobs. A chain
  * is a noh_spring (low_life.h), moved by the parent of its first joint as posed by clips, faces and earlier modifiers.
  * Springs replace what clips do to the joints of a chain; chains rest in the bind pose.
  *
@@ -407,8 +407,8 @@ typedef struct noh_springs_desc {
 
 typedef struct noh_springs noh_springs;
 
-/* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the pack
- * has none. */
+/* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the
+ * pack has none. */
 noh_module noh_springs_module(void);
 
 /* Get the springs that a pack has for one of its skeletons. `desc` points into the pack.
@@ -499,8 +499,8 @@ noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t 
 /* Start the face again with this seed, looking ahead and without emotion. A new actor's seed is its id. */
 noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed, noh_error *error);
 
-/* Give an actor the face of a person: hold the floats of the identity's targets (noh_actor_hold_float) at these weights,
- * and adapt blinks to the lids. Takes a held float for each weight that is not 0.
+/* Give an actor the face of a person: hold the floats of the identity's targets (noh_actor_hold_float) at these
+ * weights, and adapt blinks to the lids. Takes a held float for each weight that is not 0.
  * mesh    of the kind's pack, as used to make the identity
  * shapes  weights[target_count] of noh_identity_random; NULL: back to the mesh's own face
  * errors  also NOT_FOUND the kind has no float with a target's name; LIMIT held_float_count is too small (need: the

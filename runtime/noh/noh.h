@@ -183,8 +183,8 @@ typedef struct noh_kind_desc {
     /* What changes its poses before they are shown (modules.h), in this order; default (NULL) nothing, at no cost */
     const struct noh_modifier *modifiers; /* [modifier_count] what they point to must outlive the stage */
     uint32_t modifier_count;              /* 0..NOH_MODIFIERS_MAX */
-    int weight_rules;                     /* 1: how far its targets go, and which exclude each other, is kept as the
-                                         * mesh's pack tells it (low_life.h), whoever says the weights */
+    int weight_rules;                     /* 1: apply the weight rules of the mesh's pack (low_life.h) to all weights:
+                                         * ranges of targets, and targets that exclude each other */
     uint32_t change_count;                /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * 0 */

@@ -153,7 +153,7 @@ typedef enum noh_accumulate {
 
 /* Costs compared by `auto`, for one update of one instance of each mesh with the expected share of its targets active.
  * The unit is a texel blended into three layers of RGBA32F; paths that cannot run here also have a cost. Factors were
- * measured on a software rasteriser and one GPU (gl_morph_cost.c); noh_gl_morph_calibrate measures on the player's
+ * measured on a software rasteriser and one GPU ; noh_gl_morph_calibrate measures on the player's
  * GPU */
 typedef struct noh_gl_morph_costs {
     float texels, quads, blocks, pairs; /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
@@ -183,7 +183,7 @@ typedef struct noh_gl_morph_plan {
     uint32_t points;       /* 1: blocks are blended as points; 0: as strips, one quad each */
     uint64_t cpu_bytes;    /* the block for noh_gl_morph_init */
     uint64_t delta_bytes;  /* GPU: delta texels, in blocks, or the streams */
-    uint64_t table_bytes;  /* GPU: 0; no path has a table beside its deltas */
+    uint64_t table_bytes;  /* GPU: 0; no path has a table besides its deltas */
     uint64_t stream_bytes; /* GPU: data for one draw of an update: weights, with vertices or lists */
     uint64_t layer_bytes;  /* GPU: the accumulation texels */
     uint32_t vertex_ring;  /* buffers of finished vertices, used in turn, 2 or 3; 0: none */
@@ -637,7 +637,7 @@ void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t 
 void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, uint32_t view);
 
 /* ======== grown decals ========
- * Decals on actors (marks.h) drawn as patches of triangles (decal_grow.h).
+ * Decals on actors (marks.h) drawn as patches of triangles.
  *
  *   noh_stage_patches_size, NOH_STAGE_PATCHES_BYTES   exact bytes on the CPU and on the GPU
  *   noh_stage_patches_create                          room for the triangles of one ring; _delete, _restore
@@ -700,7 +700,7 @@ noh_result noh_stage_patches_restore(noh_stage_patches *patches, noh_error *erro
 
 /* As noh_stage_decals_draw. Drawing several rings with the same patches grows all decals again at each change of ring:
  * give each ring patches of its own.
- * ring    the decals of that actor; its capacity is at most that of the patches */
+ * ring    the decals of that actor; its capacity must not exceed noh_stage_patches.capacity */
 noh_result noh_stage_patches_draw(noh_stage_patches *patches, uint32_t view, noh_actor actor, const noh_decals *ring,
                                   noh_error *error);
 
