@@ -84,8 +84,8 @@ static inline uint32_t noh_integer_root(uint64_t n)
  *
  * x = m 2^e with m of 24 bits and e even or odd. m is shifted left by 25 or 26 bits, whichever leaves an even exponent,
  * so that it lies in 2^48..2^50 and its integer root in 2^24..2^25: the 24 bits of the result and one more, which says
- * on which side of the middle between two floats the root lies. The root is never the middle itself: 25 bits of which
- * the last is set have an odd square, and the shifted m is even. So adding that bit rounds correctly, and the sum does
+ * on which side of the middle between two floats the root lies. The root is never the middle itself: 25 bits with
+ * the last bit set have an odd square, and the shifted m is even. So adding that bit rounds correctly, and the sum does
  * not reach the next power of two. */
 NOH_UNUSED static inline float noh_sqrt_plain(float x)
 {

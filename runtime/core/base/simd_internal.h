@@ -15,9 +15,9 @@
  *   min, max                    a < b ? a : b, and a < b ? b : a
  *   less, and, or, any, choose  masks; choose takes yes where the mask is set
  *   between                     the mask of lanes first to end - 1
- *   with_sign                   a, its sign inverted where that of the second is set
+ *   with_sign                   a, its sign inverted where the second's sign is set
  *   field                       of 32-bit words: the signed number in the bits between, as a float
- *   halves                      the lowest 16 bits of x, and above them those of y
+ *   halves                      x's lowest 16 bits, and above them y's
  *   transpose                   4 x 4; of eight lanes two such side by side. In place where out is in
  *   columns, rows               NOH_LANES rows of 4 floats, `stride` floats apart, as four columns, and back. Rows are
  *                               stored in order: where two overlap by one float, the later one's stays

@@ -47,7 +47,7 @@ static noh_result fail_at(const graph_view *g, const char *what, const void *pla
 #define CHECK(rows, what, record) \
     noh_check_fields(g->check, rows, sizeof rows / sizeof rows[0], what, place_of(g, record))
 
-/* Whether a range that begins at `first` is too long; a beginning past the end is told by itself. */
+/* Whether a range that begins at `first` is too long; a start past the end is reported separately. */
 static int too_long(uint32_t first, uint32_t count, uint32_t all)
 {
     return first <= all && count > all - first;
@@ -283,7 +283,7 @@ static noh_result check_nodes(const graph_view *g)
     }
     const noh_check_field rows[] = { HEAD(clip_count, clips != g->h->clip_count),
                                      HEAD(machine_count, machines != g->h->machine_count) };
-    return CHECK(rows, "count of clips or machines is not that of their nodes", g->h);
+    return CHECK(rows, "count of clips or machines differs from the count of their nodes", g->h);
 }
 
 /* Children first, checked with a stack of finished subtrees: a node's children are the topmost ones, in order, and the
@@ -350,7 +350,7 @@ static noh_result check_param(const graph_view *g, const noh_pack_graph_param *p
     };
     noh_result result = CHECK(kind, "parameter of an unknown kind, or a reserved field is not zero", p);
     if (!result) result = CHECK(values, "parameter has values that are not in the chunk", p);
-    return result ? result : CHECK(range, "range of a parameter is not that of its kind, or it begins outside", p);
+    return result ? result : CHECK(range, "range of a parameter does not fit its kind, or its default is outside", p);
 }
 
 static noh_result check_params(const graph_view *g)

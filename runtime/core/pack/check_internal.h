@@ -44,11 +44,11 @@ noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint3
 noh_result noh_check_end(const noh_check *check);
 
 /* The header of the chunk that this one is about, the n-th of the type `about`, n being the first word of this chunk.
- * NULL: there is none, or n is not above that of the chunk of this type before it. */
+ * NULL: there is none, or n is not above the n of the previous chunk of this type. */
 const void *noh_check_subject(const noh_check *check, noh_chunk_type type, noh_chunk_type about);
 
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what);
-/* `offset`: of the name's field, which that of its hash follows. */
+/* `offset`: of the name's field. The field of its hash follows. */
 noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
 
 /* noh_check_strings and so on: each chunk of its type, in check_strings.c and so on. It may rely on the chunks before
@@ -67,8 +67,8 @@ noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, con
 noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *h, uint64_t rects, uint64_t texels,
                                  uint64_t pairs);
 
-/* The headers of a mesh's coarser levels, which follow that of the full one: present, and equal in all that levels
- * share. Comes before the arrays. */
+/* Check the headers of a mesh's coarser levels, which follow the full level's header: present, and equal in all fields
+ * that levels share. Called before the arrays are checked. */
 noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
 
 /* The levels that a mesh has in the pack, and so headers in its chunk; and where in the chunk a level's lies. */

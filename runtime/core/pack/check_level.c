@@ -55,8 +55,8 @@ static size_t find_difference(const noh_mesh_header *a, const noh_mesh_header *b
     return at;
 }
 
-/* What all levels share is in each of their headers. Where the second and third agree and differ from the first, its
- * field is named, else that of the level. */
+/* Fields shared by all levels are in each of their headers. If the second and third levels agree and differ from the
+ * first, the first level's field is reported, otherwise this level's field. */
 static noh_result check_shared(const noh_check *check, const noh_mesh_header *h, uint32_t k)
 {
     const uint32_t count = noh_check_levels_there(h);
@@ -82,7 +82,7 @@ static noh_result check_errors(const noh_check *check, const noh_mesh_header *l,
     noh_result result = noh_check_floats(check, mine, 6, "level's error is not finite");
     for (unsigned i = 0; !result && i < 6; i++) {
         if (mine[i] < before[i]) {
-            result = noh_check_fail(check, "level's error is below that of the finer level",
+            result = noh_check_fail(check, "level's error is below the finer level's error",
                                     noh_check_level_at(l) + offsetof(noh_mesh_header, level_error_rest) + 4u * i);
         }
     }

@@ -135,8 +135,8 @@ noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *
     return noh_check_fields(check, fields, 3, what, noh_check_level_at(h));
 }
 
-/* A target's delta texels are those of its rectangles, one rectangle after the other, row by row. They must be used up
- * exactly, and those that are not zero are its pairs. */
+/* A target's delta texels fill its rectangles, one rectangle after the other, row by row. They must be used up exactly.
+ * Texels that are not zero are the target's pairs. */
 noh_result noh_check_rects(const noh_check *check, const noh_mesh_header *h, const noh_target *t)
 {
     const noh_rect *rects = (const noh_rect *)(const void *)(check->bytes + h->rects_offset) + t->first_rect;

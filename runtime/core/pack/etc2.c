@@ -96,7 +96,7 @@ static int32_t distance_at(uint32_t index)
     return distances[index & 7u];
 }
 
-/* Mode T: a colour alone, and one with two beside it. */
+/* Mode T: one colour alone, and another with two variants. */
 static void decode_t(words w, uint8_t *to, size_t stride)
 {
     const uint32_t h = w.high;

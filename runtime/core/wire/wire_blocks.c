@@ -1,9 +1,9 @@
 /* wire_blocks.c: textures in blocks of ETC2 and EAC, one field of a block after the other.
  *
- * Levels are coded one by one, and blocks row by row. Each unit of 8 bytes, of colours or of one channel, is told as
- * that to the left or above where it is equal; else mode, colours, tables and selectors follow (wire_etc2.c,
- * wire_eac.c), each predicted from texels that are known: those beside it, and those of the level before, of which one
- * is the mean of four. */
+ * Levels are coded one by one, and blocks row by row. Each unit of 8 bytes, of colours or of one channel, is
+ * coded as a copy of its left or upper neighbour if equal. Otherwise mode, colours, tables and selectors follow
+ * (wire_etc2.c, wire_eac.c), each predicted from known texels: neighbours, and texels of the previous level, each the
+ * mean of four. */
 #include "core/wire/wire_blocks_internal.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* wire_blocks_internal.h (private to wire/): units of 8 bytes out of which textures in blocks are made, and what is
- * known beside them when they are coded. */
+/* wire_blocks_internal.h (private to wire/): the units of 8 bytes in block-compressed textures, and their known
+ * neighbours during coding. */
 #ifndef NOH_WIRE_BLOCKS_INTERNAL_H
 #define NOH_WIRE_BLOCKS_INTERNAL_H
 
@@ -26,7 +26,7 @@
 #define NOH_BLOCKS_EAC_SELECTOR (NOH_BLOCKS_EAC_TABLE + 16u) /* [2 kinds][8][8] */
 #define NOH_BLOCKS_END (NOH_BLOCKS_EAC_SELECTOR + 128u)
 
-NOH_STATIC_ASSERT(NOH_BLOCKS_END < NOH_WIRE_MODELS, models_of_blocks); /* the last is that of large values */
+NOH_STATIC_ASSERT(NOH_BLOCKS_END < NOH_WIRE_MODELS, models_of_blocks); /* the last is for large values */
 
 /* A mip level. */
 typedef struct noh_wire_level {

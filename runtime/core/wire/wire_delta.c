@@ -13,7 +13,7 @@
 #include "noh/format.h"
 
 #define KINDS 3u /* positions, normals, tangents */
-#define CODED 1u /* of a slot above its number: so much of it is there */
+#define CODED 1u /* of a slot above its number: which kinds are coded */
 #define SLOT_SHIFT 3u
 #define ALL_CODED 7u
 #define MODEL_KIND 96u /* models of a kind */
@@ -196,7 +196,7 @@ static int32_t difference(const noh_wire_filter *f, const target *t, const targe
     return value - reference_value(f, t, like, r->references[i], kind, axis);
 }
 
-/* Context of a texel: 0 beside moved ones, 1 beside unmoved ones, 2 beside another at its place. */
+/* Context of a texel: 0 next to moved texels, 1 next to unmoved texels, 2 with a twin at the same place. */
 static uint32_t context_of(const around *r)
 {
     if (r->twin != NOH_NONE) return 2u;
@@ -289,7 +289,7 @@ static int code_rest(noh_wire_filter *f, const target *t, uint32_t kind)
     return 1;
 }
 
-/* The next target of the plan: its number, and that of the one it is like. */
+/* The next target of the plan: its number, and the number of the target that it is like. */
 static int begin_target(noh_wire_filter *f)
 {
     const uint32_t count = f->mesh.header.target_count;
@@ -328,7 +328,7 @@ static int code_target(noh_wire_filter *f)
     return 1;
 }
 
-/* mode 0: normals as positions; 1, 2: beside those of the triangles, summed by vertex or by place */
+/* mode 0: normals as positions; 1, 2: relative to the triangles' normals, summed by vertex or by place */
 int noh_wire_run_deltas(noh_wire_filter *f)
 {
     while (f->cursor[0] < f->mesh.header.target_count) {

@@ -8,11 +8,11 @@
 #include "noh/format.h"
 #include "noh/low_core.h"
 
-/* How a unit is told. Of modes with holes one texel or more may be transparent. */
+/* How a unit is coded. Of modes with holes one texel or more may be transparent. */
 enum {
     HOW_LEFT,
     HOW_ABOVE,
-    HOW_NEAR,                 /* halves, of which the second is told by its difference; + 1: one above the other */
+    HOW_NEAR,                 /* halves, the second coded as a difference from the first; + 1: one above the other */
     HOW_APART = HOW_NEAR + 2, /* halves of four bits each; likewise */
     HOW_T = HOW_APART + 2,
     HOW_H,

@@ -1,8 +1,8 @@
 /* wire_index.c: a mesh's triangles, and the order in which they come to its vertices.
  *
  * Most triangles share an edge with one of the last: that edge is a symbol, and only the third vertex is left, which is
- * a new one, one of the last, or rarely any. On the way each vertex is told the triangle beyond the edge it was reached
- * over: the filters of vertices predict from it.
+ * a new one, one of the last, or rarely any. Each vertex also records the triangle beyond the edge over which it was
+ * reached: the filters of vertices predict from it.
  * source  Gumhold, Strasser: Real time compression of triangle mesh connectivity, 1998; Touma, Gotsman: Triangle mesh
  *         compression, 1998 */
 #include "core/wire/wire_internal.h"
@@ -25,7 +25,7 @@
 #define WHICH_RECENT 3u /* and on: the n-th of the last */
 #define WHICH_OTHER 15u
 #define NEXT_OTHER 15u   /* below it: the next behind one of these */
-#define CONTEXT_ALONE 8u /* models of a vertex: 8 by the edges beside it, 3 of triangles without an edge */
+#define CONTEXT_ALONE 8u /* models of a vertex: 8 by its neighbouring edges, 3 for triangles without an edge */
 
 /* cursor: level, triangle, next vertex that is expected, how the triangle before was reached. */
 
@@ -154,7 +154,7 @@ static uint32_t unmet_from(noh_wire_filter *f, uint32_t v)
     return v;
 }
 
-/* What the third vertex of a triangle may be: where the edges beside the one that it was reached over end. */
+/* Candidates for the third vertex of a triangle: the far ends of the edges next to the shared edge. */
 typedef struct third {
     uint32_t behind, before; /* NOH_NONE: no edge is known */
     noh_wire_edge edge;

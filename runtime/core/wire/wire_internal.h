@@ -22,8 +22,8 @@ extern "C" {
 #define NOH_WIRE_LOW 0x10000u /* the coder's state is this at the end of a block, and never below */
 #define NOH_WIRE_MODELS 736u
 
-/* How often each of sixteen symbols came: symbol s has the range from `start[s]` up to that of the next, the last up to
- * 2^15. Every symbol keeps at least 1. */
+/* How often each of sixteen symbols came: symbol s has the range from `start[s]` up to `start[s + 1]`, the last one up
+ * to 2^15. Every symbol keeps at least 1. */
 typedef struct noh_wire_model {
     uint16_t start[NOH_WIRE_SYMBOLS];
     uint16_t count; /* symbols seen, up to where it adapts slowest */
@@ -59,7 +59,7 @@ static inline int noh_wire_item(noh_wire_coder *coder)
 uint32_t noh_wire_symbol(noh_wire_coder *coder, noh_wire_model *model, uint32_t symbol);
 /* Bits that no model knows anything of, 0..32. */
 uint32_t noh_wire_bits(noh_wire_coder *coder, uint32_t value, uint32_t bits);
-/* A number, the nearer to 0 the shorter; model[1] is that of large ones. */
+/* A number; smaller magnitudes take fewer bits. model[1] codes large numbers. */
 int32_t noh_wire_value(noh_wire_coder *coder, noh_wire_model *model, noh_wire_model *large, int32_t value);
 
 /* ---- sections ---- */
@@ -86,8 +86,8 @@ typedef struct noh_wire_section {
     uint32_t params[8];
 } noh_wire_section;
 
-/* The mesh that sections are about. Its arrays lie in the image, of which nothing is checked: indices that are read are
- * held below their counts where they are used. */
+/* The mesh that sections are about. Its arrays are in the image, which is not checked yet: indices are clamped below
+ * their counts where they are used. */
 typedef struct noh_wire_mesh {
     noh_mesh_header header; /* the finest level's */
     uint32_t chunk;         /* where it lies in the image; 0: there is none */
@@ -112,8 +112,8 @@ typedef struct noh_wire_mesh {
     uint32_t *reference; /* [touched_count] of the target that this one is like */
 } noh_wire_mesh;
 
-/* A row of the order in which targets are written: which, 1 + that it is told as a difference from (0: none), and which
- * kinds of its deltas are not 0 everywhere. */
+/* A row of the order in which targets are written: its number, 1 + the number of the target it is coded as a
+ * difference from (0: none), and which kinds of its deltas are not 0 everywhere. */
 #define NOH_WIRE_PLAN(target, like, kinds) ((uint32_t)(target) | (uint32_t)(like) << 10 | (uint32_t)(kinds) << 21)
 #define NOH_WIRE_PLAN_TARGET(plan) ((plan)&0x3ffu)
 #define NOH_WIRE_PLAN_LIKE(plan) ((plan) >> 10 & 0x7ffu)
@@ -138,7 +138,7 @@ typedef struct noh_wire_filter {
     noh_wire_section section;
     noh_wire_mesh mesh;
     uint32_t cursor[4]; /* where the filter goes on in its next block */
-    int32_t last[12];   /* values and magnitudes of before */
+    int32_t last[12];   /* previous values and magnitudes */
     noh_wire_edge edges[NOH_WIRE_EDGES];
     uint32_t recent[NOH_WIRE_EDGES];
     noh_wire_model models[NOH_WIRE_MODELS];
@@ -159,7 +159,7 @@ typedef struct noh_wire_head {
     uint32_t image_bytes[NOH_WIRE_IMAGES_MAX];
     uint32_t scratch_bytes;
     uint32_t reserved[7];
-    uint32_t crc; /* CRC-32C of what is before it; that of the first block goes on from it */
+    uint32_t crc; /* CRC-32C of all fields before it; the first block continues from this value */
 } noh_wire_head;
 
 /* Head of a block: items (16 bits), bytes behind the head (15 bits) with the flag of a section, CRC-32C of both words

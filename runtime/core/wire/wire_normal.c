@@ -1,4 +1,4 @@
-/* wire_normal.c: normals, beside those that the triangles have. */
+/* wire_normal.c: normals, relative to the triangles' normals. */
 #include "core/wire/wire_internal.h"
 
 #include <string.h>
@@ -122,7 +122,7 @@ static void code_normal(noh_wire_filter *f, uint32_t v)
     noh_wire_store(f, at, word);
 }
 
-/* mode 0: as a parallelogram; 1, 2: beside the sums by vertex or by place. params: steps of a half */
+/* mode 0: as a parallelogram; 1, 2: relative to the sums by vertex or by place. params: steps of a half */
 int noh_wire_run_normals(noh_wire_filter *f)
 {
     if (!(f->section.params[0] & 0x7fffu)) return noh_wire_wrong(f, "normals have no steps");

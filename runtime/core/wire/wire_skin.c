@@ -1,6 +1,6 @@
 /* wire_skin.c: the joints that move each vertex, and their weights.
  *
- * A joint is told as one of those of the vertices near by; its weight is predicted from the weights that it has there.
+ * A joint is coded as one of the joints of nearby vertices. Its weight is predicted from its weights there.
  */
 #include "core/wire/wire_internal.h"
 #include "noh/base.h"

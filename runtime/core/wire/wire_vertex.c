@@ -71,7 +71,7 @@ static void store_grid(noh_wire_filter *f, uint32_t v)
     }
 }
 
-/* Floats go on as floats do: a step of their integers means less near 0. */
+/* Predict floats as floats: one step of their integers is smaller near 0. */
 static int32_t predict_float(const noh_wire_filter *f, const noh_wire_near *n, uint32_t i)
 {
     float sum = 0.0f;
