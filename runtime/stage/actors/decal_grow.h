@@ -26,8 +26,7 @@ extern "C" {
 #endif
 
 typedef struct noh_decal_patch {
-    uint32_t
-        *triangles; /* [room], of which [count] belong to the decal: the first is the one it grew from. Triangle t has
+    uint32_t *triangles; /* [room], the first [count] belong to the decal; it grew from the first one. Triangle t has
                           * the indices 3 t to 3 t + 2 of the mesh */
     uint32_t room, count;
     uint32_t left_out; /* near triangles without room: the decal is smaller */

@@ -78,8 +78,7 @@ static const char *check(const void *user, const void *state)
 {
     const near_feet *n = state;
     (void)user;
-    if (!(n->part >= 0.0f && n->part <= 1.0f))
-        return "how far feet of a walker are on the ground is not within 0 and 1";
+    if (!(n->part >= 0.0f && n->part <= 1.0f)) return "state: the weight of a walker's feet is not in 0..1";
     return noh_feet_check(&n->feet);
 }
 
@@ -88,7 +87,7 @@ noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
     noh_modifier part;
     NOH_ASSERT(feet);
     memset(&part, 0, sizeof part);
-    part.name = "feet of those who are near";
+    part.name = "feet of near walkers";
     part.modify = modify;
     part.check = check;
     part.user = feet;

@@ -269,7 +269,7 @@ static void go_on(const step *s, walker *r, const noh_place *was, const float ro
 
 /* ---- a step ---- */
 
-/* Wanted velocity: that of the agent, plus catching up with it. Model units per second. */
+/* Desired velocity: the agent's velocity, plus a correction to catch up with it. Model units per second. */
 static void find_wish(const noh_walkers *w, const walker *r, float scale, float wish[2])
 {
     const float off[2] = { r->at[0] - r->body[0], r->at[1] - r->body[1] }, length = noh_sqrt(dot2(off, off));

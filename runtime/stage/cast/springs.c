@@ -200,13 +200,13 @@ static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
 {
     uint32_t next = 0;
     if (!(d->metres > 0.0f) || !noh_is_finite(d->metres) || d->skeleton.joint_count > NOH_JOINTS_MAX) {
-        return noh_fail(error, NOH_ERR_ARG, "springs: `metres` must be above 0, and the skeleton a good one", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "springs: `metres` must be above 0, and the skeleton valid", 0, 0);
     }
     for (uint32_t i = 0; i < d->chain_count; i++) {
         if (!chain_hangs_together(d, &d->chains[i], next)) {
             return noh_fail(error, NOH_ERR_ARG,
-                            "springs: a chain's rows do not follow those of the chain before, its joints are not "
-                            "parent and child below another one, or it collides with what is not there",
+                            "springs: a chain's rows do not follow the previous chain's rows, its joints are not "
+                            "parent and child, or a collider does not exist",
                             i, 0);
         }
         const noh_result result = check_rows(d, &d->chains[i], error);
@@ -505,7 +505,7 @@ static const char *check(const void *user, const void *state)
     const uint32_t *begun = state;
     for (uint32_t i = 0; i < s->chain_count; i++) {
         const swing *g = &s->swings[i];
-        if (begun[i] > 1u) return "state: springs: a chain neither swings nor rests";
+        if (begun[i] > 1u) return "state: springs: a chain has a bad flag";
         if (!begun[i]) continue;
         const void *spring = (const uint8_t *)state + g->state;
         const char *what = noh_spring_check(spring, &g->desc);
@@ -529,7 +529,7 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
     (void)desc;
     return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
                    state_bytes_of(&springs, springs.chain_count) > NOH_MODIFIER_BYTES_MAX
-               ? "springs of a kind: those of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"
+               ? "springs of a kind: the springs of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"
                : NULL;
 }
 

@@ -77,8 +77,7 @@ noh_result noh_stage_change(noh_stage *s, noh_actor actor, noh_stage_actor **a, 
                         0);
     }
     if (s->phase > NOH_STAGE_STEPPING) {
-        return noh_fail(error, NOH_ERR_ARG, "actors are changed before a frame begins or after it has ended",
-                        actor.id & 0xffffu, 0);
+        return noh_fail(error, NOH_ERR_ARG, "cannot change an actor during a frame", actor.id & 0xffffu, 0);
     }
     *a = found;
     return NOH_OK;
@@ -265,7 +264,7 @@ static noh_result make_character(noh_stage_kind *k, uint32_t index, int64_t cloc
 static const char *cannot_spawn(const noh_stage *s, uint32_t kind)
 {
     if (kind >= s->desc.kind_count) return "no such kind";
-    return s->phase != NOH_STAGE_IDLE ? "actors come and go outside of steps and frames" : NULL;
+    return s->phase != NOH_STAGE_IDLE ? "cannot spawn during a step or a frame" : NULL;
 }
 
 noh_result noh_stage_spawn(noh_stage *stage, uint32_t kind, const noh_place *place, noh_actor *actor, noh_error *error)
@@ -327,8 +326,8 @@ noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error
     const float back[3] = { -by[0], -by[1], -by[2] };
     if (stage->phase != NOH_STAGE_IDLE || !noh_is_number(by[0]) || !noh_is_number(by[1]) || !noh_is_number(by[2])) {
         return noh_fail(error, NOH_ERR_ARG,
-                        stage->phase != NOH_STAGE_IDLE ? "the origin of a stage is moved outside of steps and frames"
-                                                       : "the way of an origin is not a number, or larger than 10^12",
+                        stage->phase != NOH_STAGE_IDLE ? "cannot shift the origin during a step or a frame"
+                                                       : "shift of the origin is not a number, or larger than 10^12",
                         0, 0);
     }
     for (uint32_t i = 0; i < stage->actor_count; i++) {
@@ -433,7 +432,7 @@ noh_result noh_stage_despawn(noh_stage *stage, noh_actor actor, noh_error *error
     noh_stage_kind *k = NULL;
     noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result == NOH_OK && stage->phase != NOH_STAGE_IDLE) {
-        result = noh_fail(error, NOH_ERR_ARG, "actors come and go outside of steps and frames", 0, 0);
+        result = noh_fail(error, NOH_ERR_ARG, "cannot despawn during a step or a frame", 0, 0);
     }
     if (result == NOH_OK) {
         let_go_all(stage, actor.id);

@@ -146,7 +146,7 @@ static int replaces_nothing(const noh_kind_desc *kind, uint32_t set)
     return 1;
 }
 
-/* Texture coordinates are those of the kind's own textures. */
+/* A set must use the texture coordinates of the kind's own textures. */
 static int is_laid_out_otherwise(const noh_kind_desc *kind, uint32_t set)
 {
     for (uint32_t t = 0; t < kind->mesh->runs[NOH_CHUNK_TEXTURE].count; t++) {
@@ -198,10 +198,10 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
         const char *what = bad_layer(&d->layers[i]);
         if (what) return what;
     }
-    if (d->clips && d->clip_packs) return "a kind has clips and clip_packs";
+    if (d->clips && d->clip_packs) return "a kind has both clips and clip_packs: set one of them";
     for (uint32_t i = 0; d->nodes && i < d->node_count; i++) {
         if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->runs[NOH_CHUNK_MESH].count))
-            return "nodes of a kind: one is none of its mesh pack's";
+            return "nodes of a kind: a node is not in the mesh's pack";
     }
     if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y)) return "root_axes of a kind has unknown bits";
     if (d->root_axes && d->root_up > 2u) return "root_up of a kind is not 0, 1 or 2";
@@ -212,7 +212,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
     filled = noh_stage_kind_desc(desc, number);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->runs[NOH_CHUNK_SKELETON].count)
-        return "skeleton of a kind is none of its mesh pack's";
+        return "skeleton of a kind is not in the mesh's pack";
     if (noh_stage_bad_modules(&filled)) return noh_stage_bad_modules(&filled);
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;
 }

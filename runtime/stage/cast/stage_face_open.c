@@ -97,8 +97,8 @@ static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above
     return joint == above;
 }
 
-/* A neck that the head does not hang on, or eyes that do not hang on the head, are left alone. Without a head eyes turn
- * by themselves. */
+/* Ignore a neck that is not an ancestor of the head, and eyes that are not descendants of the head. Without a head eyes
+ * turn alone. */
 static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
 {
     noh_stage_face_joint *others[] = { &f->neck, &f->chest, &f->eyes[0], &f->eyes[1] };
@@ -116,8 +116,8 @@ static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
 
 /* ---- the desc ---- */
 
-/* The eyes from model space to that of the neck: from where the head turns, or, where none does, as far below and
- * behind them as in people, measured by the distance of the eyes. */
+/* Place the eyes relative to the joint where the head turns. Without a head, that point is below and behind the eyes by
+ * human proportions, from the distance of the eyes. */
 static void place_eyes(noh_stage_face_kind *f)
 {
     float from[3], apart = 0.0f;
@@ -142,7 +142,7 @@ static const char *bad_rules(const noh_face_rules *r)
     for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
         if (r->mouth[i] > NOH_MOUTH_NONE || r->lids[i] > NOH_OVERRIDE_BLEND || r->eyes[i] > NOH_OVERRIDE_BLEND ||
             r->speech[i] > NOH_OVERRIDE_BLEND)
-            return "rules of a kind's face: a value is none of its enumeration";
+            return "rules of a kind's face: a value is not in its enumeration";
     }
     return NULL;
 }
@@ -180,7 +180,7 @@ static const char *open_shared(const noh_kind_desc *d, const noh_kind_face *from
     f->desc = from->face;
     f->rules = from->rules;
     f->flags = from->flags;
-    if (!open_joints(d, skeleton, f)) return "face of a kind: its skeleton has no joint of a name that is given";
+    if (!open_joints(d, skeleton, f)) return "face of a kind: the skeleton has no joint of a given name";
     drop_strays(skeleton, f);
     for (int i = 0; i < 6; i++) square += f->desc.eyes[i / 3][i % 3] * f->desc.eyes[i / 3][i % 3];
     if (square == 0.0f && f->eyes[0].joint == NOH_NONE)
@@ -238,13 +238,13 @@ uint32_t noh_stage_face_bind(const noh_kind_desc *d, noh_face_find_fn find, cons
                                    link_max);
 }
 
-/* At most so many. */
+/* An upper bound. */
 static uint32_t count_links(const noh_kind_desc *d)
 {
     return noh_stage_face_bind(d, find_in_pack, d, NULL, 0);
 }
 
-/* Floats of the set that the name moves, each once: one that takes its value from a namesake is the namesake. */
+/* Floats of the set that the name moves, each once. Floats of the same name share one. */
 static uint32_t find_in_kind(const void *user, const char *name, uint32_t nth)
 {
     const noh_stage_kind *k = user;
@@ -254,7 +254,7 @@ static uint32_t find_in_kind(const void *user, const char *name, uint32_t nth)
         if (target == NOH_NONE || at >= k->set.float_count || k->named.sources[at] != at) continue;
         if (nth-- == 0) return at;
     }
-    for (uint32_t m = 0; m < k->plan->mesh_count; m++) { /* one that no clip moves stands for itself, or a namesake */
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) { /* targets that no clip moves */
         const noh_stage_mesh *mesh = &k->meshes[m];
         const uint32_t target = noh_mesh_find_target(&mesh->mesh, name);
         const uint32_t source = target == NOH_NONE ? NOH_NONE : k->named.sources[mesh->first_float + target];

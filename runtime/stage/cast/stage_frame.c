@@ -8,7 +8,7 @@
 
 static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
 {
-    if (s->phase != NOH_STAGE_IDLE) return "a frame begins outside of steps and frames";
+    if (s->phase != NOH_STAGE_IDLE) return "cannot begin a frame during a step or a frame";
     if (count > NOH_STAGE_VIEWS_MAX) return "view_count is above NOH_STAGE_VIEWS_MAX";
     for (uint32_t v = 0; v < count; v++) {
         for (int i = 0; i < 16; i++) {
@@ -24,7 +24,7 @@ uint32_t noh_stage_behind(const noh_stage *s, float alpha)
     return (uint32_t)((1.0 - (double)alpha) * (double)s->head->step_ticks + 0.5);
 }
 
-/* That of the first camera, or of the first light where there is no camera. */
+/* Use the first camera's origin, or without a camera the first light's. */
 static void choose_origin(noh_stage *s, const noh_stage_view *views, uint32_t count)
 {
     uint32_t v = 0;
@@ -83,7 +83,7 @@ noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views
     return NOH_OK;
 }
 
-/* So many of `count` things to a job that every job has some. */
+/* Items per job, rounded up. */
 static uint32_t cut_of(const noh_stage *s, uint32_t count)
 {
     return (count + s->desc.job_count - 1u) / s->desc.job_count;
@@ -150,7 +150,7 @@ static void run_jobs(noh_stage *s)
     }
 }
 
-/* Where that is drawn which hangs on another: known only now, when the other was posed. */
+/* Set the matrices of attached actors. Their parents have just been posed. */
 static void place_attached(noh_stage *s)
 {
     for (uint32_t i = 0; i < s->actor_count; i++) {

@@ -1,4 +1,4 @@
-/* stage_graph_play.c: the graph of an actor: what plays, its pose beside those of clips, its parameters and states. */
+/* stage_graph_play.c: the graph of an actor: playing it next to clips, its parameters and states. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -76,12 +76,14 @@ static int root(const noh_stage_kind *k, uint32_t index, noh_given_root *given)
 
 static const char *bad_play(const noh_stage_player *p, const noh_play *play)
 {
-    if (p->layer->mode == NOH_LAYER_ADD) return "a graph plays on a base or an over layer";
+    if (p->layer->mode == NOH_LAYER_ADD)
+        return "cannot play a graph on a layer of NOH_LAYER_ADD: use a base or an over layer";
     if (play->speed || play->start_ticks || play->loop || play->sync_group || play->reference)
-        return "a graph has its own speeds, starts, loops and sync groups: leave those of the play 0";
-    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA)) return "flags of a graph's play: KEEP and INERTIA alone";
-    return p->s->callback_of_source ? "within a key of a graph no graph begins: set a parameter of it, or play after "
-                                      "the step"
+        return "speed, start_ticks, loop, sync_group and reference must be 0 in the play of a graph";
+    if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_INERTIA))
+        return "flags of a graph's play: only KEEP and INERTIA are allowed";
+    return p->s->callback_of_source ? "cannot play a graph in the callback of a graph's key: set a parameter, or play "
+                                      "after the step"
                                     : NULL;
 }
 
@@ -208,7 +210,7 @@ static void sample(const noh_stage *s, const noh_stage_job_part *job, const noh_
 typedef struct stepper {
     noh_stage_stepper *of;
     noh_stage_playing playing;
-    int64_t behind; /* the clock of the actor's controller less that of its graph's */
+    int64_t behind; /* the clock of the actor's controller minus the clock of its graph's */
 } stepper;
 
 /* A key of the actor's clips. */
@@ -298,7 +300,7 @@ noh_result noh_stage_check_graph(const noh_stage_kind *k, const void *memory, no
         return NOH_OK;
     }
     if (slot->graph > all->count) {
-        return noh_fail(error, NOH_ERR_DATA, "state: an actor plays a graph that its kind has not", slot->graph,
+        return noh_fail(error, NOH_ERR_DATA, "state: an actor plays a graph that its kind does not have", slot->graph,
                         all->count);
     }
     g = all->graphs[slot->graph - 1u];

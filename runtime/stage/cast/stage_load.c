@@ -1,8 +1,8 @@
-/* stage_load.c: levels that come later: brought in pieces, used, dropped.
+/* stage_load.c: levels that are loaded later, in pieces, used and dropped.
  *
- * The plan is made of all levels, those of noh_kind_desc.finer too, so that slots and buffers are there for them. Until
- * they are brought, no level is chosen that noh_kind_desc.mesh lacks. Of `finer` the stage keeps a hash alone: whatever
- * pack is brought later must have the same levels. */
+ * The plan includes the levels of noh_kind_desc.finer, so that slots and buffers exist for them. Until they are loaded,
+ * only levels of noh_kind_desc.mesh are chosen. The stage keeps only a hash of `finer`: the pack loaded later must have
+ * the same levels. */
 #include <string.h>
 
 #include "core/base/assert.h"
@@ -67,7 +67,7 @@ const char *noh_stage_bad_finer(const noh_kind_desc *kind)
         (void)noh_pack_mesh_at(kind->finer, i, &fine, NULL);
         first = coarse.header->level_first;
         if (noh_mesh_source(&coarse) != noh_mesh_source(&fine)) return another;
-        if (fine.header->level_first > first) return "finer of a kind: its mesh has finer levels";
+        if (fine.header->level_first > first) return "finer of a kind: the kind's mesh already has finer levels";
         if (fine.header->level_count != coarse.header->level_count ||
             noh_stage_hash_levels(&fine, first) != noh_stage_hash_levels(&coarse, first))
             return another;
@@ -172,7 +172,7 @@ static noh_result check_call(const noh_stage *s, uint32_t kind, noh_error *error
     }
     return s->phase == NOH_STAGE_IDLE
                ? NOH_OK
-               : noh_fail(error, NOH_ERR_ARG, "levels are loaded and dropped outside of steps and frames", 0, 0);
+               : noh_fail(error, NOH_ERR_ARG, "cannot load or drop levels during a step or a frame", 0, 0);
 }
 
 static int brings_any(const noh_stage *s, uint32_t load_kind)

@@ -330,7 +330,7 @@ static noh_result leap(player *p, uint32_t clip, const noh_play *play, noh_error
     return result;
 }
 
-/* Room beside the tracks that play on: one of their own, and a change to fade in by. */
+/* Find a free track, and a free change for its fade in, while other tracks continue to play. */
 static noh_result make_room_beside(const player *p, uint32_t track, noh_error *error)
 {
     if (track_at(p, track)->mode != NOH_TRACK_OFF) {
@@ -416,9 +416,9 @@ static const char *bad_play(const player *p, const noh_play *play)
     if (play->flags & ~(NOH_PLAY_KEEP | NOH_PLAY_PHASE | NOH_PLAY_INERTIA | NOH_PLAY_BESIDE | NOH_PLAY_FROM_BIND))
         return "flags of a play has unknown bits";
     if ((play->flags & NOH_PLAY_INERTIA) && (play->flags & NOH_PLAY_BESIDE))
-        return "flags of a play: by inertia nothing plays on beside";
+        return "flags of a play: NOH_PLAY_INERTIA and NOH_PLAY_BESIDE exclude each other";
     if ((play->reference || (play->flags & NOH_PLAY_FROM_BIND)) && p->layer->mode != NOH_LAYER_ADD)
-        return "a play has a reference, but its layer does not add: play it on one of NOH_LAYER_ADD";
+        return "a play has a reference, but its layer is not additive: use a layer of NOH_LAYER_ADD";
     if (play->reference && (play->flags & NOH_PLAY_FROM_BIND))
         return "a play has a reference and NOH_PLAY_FROM_BIND: leave one out";
     return NULL;
@@ -493,7 +493,8 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
         if (!at && !(held[i].amount > 0.0f)) at = &held[i];
     }
     if (!at && amount > 0.0f) {
-        return noh_fail(error, NOH_ERR_LIMIT, "held_float_count floats are held", index, k->desc->held_float_count);
+        return noh_fail(error, NOH_ERR_LIMIT, "no held float left: raise held_float_count of the kind", index,
+                        k->desc->held_float_count);
     }
     if (at) {
         at->index = index;

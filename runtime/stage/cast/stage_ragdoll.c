@@ -321,7 +321,7 @@ static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_bo
     noh_result result;
     if (b->doll) return NOH_OK;
     if (a->parent || a->place.scale != 1.0f) {
-        return noh_fail(error, NOH_ERR_ARG, "an actor falls that hangs on none and has a scale of 1", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not 1", 0, 0);
     }
     doll = free_doll(k);
     if (!doll) {

@@ -69,7 +69,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
 {
     const char *what;
     if (a->generation == 0 || a->generation > 0xffffu) return "state: bad generation of an actor";
-    if (a->alive > 1u || a->was_seen > 3u || a->on_its_way > 1u) return "state: an actor is neither there nor gone";
+    if (a->alive > 1u || a->was_seen > 3u || a->on_its_way > 1u) return "state: an actor has a bad flag";
     if (a->next_free > k->desc->actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
     what = bad_place(&a->place);
@@ -84,7 +84,7 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     }
     if (what) return what;
     if (!(a->look.pixels >= 0.0f && a->look.pixels <= NOH_PIXELS_MAX))
-        return "state: an actor's look asks for no error";
+        return "state: pixels of an actor's appearance is out of range";
     if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
     if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
@@ -161,7 +161,7 @@ static noh_result check_state(const noh_stage *s, const void *state, size_t byte
     const reader r = { s, state };
     noh_result result = NOH_OK;
     if (s->phase != NOH_STAGE_IDLE) {
-        return noh_fail(error, NOH_ERR_ARG, "a state is put back outside of steps and frames", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "cannot restore state during a step or a frame", 0, 0);
     }
     if ((uintptr_t)state % NOH_MEMORY_ALIGN) {
         return noh_fail(error, NOH_ERR_ARG, "a state is misaligned", 0, 0);

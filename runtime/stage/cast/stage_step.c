@@ -80,7 +80,7 @@ static void drive(noh_stage_actor *a, const noh_root_pose *moved, uint32_t up)
     for (int i = 0; i < 4; i++) noh_split(rotation[i], &a->place.rotation[i], &a->rotation_rest[i]);
 }
 
-/* What the clips of an actor have moved it by, those of its source as far as that plays. */
+/* Apply the root motion of an actor's clips, and of its graph as far as it plays. */
 static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
 {
     const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
@@ -113,7 +113,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
 {
     NOH_ASSERT(stage);
     if (stage->phase != NOH_STAGE_IDLE) {
-        return noh_fail(error, NOH_ERR_ARG, "a stage is stepped outside of steps and frames", 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, "cannot step the stage during a step or a frame", 0, 0);
     }
     stage->phase = NOH_STAGE_STEPPING;
     stage->on_key = on_key;

@@ -1,6 +1,6 @@
-/* chunk_maker.h: what a type of chunk is for the converter: how its text is read, and how it is written. Each maker is
- * one variable, chunk_NAME, for the NAME of the list NOH_CHUNKS (format.h): those of models and clips in
- * pack/pack_write.c, every other in a file of this folder. */
+/* chunk_maker.h: how the converter reads a type of chunk from text, and writes it. Each maker is one variable,
+ * chunk_NAME, for the NAME in the list NOH_CHUNKS (format.h). Makers for models and clips are in pack/pack_write.c, all
+ * others in files of this folder. */
 #ifndef NOH_CONVERT_CHUNKS_CHUNK_MAKER_H
 #define NOH_CONVERT_CHUNKS_CHUNK_MAKER_H
 
@@ -35,7 +35,7 @@ typedef struct chunk_maker {
     void (*free)(void *made);
     /* Write all chunks of the type. NULL: another step adds them to the finished pack */
     void (*write)(pack_writer *w, const void *made);
-    /* Check in the finished pack what noh_pack_open leaves to whoever uses the chunk. NULL: nothing. 0, or 1 and the
+    /* Check in the finished pack what noh_pack_open leaves to users of the chunk. NULL: nothing. 0, or 1 and the
      * error */
     int (*check)(const noh_pack *pack, model_error *error);
 } chunk_maker;

@@ -22,7 +22,7 @@ static int read_spring_line(const char *given, springs_text *text, convert_failu
     return 0;
 }
 
-/* Those of the file's extras, and of its extension. */
+/* Read the springs of the file's extras and of its extension. */
 static int bind_own_springs(const source *s, set_springs *out, convert_failure *failure)
 {
     springs_text *text = springs_text_new();
