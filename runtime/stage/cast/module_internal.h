@@ -52,7 +52,7 @@ typedef struct noh_module_needs {
 typedef struct noh_stage_module {
     const struct noh_module_type *type; /* NULL: none in this slot */
     void *shared;
-    uint8_t *states; /* of the kind's first actor; those of the others follow, `stride` bytes from one to the next */
+    uint8_t *states; /* [actor_count] of all actors of the kind, `stride` bytes apart */
     size_t stride;
     void *pool;
 } noh_stage_module;
@@ -109,8 +109,8 @@ typedef struct noh_source_type {
     void (*step_actor)(noh_stage_stepper *t, noh_character *ch, uint32_t ticks);
     int (*root)(const struct noh_stage_kind *k, uint32_t index, noh_given_root *given); /* 0: nothing plays */
     noh_controller *(*controller)(const struct noh_stage_kind *k, uint32_t index);      /* NULL: nothing plays */
-    /* Let `set` sample through `sampler`, which has the pose of an actor `ahead` ticks from now, and with `ago` that of
-     * so many ticks before, in the scratch of the job; no pose where nothing plays. */
+    /* Let `set` sample through `sampler`, which has the pose of an actor `ahead` ticks from now, and the pose `ago`
+     * ticks before it if `ago` is not 0, in the scratch of the job; no pose where nothing plays. */
     void (*sample)(const noh_stage *s, const struct noh_stage_job_part *job, const struct noh_stage_kind *k,
                    uint32_t index, int64_t ahead, int64_t ago, noh_clip_set *set, noh_stage_sampler *sampler);
     uint32_t (*name_count)(const struct noh_stage_kind *k, noh_name what);

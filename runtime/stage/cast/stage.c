@@ -10,7 +10,7 @@
 #include "noh/clip.h"
 #include "noh/noh.h"
 
-/* ---- actors, none of which is there ---- */
+/* ---- actors, all free ---- */
 
 static void open_actors(noh_stage *s, uint32_t kind)
 {

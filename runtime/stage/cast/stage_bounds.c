@@ -1,7 +1,7 @@
 /* stage_bounds.c: where an actor is. Two answers, for two questions:
  *
  *   reach   where any clip may take it: whether a view sees it, before its pose of the frame is known
- *   sphere  what it shows, as it was posed last, with the weights that it shows: how near it is, and whom a ray meets
+ *   sphere  what it shows, as it was posed last, with the weights that it shows: its distance, and what a ray hits
  *
  * Neither looks at vertices. Targets move a vertex by no more than the sum of their weighted boxes. */
 #include <string.h>
@@ -121,10 +121,10 @@ void noh_stage_reach(const noh_stage_kind *k, const float sphere[4], float reach
     noh_stage_widen(reach, sphere);
 }
 
-/* ---- how near it is ---- */
+/* ---- how close it is ---- */
 
-/* The least w of clip space at which a view can see something of a box that a matrix moves: that of the box's nearest
- * point, or where the box is in part beside or behind the picture, of one as near to the eye in the picture's corner. */
+/* The least clip-space w at which a view can see a part of a box moved by a matrix: w of the box's nearest point, or,
+ * if the box is partly outside the picture or behind the eye, w of a point equally near in the picture's corner. */
 static float nearest_of_box(const noh_view_planes *v, const float m[12], const float box[6])
 {
     const float *w = v->eye_plane;
@@ -266,12 +266,12 @@ static void open_radii(noh_stage_kind *k)
     }
 }
 
-/* How far clips go. The weights that targets take are between `low` [weight_count] and `high` [float_count], where
- * those of the first actor will be. */
+/* The range of clips. Weights of targets are between `low` [weight_count] and `high` [float_count]. Both use the memory
+ * of the first actor's weights. */
 typedef struct range {
     float roots[6];
     float *low, *high;
-    float *model; /* [joint_count][12], of which the first two are used: the longest way to the joint from its parent,
+    float *model; /* [joint_count][12], only the first two are used: the longest way to the joint from its parent,
                    * and the largest scale */
     uint32_t root_count;
 } range;

@@ -33,8 +33,8 @@ static size_t lod_bytes(const noh_clip_bank_desc *bank_desc, const noh_stage_nee
     return noh_lod_pack_size(&desc);
 }
 
-/* Without clips there is a set of one clip, the bind pose; a set without joints has a float. Where parts are, it has
- * those of the meshes, for them to set. */
+/* Without clips there is a set of one clip, the bind pose; a set without joints has a float. With modifiers it
+ * has the floats of the meshes, for them to set. */
 static void shape_without_clips(const noh_kind_desc *d, uint32_t weight_count, noh_clip_set *shape)
 {
     noh_skeleton skeleton;

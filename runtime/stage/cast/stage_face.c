@@ -34,7 +34,7 @@ static void to_model(const noh_modifier_work *w, const float point[3], float out
     for (int i = 0; i < 3; i++) out[i] /= w->place.scale;
 }
 
-/* Where another actor is looked at, or what hangs on it, counted from `home`. */
+/* The point to look at on another actor or on an actor attached to it, relative to `home`. */
 static void eyes_of(const noh_stage_kind *k, const noh_stage_actor *on, const double home[3], float out[3])
 {
     const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
@@ -226,7 +226,7 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
     float point[3], back[4];
     if (!target_of(s, f, w->home, point)) {
         if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &noh_stage_face_kind_of(k)->desc, NULL, NULL);
-        f->looks = NOH_LOOKS_AHEAD; /* whom it looked at may be gone */
+        f->looks = NOH_LOOKS_AHEAD; /* the other actor may be gone */
         f->fresh = 0;
         return;
     }

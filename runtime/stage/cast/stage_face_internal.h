@@ -74,7 +74,7 @@ uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, c
                              uint32_t link_max);
 /* Where the joints of its eyes are at rest, model space; 0: there are none. */
 int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
-uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* at most so many */
+uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* an upper bound */
 void noh_stage_run_face(noh_modifier_work *w);            /* over the pose and the floats of the work */
 
 #ifdef __cplusplus

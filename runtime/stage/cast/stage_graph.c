@@ -18,7 +18,7 @@
 typedef struct graph_list {
     const noh_pack *packs[NOH_STAGE_GRAPHS_MAX];
     uint32_t indices[NOH_STAGE_GRAPHS_MAX];
-    uint32_t count; /* past NOH_STAGE_GRAPHS_MAX: so many are named */
+    uint32_t count; /* of named graphs; may exceed NOH_STAGE_GRAPHS_MAX */
 } graph_list;
 
 static const char *name_at(const noh_pack *pack, uint32_t graph)

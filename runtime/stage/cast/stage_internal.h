@@ -13,8 +13,8 @@
  *   stage_module.c   the slots of a kind's modules (module_internal.h)
  *   stage_modifier.c what changes a pose before it is shown
  *   stage_step.c     time, callback keys, root motion
- *   stage_bounds.c   where an actor may be, and where and how near it is
- *   stage_look.c     phase 1: who is seen, how finely
+ *   stage_bounds.c   possible and present bounds of an actor, and its distance
+ *   stage_look.c     phase 1: which actors are visible, at which level
  *   stage_share.c    between the phases: slots, updates, decoding, order
  *   stage_pose.c     phase 2: poses and floats
  *   stage_frame.c    the phases of a frame
@@ -64,10 +64,10 @@ typedef struct noh_stage_actor {
     uint32_t generation;
     uint32_t alive;
     uint32_t next_free;  /* index + 1; 0: the last */
-    uint32_t parent;     /* id; 0: hangs on nothing */
+    uint32_t parent;     /* id; 0: not attached */
     uint32_t joint;      /* of the parent */
     uint16_t was_seen;   /* in how many of the last frames, at most 3 */
-    uint16_t on_its_way; /* 1: `before` is that of the step that is under way, or comes next */
+    uint16_t on_its_way; /* 1: `before` belongs to the current or the next step */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
     /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
     float rest[3], rest_before[3], rotation_rest[4];
@@ -145,7 +145,7 @@ typedef enum noh_stage_load {
     NOH_STAGE_LOADED
 } noh_stage_load;
 
-/* Floats of a kind: those of the set, then, where the pack has no nodes, one for each target. */
+/* Floats of a kind: the floats of the set, then, if the pack has no nodes, one for each target. */
 typedef struct noh_stage_floats {
     uint32_t *sources;      /* [float_count] the float whose value it takes: itself, or one of the same name that a clip
                              * moves */
@@ -327,10 +327,10 @@ struct noh_stage_gpu {
     void (*pose)(noh_stage *stage, noh_stage_kind *kind, uint32_t index,
                  float *matrices); /* of an actor that is seen, in a job: its palettes into memory of its own */
     void (*upload)(noh_stage *stage);
-    /* Levels that come later, of all meshes of the kinds whose load_kind it is: upload a piece, from the beginning
-     * where `anew`, and subtract what was sent, returning 1 once all is there; draw with them from now on, or without.
+    /* Levels that are loaded later, of all meshes of the kinds with this load_kind. `load` uploads a piece, from the
+     * start if `restart`, subtracts the bytes sent and returns 1 once all are there. `use` draws with or without them.
      */
-    int (*load)(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
+    int (*load)(noh_stage *stage, uint32_t load_kind, int restart, uint32_t *bytes);
     void (*use)(noh_stage *stage, uint32_t load_kind, int loaded);
 };
 
@@ -507,7 +507,7 @@ void noh_stage_follow_lod(noh_controller *inner, const noh_controller *outer);
  * noh_pick needs. */
 size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind);
 
-/* Bind those of all meshes, for which k->targets has room. */
+/* Bind the correctives or the weight rules of all meshes. k->targets has room for them. */
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
 void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
@@ -548,7 +548,7 @@ void noh_stage_sphere_in_world(const float world[12], const float own[4], float 
  * shapes  matrices as in a job */
 void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t index, const float own[4],
                        float *matrices);
-/* The same by what this frame shows, for what is told of it: a look goes by the frame before. */
+/* The same from the pose that this frame shows, for queries. Visibility uses the pose of the previous frame. */
 void noh_stage_measure_shown(const noh_stage *s, const noh_stage_kind *k, uint32_t index, float *matrices);
 /* The error that an actor shows; 0 where no view sees it, or where it is posed for the game. */
 float noh_stage_error_pixels(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
@@ -561,11 +561,11 @@ void noh_stage_look_at(noh_stage *s, uint32_t job, uint32_t first, uint32_t end)
 void noh_stage_share(noh_stage *s);
 void noh_stage_pose_todo(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
 uint32_t noh_stage_influence_levels(const noh_stage_kind *k); /* at least 1: a run is a level and one of these */
-uint32_t noh_stage_run_count(const noh_stage_kind *k);        /* without that of fading actors */
-uint32_t noh_stage_seen(const noh_stage_kind *k);             /* so many are in `order` */
+uint32_t noh_stage_run_count(const noh_stage_kind *k);        /* without the run of fading actors */
+uint32_t noh_stage_seen(const noh_stage_kind *k);             /* entries in `order` */
 void noh_view_planes_of(const noh_stage_view *view, noh_view_planes *out);
-/* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix is
- * what noh_lighting_shadow takes too. */
+/* Where a frame with this camera reckons from, and what is relative to there. A shadow's view has no rest: its matrix
+ * is what noh_lighting_shadow takes too. */
 void noh_view_origin(const noh_stage_view *view, float origin[3]);
 void noh_view_less(const noh_stage_view *view, const float origin[3], noh_stage_view *out);
 void noh_projection_less(float view_projection[16], const float origin[3], const float rest[4]);

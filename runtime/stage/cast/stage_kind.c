@@ -68,7 +68,7 @@ static const float *default_weights(const noh_pack *pack, const noh_stage_item *
                : mesh->weights;
 }
 
-/* Where the floats of a mesh begin: those of its node in the set, or behind the set's. */
+/* Where the floats of a mesh begin: at its node's floats in the set, or after the set's floats. */
 static uint32_t place_floats(const noh_stage_kind *k, const noh_stage_item *item, uint32_t *next)
 {
     const uint32_t group = k->bank ? noh_clip_bank_node_group(k->bank, item->node) : NOH_NONE;
@@ -181,7 +181,7 @@ static void open_levels(noh_stage_kind *k)
     k->table.mesh_level_first = k->first_there;
 }
 
-/* The table of the first skinned mesh, of which the mesh levels are replaced by those of actors. Fewer influences are
+/* The table of the first skinned mesh, with its mesh levels replaced by the actors' levels. Fewer influences are
  * chosen only where all meshes have the same: errors are stated by mesh. */
 static noh_result open_lod(const noh_stage *s, noh_stage_kind *k, void *memory, size_t bytes, noh_error *error)
 {

@@ -1,8 +1,8 @@
-/* stage_levels.c: the levels of an actor, each of which names a level of every mesh.
+/* stage_levels.c: the levels of an actor. Each selects a level of every mesh.
  *
  * Meshes of one figure need different numbers of triangles for the same error: a head has small features, but a body
  * bends. Drawing all of them at the same level number spends triangles where they show least. So the errors of all
- * levels of all meshes are sorted, and for each of them every mesh takes its coarsest level that is off by no more. */
+ * levels of all meshes are sorted, and for each of them every mesh takes its coarsest level within that error. */
 #include "stage/cast/stage_internal.h"
 #include "stage/character/lod_pack.h"
 #include "noh/base.h"
@@ -13,7 +13,7 @@
 #define ERRORS_MAX (NOH_STAGE_MESHES_MAX * NOH_LOD_LEVELS_MAX)
 #define SPREAD_M 100.0f /* actors are thought to be spread evenly within this distance */
 #define RESERVE 1.3f    /* for actors that crowd together */
-#define FINEST_MIN 16u  /* slots of the finest level, where a kind has so many actors: a small cast stands together */
+#define FINEST_MIN 16u  /* least slots of the finest level for large kinds: a small cast stands close together */
 #define MESH_SHARE 0.3f /* of the error, as low_stage.h has it by default */
 
 float noh_stage_mesh_error(const noh_mesh *mesh, uint32_t level)
@@ -92,7 +92,7 @@ static void collect(finder *f)
     }
 }
 
-/* By number: level e of each mesh, or its coarsest. An error is at least that of the level before. */
+/* By number: level e of each mesh, or its coarsest. An error is at least the previous level's error. */
 static void collect_by_number(finder *f)
 {
     for (uint32_t e = 0; e < NOH_LOD_LEVELS_MAX; e++) {

@@ -1,5 +1,5 @@
-/* stage_look.c: the first phase of a frame: who is seen by which view, and how finely that actor is to be shown. Each
- * job looks at actors of its own. */
+/* stage_look.c: the first phase of a frame: which views see each actor, and the level to show it at. Each job handles
+ * its own actors. */
 #include <string.h>
 
 #include "core/base/math_internal.h"
@@ -123,7 +123,7 @@ void noh_stage_follow_lod(noh_controller *inner, const noh_controller *outer)
                                  outer->lod_joint_count < outer->joint_count ? outer->lod_joint_count : 0);
 }
 
-/* inner  what plays beside its clips; NULL: nothing does */
+/* inner  controller of the actor's graph; NULL: none */
 static noh_due choose_detail(const noh_stage_kind *k, noh_character *ch, const noh_controller *inner,
                              const noh_lod_settings *settings, float pixels_per_metre)
 {

@@ -25,7 +25,7 @@ static const noh_stage_held *held_at(const noh_stage_kind *k, const noh_stage_he
     return NULL;
 }
 
-/* Whether all floats are there, and room to hold them beside what is held already. */
+/* Check that all floats exist, and that enough held floats are free. */
 static noh_result check(const noh_stage *s, noh_actor actor, const noh_identity *identity, const noh_mesh *mesh,
                         const float *weights, noh_error *error)
 {

@@ -16,8 +16,8 @@ typedef struct ray {
     float distance; /* of the nearest hit so far */
 } ray;
 
-/* The inverse of a matrix, applied to a point (w 1) or a direction (w 0): joints that an actor hangs on may have a
- * scale for each axis. Cramer's rule; 0: the matrix is flat, and nothing of it is hit. */
+/* The inverse of a matrix, applied to a point (w 1) or a direction (w 0): the joint of an attached actor may have a
+ * scale for each axis. Cramer's rule; 0: the matrix is singular, so the ray misses. */
 static int into(const float m[12], const float v[3], float w, float out[3])
 {
     float cross[3][3], d[3], determinant;

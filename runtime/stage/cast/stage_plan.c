@@ -389,8 +389,8 @@ static noh_result give_back(const planner *p, noh_error *error)
     return result;
 }
 
-/* The error of a finest level that is above 0 shows to whoever comes as near as the camera's own distance: in pixels at
- * three metres, where a figure of two metres fills the picture. */
+/* A finest level with an error above 0 is visibly coarser up close. State the error in pixels at three metres, where a
+ * figure of two metres fills the picture. */
 static void state_losses(const planner *p)
 {
     for (uint32_t i = 0; i < p->plan->concession_count; i++) {

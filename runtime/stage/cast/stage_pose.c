@@ -24,8 +24,8 @@ static noh_clip_set job_set(const noh_stage_job_part *job, const noh_stage_kind 
     return set;
 }
 
-/* What the clips say: the set's floats as shown, then the defaults of those behind them. A float that no clip moves has
- * the value of its namesake. */
+/* Get the floats of the clips: the set's floats as shown, then the defaults of the others. A float that no clip moves
+ * takes the value of a float with the same name. */
 static void take_floats(const noh_stage_kind *k, const noh_character *ch, float *floats)
 {
     const uint32_t own = k->bank || (k->modifier_bytes && k->float_count) ? k->set.float_count : 0;
@@ -107,7 +107,7 @@ static void open_poser(const noh_stage *s, const noh_stage_job_part *job, noh_st
 /* ---- the order of a frame ----
  *
  * Before these, for all actors: noh_stage_step (time, callback keys, root motion, ragdolls' bodies), the game's places
- * (crowd/, crowd.h), noh_stage_look_at (LOD). After these: what hangs on others, and noh_gl_morph_update, which
+ * (crowd/, crowd.h), noh_stage_look_at (LOD). After these: attached actors, and noh_gl_morph_update, which
  * accumulates targets (noh_stage_frame_end); then what the game draws: actors, marks, hair. */
 
 /* Over clips and graphs, in the order of the slots: the face, so that eyes, blinks, breath and speech are there; the
@@ -144,7 +144,7 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
 }
 
-/* What of the pose is shown, mixed of two where updates are seldom: weights of targets, and palettes. */
+/* Write weights of targets and palettes, blended from the two latest poses if the actor updates below frame rate. */
 static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint32_t i)
 {
     noh_character *ch = noh_stage_character(k, i);

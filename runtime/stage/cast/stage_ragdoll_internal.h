@@ -19,9 +19,9 @@ typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_O
 
 /* State of an actor. */
 typedef struct noh_stage_body {
-    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* metres from `origin`: of the last pose, and of the one
-                                                         * before; while it falls those of its ragdoll, and where its
-                                                         * clips have them */
+    noh_ragdoll_pose bodies[2][NOH_RAGDOLL_BODIES_MAX]; /* metres from `origin`: of the last two poses; during a
+                                                         * fall the ragdoll's bodies, and the bodies as the clips
+                                                         * pose them */
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX]; /* RISE_BEGINS: of bodies[0]. RISE_GOES_ON: of each body's joint
                                                          * how far it is turned from its clips, and how fast: radians */
     float offset[3], speed[3];                          /* likewise where the first body's joint is, in its unit; while

@@ -116,7 +116,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
 
 /* ---- updates ---- */
 
-/* Joints times clips in the pose of what an actor plays beside its clips. */
+/* Joints times clips in the pose of the graph that an actor plays. */
 static uint32_t inner_work(const noh_stage_kind *k, uint32_t index)
 {
     const noh_controller *c = noh_stage_inner(k, index);

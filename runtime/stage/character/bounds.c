@@ -123,7 +123,7 @@ float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radiu
     return largest * ROUNDING;
 }
 
-/* The extension of a box by targets: the sum of their boxes, each of which contains 0. A negative weight swaps low and
+/* The extension of a box by targets: the sum of their boxes. Each box contains 0. A negative weight swaps low and
  * high. */
 static void add_targets(const noh_mesh *mesh, const float *weights, float deltas[6])
 {

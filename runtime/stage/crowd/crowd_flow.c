@@ -1,9 +1,8 @@
 /* crowd_flow.c: flow fields: for each cell the direction of the shortest way to a goal, built a few cells at a time.
  *
- * The length d of the shortest way satisfies |grad d| = 1 (an eikonal equation). It is found by sweeps over the grid in
- * four orders, in each of which only cells are looked at that have a neighbour that has changed; when there is none
- * left, each cell's direction is that in which d falls. Lengths only become shorter, each time by LEAST or more, so it
- * ends.
+ * The length d of the shortest way satisfies |grad d| = 1 (an eikonal equation). Sweeps over the grid in four orders
+ * solve it; each visits only cells with a changed neighbour. When none are left, each cell's direction is the direction
+ * in which d falls. Lengths only decrease, each time by LEAST or more, so the sweeps end.
  * source   Zhao: A fast sweeping method for Eikonal equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi:
  *          Some improvements for the fast sweeping method, SIAM Journal on Scientific Computing 2010 */
 #include "core/base/trig.h"

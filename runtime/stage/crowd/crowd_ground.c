@@ -9,7 +9,7 @@
 
 #define GRADES 64.0f      /* steps of a rise of its run */
 #define STEEPNESS 5.0494f /* 3.5 / ln 2 */
-#define EASIEST 0.05f     /* falling by so much is the fastest */
+#define EASIEST 0.05f     /* the downward slope with the highest speed */
 #define SLOWEST 0.2f      /* downhill, however steep */
 
 uint32_t noh_crowd_ground_bytes(const crowd_cells *cells)

@@ -50,7 +50,7 @@ typedef struct crowd_round {
     vec2 heading;  /* along the wall */
     float nearest; /* to its goal, as it began to walk along it; before: as it ever was. 0: not known */
     uint8_t idle;  /* steps without coming nearer */
-    uint8_t mode;  /* 0: goes by itself; 1, 2: keeps the wall to its left, right */
+    uint8_t mode;  /* 0: walks freely; 1, 2: keeps the wall to its left, right */
     uint8_t has_gone_round;
     uint8_t yields; /* steps for which it makes way; the state has this and mode as they were before this step */
 } crowd_round;
@@ -201,8 +201,8 @@ typedef struct crowd_runs {
     uint32_t first[3], end[3];
     uint32_t count, until;
 } crowd_runs;
-/* Those of a rank: found anew where a cell ends, so that ranks in order find them once a cell. until: 0 before the
- * first */
+/* Find the runs of a rank: again only where a cell ends, so that ranks in order find them once per cell. until: 0
+ * before the first call */
 void noh_crowd_find_runs(const noh_crowd *c, uint32_t rank, crowd_runs *runs);
 static inline void noh_crowd_runs_of(const noh_crowd *c, uint32_t rank, crowd_runs *runs)
 {
@@ -255,8 +255,8 @@ vec2 noh_crowd_keep_out(const noh_crowd *c, vec2 from, vec2 to, float radius);
  * walked so. returns 0 where it is there */
 int noh_crowd_round(noh_crowd *c, const crowd_body *b, vec2 now, vec2 goal, float speed, vec2 *direction,
                     float *distance);
-/* Who has waited long at a wall, before one that stays there or came along it the other way, turns round: not both at
- * once. */
+/* Make an agent turn around that has waited long at a wall, blocked by an agent that stays there or comes the other
+ * way. Never both at once. */
 void noh_crowd_turn_round(noh_crowd *c, uint32_t rank, const crowd_runs *runs, uint32_t waited);
 
 /* ---- crowd_flow.c, crowd_follow.c ---- */
