@@ -7,7 +7,7 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 
 # Folders and files that are clean and must stay clean.
-clean='runtime/noh runtime/core runtime/stage/actors runtime/stage/cast runtime/stage/character runtime/stage/crowd tools/noh tools/convert tools/README.md'
+clean='runtime/noh runtime/core runtime/stage tools/noh tools/convert tools/README.md'
 
 if ! command -v perl >/dev/null 2>&1; then
     echo 'prose skipped: perl is not installed'
