@@ -177,10 +177,10 @@ typedef struct noh_kind_desc {
     uint32_t layer_count;         /* 0..NOH_LAYERS_MAX */
     /* Modules; default none, at no cost */
     noh_module graphs;  /* noh_graph_module: animation graphs that its actors may play */
-    noh_module face;    /* noh_face_module (modules.h): faces that live */
-    noh_module ragdoll; /* noh_ragdoll_module (modules.h): actors that fall */
-    noh_module springs; /* noh_springs_module (modules.h): what the mesh's pack has springs for swings */
-    /* What changes its poses before they are shown (modules.h), in this order; default (NULL) nothing, at no cost */
+    noh_module face;    /* noh_face_module (modules.h): live faces */
+    noh_module ragdoll; /* noh_ragdoll_module (modules.h): ragdolls */
+    noh_module springs; /* noh_springs_module (modules.h): the springs of the mesh's pack */
+    /* Modifiers of poses (modules.h), in the order in which they run; default (NULL) none, at no cost */
     const struct noh_modifier *modifiers; /* [modifier_count] what they point to must outlive the stage */
     uint32_t modifier_count;              /* 0..NOH_MODIFIERS_MAX */
     int weight_rules;                     /* 1: apply the weight rules of the mesh's pack (low_life.h) to all weights:
@@ -509,7 +509,7 @@ noh_controller *noh_actor_controller(noh_stage *stage, noh_actor actor, const no
 
 /* Hold a float: blend the value from the clips towards this one.
  * ranges  amount 0..1: 1 shows only this value; 0 releases the float
- * errors  NOT_FOUND the actor is gone, or the kind has no such float; LIMIT held_float_count floats are held already
+ * errors  NOT_FOUND the actor is gone, or the kind has no such float; LIMIT held_float_count floats are already held
  *         (need: held_float_count); ARG value is not finite, or amount is out of range */
 noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t index, float value, float amount,
                                 noh_error *error);

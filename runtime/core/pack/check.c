@@ -43,7 +43,7 @@ noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint3
     uint64_t end = start + count * stride; /* counts are limited to 2^26, strides to 2^16: no overflow */
     memcpy(&offset, check->bytes + field, sizeof offset);
     if (offset != start) {
-        return noh_check_fail(check, "an array does not begin where the one before it ended", field);
+        return noh_check_fail(check, "an array does not begin at the end of the previous array", field);
     }
     if (end > check->count) {
         return noh_check_fail(check, "an array reaches past the end of its chunk", field);

@@ -69,7 +69,7 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
         return noh_check_fail(check, "clip's hash is not its skeleton's", offsetof(noh_clip_header, skeleton_hash));
     }
     if (skeleton->level_count != h->joint_error_count) {
-        return noh_check_fail(check, "clip's joint errors are not of its skeleton's levels",
+        return noh_check_fail(check, "number of a clip's joint errors differs from its skeleton's joint levels",
                               offsetof(noh_clip_header, joint_error_count));
     }
     return NOH_OK;

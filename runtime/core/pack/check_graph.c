@@ -147,8 +147,8 @@ static noh_result check_thresholds(const graph_view *g, const noh_pack_graph_nod
         NODE(first_item, n->first_item > g->h->point_count),
         NODE(item_count, n->item_count != n->child_count || too_long(n->first_item, n->item_count, g->h->point_count)),
     };
-    noh_result result = CHECK(rows, "blend space has not one point for each child, or points that are not in the chunk",
-                              n);
+    noh_result result = CHECK(
+        rows, "number of points in a blend space differs from its children, or a point is outside the chunk", n);
     for (uint32_t i = 0; i < n->item_count && !result; i++) {
         if (!is_coordinate(points[i]) || (i && !(points[i] > points[i - 1u])))
             result = fail_at(g, "points of a blend space do not rise, or are not finite", points + i);

@@ -88,7 +88,7 @@ static noh_result check_spheres(const noh_check *check, const noh_pack_hair_head
     const float *s = (const float *)(const void *)(check->bytes + h->spheres_offset);
     for (uint32_t i = 0; i < h->sphere_count; i++) {
         if (!is_within(s[4u * (size_t)i + 3u], 0.0f, FAR)) {
-            return noh_check_fail(check, "sphere of a haircut has an impossible radius",
+            return noh_check_fail(check, "radius of a haircut's sphere is out of range",
                                   h->spheres_offset + 16ull * i + 12u);
         }
     }

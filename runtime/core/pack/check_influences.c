@@ -64,7 +64,7 @@ static noh_result check_values(const noh_check *check, const noh_influences_head
     uint32_t most = 0;
     noh_result result = NOH_OK;
     if (firsts[0] != 0 || firsts[h->vertex_count] != h->influence_count) {
-        return noh_check_fail(check, "influence list does not begin at 0, or not end where its influences do",
+        return noh_check_fail(check, "influence list does not begin at 0, or does not end with its influences",
                               h->firsts_offset);
     }
     for (uint32_t i = 0; !result && i < h->vertex_count; i++) {
@@ -81,7 +81,8 @@ static noh_result check_values(const noh_check *check, const noh_influences_head
         result = check_vertex(check, h, joint_count, firsts[i], firsts[i + 1u]);
     }
     if (!result && most != h->most) {
-        result = noh_check_fail(check, "influence list says another number of joints than its vertices have at most",
+        result = noh_check_fail(check,
+                                "joint count of an influence list differs from the most that one of its vertices has",
                                 offsetof(noh_influences_header, most));
     }
     return result;

@@ -42,7 +42,7 @@ static noh_result check_level_counts(const noh_check *check, const noh_mesh_head
         { offsetof(noh_mesh_header, pair_count), l->pair_count > finer->pair_count },
     };
     return noh_check_fields(check, counts, sizeof counts / sizeof counts[0],
-                            "LOD level has more of something than the finer one", noh_check_level_at(l));
+                            "LOD level has a higher count than the finer level", noh_check_level_at(l));
 }
 
 /* The byte in a header of the first field in which two headers differ; their size where they are the same. Headers are
@@ -159,7 +159,7 @@ static noh_result check_texels(const noh_check *check, const noh_mesh_header *h,
     if (!(l->flags & NOH_MESH_TEXELS)) {
         const uint32_t least = l->vertex_count < h->touched_count ? l->vertex_count : h->touched_count;
         return l->touched_count < least
-                   ? noh_check_fail(check, "LOD level lacks texels of its vertices", noh_check_level_at(l))
+                   ? noh_check_fail(check, "LOD level has no texels for some of its vertices", noh_check_level_at(l))
                    : NOH_OK;
     }
     for (uint32_t v = 0; v < l->vertex_count; v++) {

@@ -19,8 +19,7 @@ static noh_result check_texture_of(const noh_check *check, uint32_t texture, int
     }
     return (h->flags & NOH_TEXTURE_LINEAR) == (is_data ? NOH_TEXTURE_LINEAR : 0u)
                ? NOH_OK
-               : noh_check_fail(check, "material takes a texture of colours for data, or one of data for colours",
-                                where);
+               : noh_check_fail(check, "material uses a colour texture for data, or a data texture for colours", where);
 }
 
 static noh_result check_material_textures(const noh_check *check, const noh_material *m, uint64_t at)
@@ -53,7 +52,7 @@ static noh_result check_wrinkle_codes(const noh_check *check, const noh_material
     const uint64_t where = at + offsetof(noh_material, wrinkle_weights);
     if (!(m->flags & NOH_MATERIAL_WRINKLE_CODES)) return NOH_OK;
     if (m->wrinkle_weights[0] == NOH_NONE || m->wrinkle_weights[1] != NOH_NONE || m->wrinkle_weights[2] != NOH_NONE) {
-        return noh_check_fail(check, "material flags name a mask of wrinkle regions that it has not",
+        return noh_check_fail(check, "material flags use a mask of wrinkle regions, but the material has none",
                               at + offsetof(noh_material, flags));
     }
     h = noh_pack_chunk_at(check->pack, NOH_CHUNK_TEXTURE, m->wrinkle_weights[0]);

@@ -21,7 +21,7 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
                               offsetof(noh_mesh_header, level));
     }
     if (h->source_crc && !h->level_first) {
-        return noh_check_fail(check, "mesh lacks no level but names a source", offsetof(noh_mesh_header, source_crc));
+        return noh_check_fail(check, "mesh has all levels but names a source", offsetof(noh_mesh_header, source_crc));
     }
     if (h->index_count > NOH_INDICES_MAX || h->index_count % 3) {
         return noh_check_fail(check, "index count is over the limit or not a multiple of three",
@@ -125,7 +125,7 @@ static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t 
         int empty = may_be_empty && b[0] > b[3] && b[1] > b[4] && b[2] > b[5];
         if (!empty) result = noh_check_floats(check, b, 6u, "box is not finite");
         if (!result && !proper && !empty) {
-            result = noh_check_fail(check, "box is inside out", offset + 24ull * i);
+            result = noh_check_fail(check, "minimum of a box is above its maximum", offset + 24ull * i);
         }
     }
     return result;

@@ -32,7 +32,7 @@ static noh_result check_bind(const noh_check *check, const noh_skeleton_header *
     noh_result result = noh_check_floats(check, bind, h->joint_count * 10u, "bind pose is not finite");
     for (uint32_t j = 0; !result && j < h->joint_count; j++) {
         if (is_chain_bounded(bind, parents, j)) continue;
-        result = noh_check_fail(check, "bind pose of a joint and those above it is larger than 10^12",
+        result = noh_check_fail(check, "bind pose of a joint and its ancestors is larger than 10^12",
                                 h->bind_offset + 40ull * j);
     }
     return result;

@@ -64,9 +64,9 @@ static noh_result check_palettes(const noh_check *check, const noh_mesh_header *
             { offsetof(noh_palette, joint_count), !palettes[p].joint_count || palettes[p].joint_count > left ||
                                                       palettes[p].joint_count > NOH_PALETTE_JOINTS_MAX },
         };
-        const noh_result result = noh_check_fields(check, fields, 2,
-                                                   "palette is empty, too large, or does not follow the one before it",
-                                                   h->palettes_offset + 8ull * p);
+        const noh_result result = noh_check_fields(
+            check, fields, 2, "palette is empty, too large, or does not follow the previous palette",
+            h->palettes_offset + 8ull * p);
         if (result) {
             return result;
         }

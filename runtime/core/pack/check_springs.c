@@ -64,9 +64,9 @@ static noh_result check_row(const springs_check *c, uint32_t index, uint32_t abo
         { offsetof(noh_spring_row, gravity), is_not_finite3(row->gravity) },
     };
     const noh_result result = noh_check_fields(c->check, fields, sizeof fields / sizeof *fields,
-                                               "row of springs is impossible, or no child of the row before", at);
+                                               "row of springs is invalid, or not a child of the previous row", at);
     if (!result && above != NOH_NONE && has_no_length(c->bind + 10u * (size_t)row->joint + 4u)) {
-        return noh_check_fail(c->check, "joint of a spring lies where its parent is", at);
+        return noh_check_fail(c->check, "joint of a spring is at the position of its parent", at);
     }
     return result;
 }
@@ -85,7 +85,7 @@ static noh_result check_chain(const springs_check *c, uint32_t index, uint32_t *
         { offsetof(noh_spring_chain, end), has_no_length(chain->end) },
     };
     noh_result result = noh_check_fields(c->check, fields, sizeof fields / sizeof *fields,
-                                         "chain of springs is impossible, or out of order", at);
+                                         "chain of springs is invalid, or out of order", at);
     for (uint32_t i = 0; !result && i < chain->row_count; i++) {
         result = check_row(c, *next + i, i ? c->rows[*next + i - 1u].joint : NOH_NONE);
     }
@@ -99,7 +99,7 @@ static noh_result check_distinct(const springs_check *c)
     for (uint32_t i = 0; i < c->h->row_count; i++) {
         const uint32_t joint = c->rows[i].joint, bit = 1u << (joint & 7u);
         if (taken[joint >> 3] & bit) {
-            return noh_check_fail(c->check, "joint stands in two rows of springs",
+            return noh_check_fail(c->check, "joint is in two rows of springs",
                                   c->h->rows_offset + (uint64_t)i * sizeof *c->rows);
         }
         taken[joint >> 3] = (uint8_t)(taken[joint >> 3] | bit);
@@ -118,7 +118,7 @@ static noh_result check_colliders(const noh_check *check, const noh_springs_head
             { offsetof(noh_spring_capsule, radius), is_not_below(all[i].radius) },
         };
         const noh_result result = noh_check_fields(check, fields, sizeof fields / sizeof *fields,
-                                                   "collider of springs is impossible",
+                                                   "collider of springs is invalid",
                                                    h->colliders_offset + (uint64_t)i * sizeof *all);
         if (result) return result;
     }

@@ -103,7 +103,7 @@ static noh_result check_place(const noh_pack *pack, uint32_t index, uint64_t *cu
     uint64_t start = (*cursor + NOH_PACK_ALIGN - 1) & ~(uint64_t)(NOH_PACK_ALIGN - 1);
     uint64_t table_at = sizeof(noh_pack_header) + (uint64_t)index * sizeof *c;
     if (c->offset != start) {
-        return noh_fail(error, NOH_ERR_DATA, "chunk does not begin where the one before it ended",
+        return noh_fail(error, NOH_ERR_DATA, "chunk does not begin at the end of the previous chunk",
                         table_at + offsetof(noh_pack_chunk, offset), start);
     }
     if (c->bytes > pack->byte_count || start + c->bytes > pack->byte_count) {

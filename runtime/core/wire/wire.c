@@ -275,7 +275,9 @@ noh_result noh_wire_push(noh_wire *w, const void *bytes, size_t byte_count, noh_
 noh_result noh_wire_pack(const noh_wire *w, noh_pack *pack, noh_error *error)
 {
     NOH_ASSERT(w && pack);
-    if (!w->pack_count) return noh_fail(error, NOH_ERR_NOT_FOUND, "no pack is there yet", w->taken, w->head.file_bytes);
+    if (!w->pack_count)
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no pack is complete yet: pass more bytes", w->taken,
+                        w->head.file_bytes);
     *pack = w->pack;
     return NOH_OK;
 }

@@ -222,9 +222,9 @@ int noh_wire_begin(noh_wire_filter *f, const noh_wire_section *section)
         return 0;
     }
     if (section->kind > NOH_WIRE_TEXTURE) return noh_wire_wrong(f, "a section of an unknown kind");
-    if (!f->mesh.chunk) return noh_wire_wrong(f, "a section of a mesh, and no mesh before it");
+    if (!f->mesh.chunk) return noh_wire_wrong(f, "section of a mesh without a mesh before it");
     if (section->kind == NOH_WIRE_INDICES && f->mesh.begun) {
-        return noh_wire_wrong(f, "a mesh's triangles come twice, or after its other arrays");
+        return noh_wire_wrong(f, "a mesh has two sections of triangles, or other arrays before its triangles");
     }
     f->mesh.begun = 1;
     memset(f->edges, 0xff, sizeof f->edges);
