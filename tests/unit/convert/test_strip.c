@@ -385,13 +385,13 @@ static void expect_refused(const kept *good, void (*lie)(noh_mesh_header *h), co
     X(lacks_more, (h[0].level_first = h[1].level_first = h[2].level_first = 2), "begin with the finest")  \
     X(lacks_all, (h[0].level_first = h[0].level = 4), "lacks all")                                        \
     X(lacks_too_many, (h[0].level_first = h[0].level = 0xffffffffu), "lacks all")                         \
-    X(is_level_0, (h[0].level_first = h[0].level = 0), "lacks no level but names a source")               \
-    X(one_level_only, h[0].level_count = 2, "an array does not begin where")                              \
+    X(is_level_0, (h[0].level_first = h[0].level = 0), "has all levels but names a source")               \
+    X(one_level_only, h[0].level_count = 2, "an array does not begin at")                                 \
     X(level_twice, h[1].level = 1, "out of order")                                                        \
     X(other_first, h[1].level_first = 0, "differs in what all levels share")                              \
     X(other_source, h[2].source_crc ^= 1u, "differs in what all levels share")                            \
     X(negative_error, h[0].level_error_rest = -1.0f, "error")                                             \
-    X(error_falls, h[0].level_error_rest = h[2].level_error_rest * 2.0f, "below that of the finer")       \
+    X(error_falls, h[0].level_error_rest = h[2].level_error_rest * 2.0f, "below the finer")               \
     X(reserved, h[0].reserved[0] = 1, "reserved")
 
 #define X(name, statement, message)            \

@@ -192,24 +192,24 @@ static void have_more_rectangles(forged *f)
     X(other_reserved, f->h[2].reserved[4] = 1, "differs in what all levels share")                                   \
     X(falling_influences, f->h[0].influence_errors[0] = 1.0f, "fewer influences")                                    \
     X(unknown_influences, f->h[0].influence_errors[2] = NAN, "fewer influences")                                     \
-    X(no_vertices, f->h[2].vertex_count = 0, "more of something")                                                    \
-    X(more_vertices, f->h[1].vertex_count = f->h->vertex_count + 1u, "more of something")                            \
-    X(more_indices, f->h[1].index_count = f->h->index_count + 3u, "more of something")                               \
-    X(indices_not_triangles, f->h[1].index_count -= 1, "more of something")                                          \
-    X(no_submeshes, f->h[1].submesh_count = 0, "more of something")                                                  \
-    X(too_many_submeshes, f->h[1].submesh_count = 257, "more of something")                                          \
-    X(more_touched, f->h[1].touched_count = f->h->touched_count + 1u, "more of something")                           \
-    X(more_rects, f->h[1].rect_count = f->h->rect_count + 1u, "more of something")                                   \
-    X(more_texels, f->h[1].texel_count = f->h->texel_count + 1u, "more of something")                                \
-    X(more_pairs, f->h[1].pair_count = f->h->pair_count + 1u, "more of something")                                   \
-    X(more_than_the_finer, f->h[2].vertex_count = f->h[1].vertex_count + 1u, "more of something")                    \
+    X(no_vertices, f->h[2].vertex_count = 0, "higher count")                                                         \
+    X(more_vertices, f->h[1].vertex_count = f->h->vertex_count + 1u, "higher count")                                 \
+    X(more_indices, f->h[1].index_count = f->h->index_count + 3u, "higher count")                                    \
+    X(indices_not_triangles, f->h[1].index_count -= 1, "higher count")                                               \
+    X(no_submeshes, f->h[1].submesh_count = 0, "higher count")                                                       \
+    X(too_many_submeshes, f->h[1].submesh_count = 257, "higher count")                                               \
+    X(more_touched, f->h[1].touched_count = f->h->touched_count + 1u, "higher count")                                \
+    X(more_rects, f->h[1].rect_count = f->h->rect_count + 1u, "higher count")                                        \
+    X(more_texels, f->h[1].texel_count = f->h->texel_count + 1u, "higher count")                                     \
+    X(more_pairs, f->h[1].pair_count = f->h->pair_count + 1u, "higher count")                                        \
+    X(more_than_the_finer, f->h[2].vertex_count = f->h[1].vertex_count + 1u, "higher count")                         \
     X(error_nan, f->h[1].level_error_targets = NAN, "error is not finite")                                           \
     X(error_infinite, f->h[2].level_error_pairs = INFINITY, "error is not finite")                                   \
     X(skipped_nan, f->h[2].level_skipped = NAN, "error is not finite")                                               \
-    X(error_negative, f->h[1].level_error_clip = -1.0f, "below that of the finer")                                   \
-    X(error_falls, f->h[2].level_error_rest = f->h[1].level_error_rest * 0.5f, "below that of the finer")            \
-    X(p99_falls, f->h[2].level_error_rest_p99 = 0.0f, "below that of the finer")                                     \
-    X(skipped_falls, f->h[1].level_skipped = 9.0f, "below that of the finer")                                        \
+    X(error_negative, f->h[1].level_error_clip = -1.0f, "below the finer")                                           \
+    X(error_falls, f->h[2].level_error_rest = f->h[1].level_error_rest * 0.5f, "below the finer")                    \
+    X(p99_falls, f->h[2].level_error_rest_p99 = 0.0f, "below the finer")                                             \
+    X(skipped_falls, f->h[1].level_skipped = 9.0f, "below the finer")                                                \
     X(indices_elsewhere, f->h[1].indices_offset += 6, "do not follow the finer level's")                             \
     X(indices_shared, f->h[1].indices_offset = f->h->indices_offset, "do not follow the finer level's")              \
     X(submeshes_elsewhere, f->h[2].submeshes_offset -= 24, "do not follow the finer level's")                        \
@@ -379,7 +379,7 @@ static void texels_without_references_are_counted(void **state)
     }
     pack_repair(p.bytes, p.byte_count);
     assert_int_equal(noh_pack_open(p.bytes, p.byte_count, &pack, &error), NOH_ERR_DATA);
-    assert_non_null(strstr(error.what, "lacks texels of its vertices"));
+    assert_non_null(strstr(error.what, "has no texels for some of its vertices"));
     lod_pack_free(&p);
     model_free(m);
 }

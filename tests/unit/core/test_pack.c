@@ -412,9 +412,9 @@ static float nan_value(void)
     X(texture_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ETC2_RGBA)                                  \
     X(texture_error, DATA, "texture's error", f->texture->error = -1.0f)                                             \
     X(texture_error_nan, DATA, "texture's error", f->texture->error = nan_value())                                   \
-    X(texture_of_data, DATA, "of data for colours", f->texture->flags = NOH_TEXTURE_LINEAR)                          \
+    X(texture_of_data, DATA, "data texture for colours", f->texture->flags = NOH_TEXTURE_LINEAR)                     \
     X(material_normal_missing, DATA, "texture", f->materials[0].normal_texture = 1)                                  \
-    X(material_normal_colors, DATA, "of colours for data", f->materials[0].normal_texture = 0)                       \
+    X(material_normal_colors, DATA, "colour texture for data", f->materials[0].normal_texture = 0)                   \
     X(material_weights_missing, DATA, "texture", f->materials[0].wrinkle_weights[2] = 1)                             \
     X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_TOON + 1)                     \
     X(material_f0_nan, DATA, "not finite", f->materials[0].f0[2] = nan_value())                                      \

@@ -372,7 +372,7 @@ static void lies_about_lod_are_named(void **state)
     expect_refused(&f, "leaves out a joint that has no parent");
     f = forge();
     f.clip->joint_error_count = 1;
-    expect_refused(&f, "not of its skeleton's levels");
+    expect_refused(&f, "differs from its skeleton's joint levels");
     f = forge();
     joint_errors_of(&f)[0] = 0.5f;
     expect_refused(&f, "joint errors do not begin with 0");
