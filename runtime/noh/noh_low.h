@@ -1,5 +1,5 @@
-/* noh_low.h: parts for engines that do not use a stage: everything that noh.h is built of and that has a use alone.
- * It may change between minor versions; the other headers do so less often.
+/* noh_low.h: the parts from which noh.h is built, for engines that do not use a stage.
+ * It may change between minor versions; the other headers change less often.
  *
  *   low_core.h    memory, small mathematics, texels
  *   low_motion.h  clip caches, poses, graphs
