@@ -7,7 +7,8 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 
 # Folders and files that are clean and must stay clean.
-clean='runtime/noh runtime/core runtime/stage tools/noh tools/convert tools/README.md'
+clean='README.md CONTRIBUTING.md platform runtime/deform runtime/gl runtime/life runtime/motion shaders_es tools/README.md'
+clean="$clean tools/convert tools/docs tools/noh"
 
 if ! command -v perl >/dev/null 2>&1; then
     echo 'prose skipped: perl is not installed'

@@ -1,5 +1,5 @@
 // convert.js: converts a visitor's files to packs. Models go through the converter, which is loaded when first needed
-// and runs in a worker (tools/web_convert), without blocking the page. Packs equal those of `noh build`, byte for byte.
+// and runs in a worker (tools/web_convert), without blocking the page. Packs equal `noh build`'s, byte for byte.
 
 const packs = /\.nohz?$/i;
 const figures = /\.(glb|gltf|vrm|obj)$/i;

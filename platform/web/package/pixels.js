@@ -1,7 +1,7 @@
 // pixels.js: the resolution of a character: full, or reduced while it moves and frames are slow, as without a GPU; and
 // whether there is a GPU.
 
-const looksAt = 16, atLeast = 5, enough = 1200; // frames to average; at least this many after so many ms, because browsers request several at once
+const looksAt = 16, atLeast = 5, enough = 1200; // frames to average; at least this many after `enough` ms, because browsers request several at once
 const underWay = 5; // frames ignored after a change, because they may be older
 const tooLong = 50, aim = 36; // ms per frame
 const drop = 0.4, rise = 1.25; // per change

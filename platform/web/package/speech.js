@@ -20,7 +20,7 @@ const speechErrors = {
 
 // ---- a sentence ----
 
-// Shapes by letters, the longest first: roughly those of languages in Latin script. Numbers are noh_viseme; 0 is silence.
+// Shapes by letters, the longest first: a rough fit for Latin scripts. Numbers are noh_viseme; 0 is silence.
 const letters = { th: 3, sch: 6, ch: 6, sh: 6, ph: 2, ck: 5, ng: 5, qu: 5, oo: 14, ou: 14, ee: 12, ea: 12, ow: 13, oa: 13,
     p: 1, b: 1, m: 1, f: 2, v: 2, t: 4, d: 4, k: 5, g: 5, c: 5, q: 5, x: 5, j: 6, s: 7, z: 7, n: 8, l: 8, r: 9,
     a: 10, h: 10, e: 11, i: 12, y: 12, o: 13, u: 14, w: 14 };

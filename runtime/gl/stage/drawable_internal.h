@@ -10,7 +10,7 @@
 
 enum { NOH_DRAWABLE_COLOR, NOH_DRAWABLE_DEPTH }; /* noh_gl_drawable.programs */
 
-/* noh_gl_drawable.uniforms: two of the light, then those of noh_gl_drawable_desc.uniforms. */
+/* noh_gl_drawable.uniforms: two for the light, then noh_gl_drawable_desc.uniforms. */
 enum { NOH_DRAWABLE_LIGHTING, NOH_DRAWABLE_KEY, NOH_DRAWABLE_OWN };
 
 /* Texture units: its own texture at 0. */

@@ -100,7 +100,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
         return result;
     }
     noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
-    d = noh_gl_site_morph(m->desc, &tiles); /* counts blocks and strips, which the room below has not */
+    d = noh_gl_site_morph(m->desc, &tiles); /* counts blocks and strips; the room below has no counts */
     for (uint32_t i = 0; later && model && i < tiles.count; i++) {
         tiles.meshes[i] = noh_mesh_at_lod(&model->room, tiles.meshes[i].header->level);
     }

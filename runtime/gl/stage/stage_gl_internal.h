@@ -11,7 +11,7 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 
-#define NOH_MODEL_POOLS_MAX 16u /* tiles of one mesh come in at most so many sizes */
+#define NOH_MODEL_POOLS_MAX 16u /* most sizes of tiles in one mesh */
 
 /* A mesh of a pack, with its accumulators for all kinds that draw it. */
 typedef struct noh_gl_model {
@@ -35,8 +35,8 @@ typedef struct noh_gl_item {
     int mirrored; /* its node mirrors: a crowd cannot be drawn */
 } noh_gl_item;
 
-/* Whether an actor's item is mirrored, by its node or by the joint that the actor hangs on: it is drawn alone then,
- * because one draw has one winding. Places of their own never mirror. */
+/* Whether an actor's item is mirrored, by its node or by the joint that the actor is attached to. A mirrored item is
+ * drawn alone, because one draw has one winding. Places of their own never mirror. */
 static inline int noh_gl_is_mirrored(const noh_gl_item *item, const noh_stage_actor *actor,
                                      const noh_stage_shown *shown)
 {
@@ -50,7 +50,7 @@ static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown
     return item->model->morph && shown->slot.pool != NOH_NONE;
 }
 
-/* 0: nothing of a mesh is morphed: its vertices need not look deltas up, which are 0. */
+/* 0: all weights are 0, so the mesh is not morphed and its vertices need not look up deltas. */
 int noh_gl_any_weight(const float *weights, uint32_t count);
 
 /* The instance of model->morph that an actor's slot is. */
@@ -137,7 +137,7 @@ noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan,
 
 /* ---- levels that come later ---- */
 
-/* The copy that noh_gl_model.room is of, in memory of so many bytes, aligned to 16. */
+/* Makes the copy for noh_gl_model.room in `memory`: noh_gl_room_size bytes, aligned to 16. */
 size_t noh_gl_room_size(const noh_mesh *mesh);
 noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory);
 /* Make the mesh of a model, with what its own pack has. */
@@ -168,7 +168,7 @@ typedef struct noh_gl_tiles {
     uint32_t count;
     noh_mesh coarse; /* where `comes_later` */
     int comes_later;
-    int vertices; /* 1: the path cpu finishes those of the whole stage */
+    int vertices; /* 1: the path cpu finishes the vertices of the whole stage */
 } noh_gl_tiles;
 
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out);

@@ -66,8 +66,7 @@ noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *mod
     return result;
 }
 
-/* The finest level of the plan in the pack that was brought. Its materials and skin are those of the kind's own pack.
- */
+/* The finest level of the plan in the pack that was loaded later, with the materials and skin of the kind's pack. */
 static noh_mesh brought(const noh_stage *s, const noh_gl_model *model)
 {
     noh_mesh mesh;

@@ -88,7 +88,7 @@ static void find_chain(const noh_ragdoll_source *s, uint32_t head, noh_gaze_rig 
     for (uint32_t i = 0; i < rig->joint_count; i++) rig->shares[i] /= sum;
 }
 
-/* The first two eye joints below the head, neither of which is a descendant of the other. */
+/* The first two eye joints below the head; neither is a descendant of the other. */
 static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[2])
 {
     static const char *const no_eye[] = {
@@ -189,7 +189,7 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
     if (result != NOH_OK) return result;
     head = find_head(&s);
     if (head == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint's name contains 'head': fill in the gaze rig by hand", 0,
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name contains 'head': fill in the gaze rig by hand", 0,
                         0);
     }
     memset(rig, 0, sizeof *rig);
