@@ -84,7 +84,7 @@ static void cut_triangles(maker *m, uint32_t level, float cell)
     free(representative);
 }
 
-/* ---- vertices and texels: those of the coarsest level first ---- */
+/* ---- vertices and texels: the coarsest level's first ---- */
 
 static void sort_vertices(maker *m)
 {

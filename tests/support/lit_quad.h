@@ -1,6 +1,6 @@
 /* lit_quad.h: one quad drawn by the plain renderer, and what its pixels must be, in closed form.
  *
- * The quad fills a square picture. Its normals differ so much from corner to corner that it shows where they are not
+ * The quad fills a square picture. Its normals differ enough from corner to corner to show where they are not
  * made unit again; it is turned by half a turn and scaled differently along each axis, so that it shows where they are
  * transformed wrongly. */
 #ifndef NOH_TESTS_SUPPORT_LIT_QUAD_H
@@ -23,7 +23,7 @@ typedef struct lit_quad {
     int double_sided, unlit;
     const float *uv;    /* [4][2] or NULL; corners at (-1, -1), (1, -1), (-1, 1), (1, 1) */
     const float *color; /* [4][4] or NULL */
-    /* [2][4]: a texture of two texels beside each other, the second of the pack's two; or NULL */
+    /* [2][4]: a texture of two texels side by side, the second of the pack's two; or NULL */
     const uint8_t *picture;
     const model_texture *base_map; /* in place of that picture, to be compressed as it says, or NULL */
     const uint8_t *normal_map;     /* [4] one texel, or NULL */

@@ -12,7 +12,7 @@
 #include "noh/modules.h"
 #include "noh/pack.h"
 
-/* What the part remembers, and is told. */
+/* The state and the inputs of the part. */
 typedef struct look_state {
     float target[3]; /* world */
     float wanted;    /* 0..1: how far to turn */

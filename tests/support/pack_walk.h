@@ -7,7 +7,7 @@
 
 #include "noh/pack.h"
 
-/* Recompute the checksum of every chunk that lies inside the bytes, then that of the table.
+/* Recompute the checksum of every chunk that lies inside the bytes, then the table's checksum.
  * Does nothing where the table itself does not lie inside. */
 void pack_repair(uint8_t *bytes, size_t count);
 

@@ -1,4 +1,4 @@
-/* renderer.h: renderers for tests, of which at most RENDERERS_MAX live at a time: their memory goes round. */
+/* renderer.h: renderers for tests. At most RENDERERS_MAX live at a time: their memory goes round. */
 #ifndef NOH_TEST_RENDERER_H
 #define NOH_TEST_RENDERER_H
 

@@ -101,7 +101,7 @@ static inline set_fixture set_fixture_of(raw_set *raw)
     return set_fixture_of_graphs(raw, NULL);
 }
 
-/* Clips "clip0", "clip1", ... of so many frames each, at 30 Hz; and graphs (NULL: none). */
+/* Clips "clip0", "clip1", ... of frames[i] frames each, at 30 Hz; and graphs (NULL: none). */
 static inline set_fixture set_fixture_make_graphs(uint32_t joints, uint32_t clips, const uint32_t *frames,
                                                   graph_file *graphs)
 {

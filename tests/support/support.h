@@ -81,7 +81,7 @@ void test_write_file(const char *path, const void *bytes, size_t count);
 /* Keeps a file for the fuzzer of the importers: $NOH_SEEDS/HASH, where that is set. */
 void test_keep_seed(const void *bytes, size_t count);
 
-/* The same of a .gltf text whose one buffer is a file beside it: as a .glb. */
+/* The same of a .gltf text whose one buffer is a file in the same folder: as a .glb. */
 void test_keep_glb_seed(const char *json, const void *bin, size_t count);
 
 /* ---- random numbers: xorshift64* ---- */

@@ -189,8 +189,7 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
     if (result != NOH_OK) return result;
     head = find_head(&s);
     if (head == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name contains 'head': fill in the gaze rig by hand", 0,
-                        0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name contains 'head': fill in the gaze rig by hand", 0, 0);
     }
     memset(rig, 0, sizeof *rig);
     find_chain(&s, head, rig);

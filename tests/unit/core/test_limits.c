@@ -231,7 +231,7 @@ static void lod_pools(void **state)
     for (uint32_t i = 0; i < NOH_LOD_POOLS_MAX; i++) slots[i] = NOH_LOD_POOL_SLOTS_MAX / NOH_LOD_POOLS_MAX;
     assert_true(noh_lod_pools_size(&d) >= 20u * (size_t)NOH_LOD_POOL_SLOTS_MAX);
     assert_int_equal(noh_lod_pools_init(&small, sizeof small, &d, &pools, &error), NOH_ERR_MEMORY);
-    for (int k = 0; k < 3; k++) { /* one slot too many; so many that 32 bits wrap to what would do; all ones */
+    for (int k = 0; k < 3; k++) { /* one slot too many; a count that wraps at 32 bits to one that would do; all ones */
         for (uint32_t i = 0; i < NOH_LOD_POOLS_MAX; i++) {
             slots[i] = k == 0   ? NOH_LOD_POOL_SLOTS_MAX / NOH_LOD_POOLS_MAX + (i == 7u)
                        : k == 1 ? 0x20000000u + NOH_LOD_POOL_SLOTS_MAX / NOH_LOD_POOLS_MAX
@@ -388,8 +388,8 @@ static void clips_of_a_bank(void **state)
     for (int i = 0; i < 3; i++) free(bytes[i]);
 }
 
-/* What a bank's cache holds is asked for by segments, or follows from instances and tracks, of which no number is too
- * large: there are never more segments than the clips have. */
+/* What a bank's cache holds is asked for by segments, or follows from instances and tracks, and no number of them is
+ * too large: there are never more segments than the clips have. */
 static void cached_segments_of_a_bank(void **state)
 {
     noh_pack pack;

@@ -189,8 +189,8 @@ static void a_mesh_without_attributes_has_defaults(void **state)
     free(plain);
 }
 
-/* Each combination of attributes lies where the offsets say: decoded values agree with those
- * of the mesh that has them all. */
+/* Each combination of attributes lies where the offsets say: decoded values agree with the
+ * values of the mesh that has them all. */
 static void every_combination_of_attributes_decodes(void **state)
 {
     (void)state;

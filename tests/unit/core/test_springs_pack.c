@@ -29,7 +29,7 @@ static const char *joint_name(const noh_pack *pack, const noh_springs_desc *d, u
     return noh_pack_joint_name(pack, 0, d->rows[row].joint);
 }
 
-/* A tail that forks is two chains: the longer way, and behind it the other, which hangs on it. */
+/* A tail that forks is two chains: the longer way, and behind it the other, which is attached to it. */
 static void a_text_becomes_chains(void **state)
 {
     const noh_pack pack = test_open(good, good_count);

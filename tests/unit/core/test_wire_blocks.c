@@ -156,7 +156,7 @@ static void any_bits_come_back(void **state)
     free(bytes);
 }
 
-/* Smooth pictures take less than half of what their bytes do; those of two colours in each block, which need the modes
+/* Smooth pictures take less than half of what their bytes do; pictures of two colours in each block, which need the modes
  * whose free bits are guessed, less than their bytes. */
 static void pictures_take_few_bytes(void **state)
 {
@@ -257,7 +257,7 @@ static void versions_from_1_on_are_read(void **state)
     free(bytes);
 }
 
-/* Sections of textures that are none. */
+/* Sections that are not valid textures. */
 static void lies_about_textures_are_refused(void **state)
 {
     static uint8_t image[4096];

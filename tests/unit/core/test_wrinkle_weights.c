@@ -1,5 +1,5 @@
-/* test_wrinkle_weights.c: regions out of expressions, weights out of areas, normals with wrinkles; the sources'
- * formulas beside them. */
+/* test_wrinkle_weights.c: regions out of expressions, weights out of areas, normals with wrinkles; compared with
+ * the sources' formulas. */
 #include "support/support.h"
 
 #include <math.h>
@@ -84,8 +84,8 @@ static float length_of(const float v[3])
     return sqrtf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* N = lerp(N_geo, N_bump, wrinkle) is not made unit again: with the weight that a triangle has at rest, and that of one
- * that lost a third. */
+/* N = lerp(N_geo, N_bump, wrinkle) is not made unit again: with the weight that a triangle has at rest, and with the
+ * weight of one that lost a third. */
 static void normals_of_areas_are_unit(void **state)
 {
     const float geometric[3] = { 0.0f, 0.0f, 1.0f }, bump[3] = { 0.8f, 0.0f, 0.6f };
@@ -100,7 +100,7 @@ static void normals_of_areas_are_unit(void **state)
     }
 }
 
-/* N = lerp(base, wrinkle, weight) is shorter than one, and at weight 1 has nothing of the base's detail left. */
+/* N = lerp(base, wrinkle, weight) is shorter than one, and at weight 1 has lost all of the base's detail. */
 static void wrinkled_normals_are_unit(void **state)
 {
     (void)state;

@@ -52,7 +52,7 @@ static void unpose(scene_pose *p)
 
 /* ---- boxes ---- */
 
-/* The diagonal of the box over that of the tightest one. */
+/* The diagonal of the box divided by the tightest box's. */
 static double check_box(const float box[6], const float *positions, uint32_t count)
 {
     float tight[6];

@@ -38,7 +38,7 @@ static void random_texels(loose_mesh *m, test_random *r)
     }
 }
 
-/* size: how large deltas are beside the directions */
+/* size: of deltas relative to the directions */
 static void random_loose(loose_mesh *m, test_random *r, float size)
 {
     noh_mesh_header *h = &m->header;
@@ -74,7 +74,7 @@ static void close_loose(loose_mesh *m)
     free(m->layers.position);
 }
 
-/* Deltas that leave nothing of the normal or the tangent, are zeros, or too large for a product. */
+/* Deltas that cancel the normal or the tangent, are zeros, or are too large for a product. */
 static void make_hard(loose_mesh *m, test_random *r)
 {
     for (uint32_t v = 0; v < m->header.vertex_count; v++) {

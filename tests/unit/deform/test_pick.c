@@ -81,7 +81,7 @@ static void a_hit_says_where_it_is(void **state)
     free(s.bytes);
 }
 
-/* A surface behind the origin or beyond distance_max is not hit, nor is one beside the ray. */
+/* A surface behind the origin or beyond distance_max is not hit, nor is one that the ray misses. */
 static void a_ray_ends_at_its_distance(void **state)
 {
     sheet s;
@@ -460,7 +460,7 @@ static void what_lies_behind_a_hole_is_hit(void **state)
             const int over = alphas[y * PICTURE_SIDE + PICTURE_SIDE - 1u - x] >= 128;
             const int under = alphas[y * PICTURE_SIDE + x] >= 128;
             const noh_result result = pick(&s, at[0], at[1], 3, 0, 0, -1, 100, &hit);
-            if (at[0] > 0.99f) continue; /* steeper beside the fold */
+            if (at[0] > 0.99f) continue; /* steeper near the fold */
             assert_int_equal(result, over || under ? NOH_OK : NOH_ERR_NOT_FOUND);
             if (result == NOH_OK) assert_true(fabsf(hit.distance - (over ? 2.0f : 3.0f)) < 1e-5f);
             layers[over ? 0 : under ? 1 : 2]++;

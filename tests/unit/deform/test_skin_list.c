@@ -15,7 +15,7 @@
 #include "support/pack_walk.h"
 #include "support/skin_asset.h"
 
-/* A tube of 24 joints, up to 12 of which move a vertex. */
+/* A tube of 24 joints; up to 12 of them move a vertex. */
 static const skin_cylinder tube = { 12, 30, 24, 12, 2, 1, 3.0f, 0.5f };
 static const skin_options all = { .influences = 32, .palette = 14 };
 
@@ -135,7 +135,7 @@ static void ranges_and_targets(void **state)
     unmake(&x);
 }
 
-/* Built as ever, no vertex has more than eight, and the model says what it lost. */
+/* Built as ever, no vertex has more than eight, and the model reports what it lost. */
 static void eight_is_what_was_not_asked_for(void **state)
 {
     model *m = skin_cylinder_model(&tube);

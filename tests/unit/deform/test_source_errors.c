@@ -1,5 +1,5 @@
-/* Errors of the source documents about skinning, morphing and picking: each test shows how the source's version fails,
- * beside what the library does. tests/README.md names the sources. Where an error is about what a GPU binds, the test
+/* Errors of the source documents about skinning, morphing and picking: each test shows how the source's version fails
+ * and what the library does instead. tests/README.md names the sources. Where an error is about what a GPU binds, the test
  * is of the data. */
 #include "support/skin_asset.h"
 
@@ -382,7 +382,7 @@ static void a_miss_is_not_the_nearest(void **state)
 }
 
 /* Without an inverse transpose normals of the picked clone go by the bones' matrices: where these scale by axis, the
- * normal at the hit is not that of the triangle that was hit. */
+ * normal at the hit is not the normal of the triangle that was hit. */
 static void normals_of_the_picked_face(void **state)
 {
     const skin_cylinder c = { 64, 9, 2, 2, 0, 0, 2.0f, 0.5f };
@@ -450,7 +450,7 @@ static model *two_tubes(int shuffle)
     return m;
 }
 
-/* The source's code computes A(1 - S) + B S; the comment beside it says the opposite, which would begin with B. */
+/* The source's code computes A(1 - S) + B S; the comment next to the formula says the opposite, which would begin with B. */
 static void the_mix_begins_with_the_source(void **state)
 {
     model *m = two_tubes(0), *source = two_tubes(0);

@@ -376,7 +376,7 @@ static void blue_light_is_answered_by_blue(void **state)
 
 /* ---- packs ---- */
 
-/* Beside a wall the lobe with an axis of its own is nearer to the whole transfer than the one about the normal, in
+/* Next to a wall the lobe with an axis of its own is nearer to the whole transfer than the one about the normal, in
  * both orders, and order 4 of the source is order 6 cut. */
 static void bent_axes_come_nearer(void **state)
 {

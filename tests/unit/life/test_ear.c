@@ -1,5 +1,5 @@
 /* Tests of ear.c: what it makes of noise, silence and broken sound; of chunks, rates and clones; and how
- * well it reads the lips of people whom it was not taught on. */
+ * well it reads the lips of people outside its training data. */
 #include "noh/base.h"
 #include "noh/face.h"
 #include "life/face/ear_internal.h"

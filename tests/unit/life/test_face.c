@@ -1,4 +1,4 @@
-/* Tests of runtime/face/face*.c: rates, distributions and aims of a simulated hour against those of the literature. */
+/* Tests of runtime/face/face*.c: rates, distributions and aims of a simulated hour against the literature's. */
 #include "life/face/face.h"
 #include "noh/base.h"
 #include "noh/face.h"
@@ -67,7 +67,7 @@ static void blinks_come_at_their_rates(void **state)
 }
 
 /* The same without a look at the lids: when each blink began, by what a face remembers. An hour of a face whose clock
- * goes by 0.1 s is the same hour. */
+ * advances by 0.1 s is the same hour. */
 static uint32_t remembered_hour(uint32_t seed, noh_activity activity, double *starts, uint32_t most)
 {
     noh_face face = face_of(seed, 0);

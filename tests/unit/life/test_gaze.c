@@ -94,7 +94,7 @@ static float missed(const body *b, const float target[3])
     return worst;
 }
 
-/* A point before the face, off by these angles, in degrees, so many sizes of the rig away. */
+/* A point before the face, off by these angles, in degrees; distance in sizes of the rig. */
 static void point_at(const body *b, float yaw, float pitch, float sizes, float target[3])
 {
     float middle[3], ahead[3];

@@ -184,7 +184,7 @@ static void every_rate_moves_alike(void **state)
     for (size_t r = 0; r < TEST_COUNT(rates); r++) assert_true(fabs(off[r] - at_60) <= 0.03 * at_60);
 }
 
-/* A copy goes on as the hair does; broken bytes are told. */
+/* A copy moves exactly like the hair; broken bytes are reported. */
 static void a_copy_goes_on(void **state)
 {
     const noh_hair_desc d = wig();

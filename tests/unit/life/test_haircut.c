@@ -91,7 +91,7 @@ static noh_result checked(const wig *w, noh_error *error)
     return noh_check_hair(&check);
 }
 
-/* A word of the chunk that is no more what it was is told at its place. */
+/* A damaged word of the chunk is reported at its offset. */
 static void expect_refused(const wig *w, uint32_t at, uint32_t value)
 {
     noh_error error = { NOH_OK, NULL, 0, 0 };
@@ -169,7 +169,7 @@ static void hair_grows_on_the_skull(void **state)
     close_wig(&w);
 }
 
-/* A strip is the mean of its corners' curves, by weights that are those of one place in the patch all along. */
+/* A strip is the mean of its corners' curves, by the weights of the same place in the patch all along. */
 static void strips_lie_within_their_patch(void **state)
 {
     wig w;

@@ -328,7 +328,7 @@ static void a_bone_of_no_length_stays_finite(void **state)
 }
 
 /* The book returns where the shoulder has no axis to turn about, after it has turned the elbow: the hand's matrix is
- * still that of before. Here the elbow alone brings the hand onto the line to the target. */
+ * still the earlier one. Here the elbow alone brings the hand onto the line to the target. */
 static void the_hand_follows_whatever_the_elbow_does(void **state)
 {
     const double a = 0.3, b = 0.28, d = 0.4, inner = acos((a * a + d * d - b * b) / (2.0 * a * d));

@@ -1,6 +1,6 @@
 /* Lips of real heads, measured on vertices as the library deforms them: they meet for every p, b and m, and the lower
  * one is at the upper teeth for f and v, for long enough that every phase of 30 Hz shows it, between any two sounds,
- * whatever the face feels and whoever it is. */
+ * whatever the emotion and whatever the face. */
 #include "deform/morph/morph.h"
 #include "noh/base.h"
 #include "noh/deform.h"

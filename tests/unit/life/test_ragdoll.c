@@ -190,7 +190,7 @@ static void the_bind_pose_is_zero(void **state)
     for (int i = 0; i < 30; i++) noh_ragdolls_step(set, NULL, FRAME);
     noh_ragdoll_motions(set, 0, motions);
     noh_ragdoll_measure(set, 0, NULL, &m);
-    float gained = 0.0f; /* joules beyond those of the fall, which all bodies share */
+    float gained = 0.0f; /* joules beyond the fall's, which all bodies share */
     for (uint32_t i = 0; i < rig.body_count; i++) {
         const float *v = motions[i].velocity, *w = motions[i].spin, fall = v[1] + NOH_GRAVITY * 0.5f;
         gained += 0.5f * rig.bodies[i].mass * (v[0] * v[0] + fall * fall + v[2] * v[2]);
@@ -400,7 +400,7 @@ static void a_teleport_stays_finite(void **state)
     free(set);
 }
 
-/* A hundred times its mass hangs on a light body. */
+/* A light body carries a hundred times its mass. */
 static void heavy_on_light_holds(void **state)
 {
     noh_ragdoll_rig rig = chain(3, NOH_RAGDOLL_LOOSE);
@@ -514,7 +514,7 @@ static noh_ragdolls *thrown_set(const noh_ragdoll_rig *rig, uint32_t count)
     return set;
 }
 
-/* After ten seconds, awake and asleep. The number is that of every processor: change it only with the algorithm. */
+/* After ten seconds, awake and asleep. The number is the same on every processor: change it only with the algorithm. */
 #define BITS 0xd40e171eu
 static void bits_are_those_of_every_processor(void **state)
 {
@@ -568,8 +568,8 @@ static void every_width_gives_the_same_bits(void **state)
 #endif
 }
 
-/* A copy goes on as the set does, from any frame, cut into any pieces of time; and how many there are does not
- * matter. */
+/* A copy moves exactly like the set, from any frame, cut into any pieces of time; and how many copies there are does
+ * not matter. */
 static void a_copy_goes_on(void **state)
 {
     const noh_ragdoll_rig rig = figure_rig();
@@ -713,7 +713,7 @@ static void it_falls_by_half_g_t_squared(void **state)
     }
 }
 
-/* Moved by any way, even one that floats at the new place cannot say, it goes on as it would. */
+/* Moved by any offset, even one that floats at the new place cannot represent, it moves as it would have. */
 static void a_shifted_space_goes_on(void **state)
 {
     const float way[3] = { 100000.3f, -777.77f, 12345.678f }, back[3] = { -100000.3f, 777.77f, -12345.678f };

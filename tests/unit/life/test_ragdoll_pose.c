@@ -97,7 +97,7 @@ static void the_bind_pose_is_the_rest_of_the_rig(void **state)
 }
 
 /* The source sets a bone to where its body is: it is then as long as bodies are apart. Here a pose made bodies and made a
- * pose again is that of the bodies, in any place, and bones keep their lengths though a body is torn out. */
+ * pose again agrees with the bodies, in any place, and bones keep their lengths though a body is torn out. */
 static void bodies_and_pose_are_each_other(void **state)
 {
     noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX], again[NOH_RAGDOLL_BODIES_MAX];

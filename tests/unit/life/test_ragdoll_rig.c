@@ -1,4 +1,4 @@
-/* Tests of ragdoll_rig.c and ragdoll_names.c: real characters, and skeletons that are none. */
+/* Tests of ragdoll_rig.c and ragdoll_names.c: real characters, and skeletons that are not characters. */
 #include "life/physics/ragdoll_rig.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -37,7 +37,7 @@ static noh_ragdoll_rig rig_of(const noh_ragdoll_source *s)
 
 static const char *const assets[] = { "hero/body.glb" };
 
-/* Sixteen bodies, each on the one it hangs on, at rest in the bind pose: all angles 0, all anchors together. */
+/* Sixteen bodies, each attached to its parent, at rest in the bind pose: all angles 0, all anchors together. */
 static void zero_is_the_bind_pose(void **state)
 {
     (void)state;
@@ -67,7 +67,7 @@ static void zero_is_the_bind_pose(void **state)
     }
 }
 
-/* The source's head is a box of 0.3 by 0.2 by 0.2 m, whoever it belongs to. Here a doll of a tenth of the size has
+/* The source's head is a box of 0.3 by 0.2 by 0.2 m for every character. Here a doll of a tenth of the size has
  * capsules of a tenth and a thousandth of the mass. */
 static void sizes_follow_the_skin(void **state)
 {
@@ -134,7 +134,7 @@ static void rows_out_of_order_are_refused(void **state)
     skin_asset_close(&a);
 }
 
-/* Give a joint another name: its place in the skeleton's names becomes that of a string behind the pack's own. */
+/* Give a joint another name: its offset into the skeleton's names now points to a string behind the pack's own. */
 static void rename_joint(skin_asset *a, const char *from, const char *to)
 {
     const noh_skeleton_header *h;
@@ -267,7 +267,7 @@ static fall let_fall(const noh_ragdoll_rig *rig, float scale, int steps)
     return f;
 }
 
-/* Whoever it is: lengths grow with the size, times with its root. The robot's legs end in bodies that have hardly any
+/* For every character lengths grow with the size, times with its root. The robot's legs end in bodies that have hardly any
  * skin, and its trunk is wide where it has none: such bodies flew apart by metres, and spun past limits by 25 degrees.
  */
 static void everybody_falls_and_lies(void **state)

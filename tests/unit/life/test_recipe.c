@@ -213,7 +213,7 @@ static void speech_and_emotion_share_the_mouth_by_rule(void **state)
 
 /* ---- who owns what ---- */
 
-/* Channels with all that an emotion shares a face with, and the emotion at so much. */
+/* Channels with all that an emotion shares a face with, and the emotion at `amount`. */
 static void share(noh_emotion emotion, float amount, const noh_face_rules *rules, float moves, float shut,
                   float *channels)
 {

@@ -540,7 +540,7 @@ static void free_bundle(bundle *b)
     free(b);
 }
 
-/* Five seconds in frames of any length, in calls of so many chains; a hash of every byte and rotation. */
+/* Five seconds in frames of any length, in calls of `at_once` chains; a hash of every byte and rotation. */
 static uint32_t hash_of_bundle(step_many *step, rotate_many *turn, uint32_t at_once)
 {
     bundle *b = make_bundle();

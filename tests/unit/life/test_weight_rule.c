@@ -129,8 +129,8 @@ static void groups_sum_to_one(void **state)
     assert_true(w[BLINK] == -0.5f);
 }
 
-/* Random weights: rules hold, twice is as once, whoever breaks none keeps his bits, and a small step makes a small
- * one. */
+/* Random weights: rules hold, twice is as once, weights that break no rule keep their bits, and a small step makes a
+ * small one. */
 static void rules_hold_for_any_weights(void **state)
 {
     test_random r = test_random_from(5);

@@ -90,7 +90,7 @@ static void clips_keys_and_markers_are_joined(void **state)
     free(set);
 }
 
-/* Nodes in order with their defaults, a joint, and clips of which one moves both. */
+/* Nodes in order with their defaults, a joint, and clips; one of them moves both. */
 static void weights_and_joints_of_a_model(void **state)
 {
     model *m = clip_model(5);
@@ -891,7 +891,7 @@ static void a_pack_without_clips_is_not_found(void **state)
     free(made);
 }
 
-/* Lies that only opening the clips can find: the clip is told. */
+/* Lies that only opening the clips can find: the error names the clip. */
 static void lies_are_told_with_the_clip(void **state)
 {
     uint8_t *copy = test_aligned(bytes, byte_count);

@@ -132,8 +132,8 @@ static raw_set *grows(float least, uint32_t branch, int at, int shrinks)
     return set;
 }
 
-/* Where a parent is next to nothing, what would make up for its error is without bound; that of a few frames used to
- * store all tracks raw, 13 KB of them. */
+/* Where a parent's scale is near zero, the correction for its error is without bound; the correction for a few frames
+ * used to store all tracks raw, 13 KB of them. */
 static void clips_that_grow_from_nothing(void **state)
 {
     const int at_all_bounds = getenv("NOH_LONG") != NULL || !test_is_sanitized();

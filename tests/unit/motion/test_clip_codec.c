@@ -24,7 +24,7 @@
 #define BETWEEN_PARTS 5u /* of a frame: not the times that the encoder checks */
 #define ROUNDING 1.0001  /* of the bound: time as a float, and single precision in a pose */
 
-/* NOH_CLIP_DENSE=64: check all real clips, also at their full rate, at so many times a frame. */
+/* NOH_CLIP_DENSE=64: check all real clips, also at their full rate, at that many times a frame. */
 static uint32_t dense_parts(void)
 {
     const char *text = getenv("NOH_CLIP_DENSE");
@@ -403,8 +403,8 @@ static void a_scaled_root_is_measured_in_the_world(void **state)
     assert_true(hundred.bytes < one.bytes * 6u / 5u && hundred.bytes > one.bytes * 4u / 5u);
 }
 
-/* The bound of the three axes alone is held on them, and clearly passed elsewhere: so that of all points is worth its
- * bytes, and this evaluator sees the difference. */
+/* The bound of the three axes alone is held on them, and clearly passed elsewhere: so the bound of all points is worth
+ * its bytes, and this evaluator sees the difference. */
 static void the_axes_alone_leave_the_rest_of_the_sphere_free(void **state)
 {
     raw_set *set = fixture_swing(20, 120, 2, 15.0f, 0.7, 1.0);

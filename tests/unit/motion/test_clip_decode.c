@@ -121,7 +121,7 @@ static void put_float_track(writer *w, uint32_t segments)
     put(w, 0, 1);
 }
 
-/* A joint of which only the rotation is animated: from the bind pose, or with a reference in each segment. */
+/* A joint with only its rotation animated: from the bind pose, or with a reference in each segment. */
 static void put_rotation_track(writer *w, uint32_t segments, int wild)
 {
     put(w, 0, 1);
@@ -229,7 +229,7 @@ static void steps_differ_from_those_of_the_header(void **state)
     close_player(&p);
 }
 
-/* In a clip of one segment a step follows from that of the track before, of floats and rotations apart; the first from
+/* In a clip of one segment a step follows from the previous track's step, of floats and rotations apart; the first from
  * NOH_CLIP_STEP_FIRST. */
 static void steps_of_one_segment_follow_each_other(void **state)
 {

@@ -243,7 +243,7 @@ static void a_later_pack_replaces_a_clip_in_its_place(void **state)
     expect_same_clip(bank, 1, alone, 0);
     assert_int_equal(bank->clips.events[bank->clips.clips[1].first_event].payload[0], 5);
     assert_int_equal(bank->clips.event_count, 4);
-    /* glow and one of each clip that is played: not that of the clip that was replaced */
+    /* glow and one of each clip that is played, none of the clip that was replaced */
     assert_int_equal(bank->clips.float_count, 5);
     for (uint32_t g = 0; g < bank->group_count; g++) {
         assert_int_not_equal(bank->groups[g].name_hash, noh_hash_name("clip1"));
@@ -413,7 +413,7 @@ static void packs_without_clips_are_passed_over_or_not_found(void **state)
     free(made);
 }
 
-/* A pack of so many clips without joints, with names that begin with this letter. */
+/* A pack of `count` clips without joints, with names that begin with this letter. */
 static set_fixture pack_of_many(uint32_t count, char letter)
 {
     raw_set *raw = raw_set_new(0, count);

@@ -389,7 +389,7 @@ static void blend_spaces_stay_in_step(void **state)
         assert_true(pose_apart(g.pose, want, JOINTS) < 2e-6);
         assert_true(track(&g, 0)->weight == 1.0f - t && track(&g, 1)->weight == t);
     }
-    assert_int_equal(track(&g, 0)->mode, NOH_TRACK_TIME_ONLY); /* keeps step beside the run */
+    assert_int_equal(track(&g, 0)->mode, NOH_TRACK_TIME_ONLY); /* keeps step with the run */
     assert_int_equal(track(&g, 2)->mode, NOH_TRACK_OFF);       /* not in this state */
     assert_int_equal(track(&g, 2)->position, 0);
 }
@@ -418,7 +418,7 @@ static void a_cross_fade_returns_at_the_end(void **state)
     step(&g, 1); /* decided at the start of a step */
     step(&g, 1);
     assert_int_equal(noh_graph_machine_state(g.state, 0), 0);     /* 9600 ticks before its end */
-    assert_int_equal(track(&g, 0)->position, noh_position_of(1)); /* started anew */
+    assert_int_equal(track(&g, 0)->position, noh_position_of(1)); /* started again */
 }
 
 static void layers_play_inertial_transitions(void **state)

@@ -115,7 +115,7 @@ static void seconds_become_the_nearest_tick(void **state)
     assert_int_equal(noh_ticks_from_seconds((double)NAN), 0);
 }
 
-/* Frames of any length: after minutes the ticks are those of the sum, where rounding each frame is far off. */
+/* Frames of any length: after minutes the ticks equal the ticks of the sum, where rounding each frame is far off. */
 static void a_clock_does_not_drift(void **state)
 {
     (void)state;

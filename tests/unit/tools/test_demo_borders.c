@@ -22,7 +22,7 @@ typedef struct border {
     const model_mesh *mesh;
     uint32_t *point; /* [vertex_count] */
     uint32_t count;
-    edge *edges; /* first all, sorted; then those of one triangle alone, [count] */
+    edge *edges; /* first all, sorted; then the edges of one triangle alone, [count] */
 } border;
 
 static int edge_order(const void *left, const void *right)

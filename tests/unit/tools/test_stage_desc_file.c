@@ -1,5 +1,5 @@
 /* Stages written as text (tools/noh/budget/stage_desc_file.h): each setting arrives in its field, a plan by the text is
- * the plan of the same desc in C, and what is wrong is told with its line. Packs are the demo's, in $NOH_BUILD. */
+ * the plan of the same desc in C, and an error names its line. Packs are the demo's, in $NOH_BUILD. */
 #include "support/support.h"
 
 #include <stdio.h>

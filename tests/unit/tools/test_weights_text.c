@@ -1,5 +1,5 @@
 /* Weights as text (tools/noh/file/weights_text.h): what is written is read again to the bit; what people paste from
- * shells, notes and JSON is understood; what is neither is told by its line. */
+ * shells, notes and JSON is understood; an error names its line. */
 #include "file/weights_text.h"
 
 #include <math.h>
