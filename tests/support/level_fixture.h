@@ -12,8 +12,8 @@ typedef struct fixture_levels {
     uint32_t **orders; /* [mesh_count][vertex_count]: each vertex's number in the original pack */
 } fixture_levels;
 
-/* Every mesh of `from` with `level_count` levels, in a pack that noh_pack_open accepts. cell: the edge of level 1's cells,
- * model units. In the coarsest level the first target has no rectangles. */
+/* Every mesh of `from` with `level_count` levels, in a pack that noh_pack_open accepts. cell: the edge of level 1's
+ * cells, model units. In the coarsest level the first target has no rectangles. */
 void fixture_levels_open(fixture_levels *f, const noh_pack *from, uint32_t level_count, float cell);
 void fixture_levels_close(fixture_levels *f);
 

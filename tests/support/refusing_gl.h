@@ -8,16 +8,15 @@
 
 /* Every function that can be refused. Vertex arrays are bound whatever comes: what is drawn without one is read from
  * the address 0, by some drivers. */
-#define REFUSING_GL_FUNCTIONS(X)                                                                                    \
-    X(GenBuffers)                                                                                                   \
-    X(BufferData)                                                                                                   \
-    X(BufferSubData)                                                                                                \
-    X(GenVertexArrays)                                                                                              \
-    X(VertexAttribPointer) X(GenTextures) X(TexStorage2D) X(TexStorage3D) X(TexSubImage2D) X(TexSubImage3D)         \
-        X(CompressedTexSubImage2D) X(GenFramebuffers) X(FramebufferTexture2D) X(FramebufferTextureLayer)            \
-            X(GenRenderbuffers) X(RenderbufferStorageMultisample) X(CreateShader) X(CompileShader) X(CreateProgram) \
-                X(LinkProgram) X(BindFramebuffer) X(UseProgram) X(DrawElements) X(DrawElementsInstanced)            \
-                    X(DrawArraysInstanced)
+#define REFUSING_GL_FUNCTIONS(X)                                                                                  \
+    X(GenBuffers)                                                                                                 \
+    X(BufferData)                                                                                                 \
+    X(BufferSubData)                                                                                              \
+    X(GenVertexArrays) X(VertexAttribPointer) X(GenTextures) X(TexStorage2D) X(TexStorage3D) X(TexSubImage2D)     \
+        X(TexSubImage3D) X(CompressedTexSubImage2D) X(GenFramebuffers) X(FramebufferTexture2D)                    \
+            X(FramebufferTextureLayer) X(GenRenderbuffers) X(RenderbufferStorageMultisample) X(CreateShader)      \
+                X(CompileShader) X(CreateProgram) X(LinkProgram) X(BindFramebuffer) X(UseProgram) X(DrawElements) \
+                    X(DrawElementsInstanced) X(DrawArraysInstanced)
 
 enum {
 #define NAME(name) REFUSING_##name,

@@ -42,8 +42,8 @@ static skin_source source_of(const oracle *o, uint32_t node, uint32_t vertex)
     return s;
 }
 
-/* Which mesh skins_bind made from which source is found by vertex counts and the order of nodes: a mesh is unchanged, or joined
- * from rigid nodes, then from skinned ones. `before` is the model's nodes before binding. */
+/* Which mesh skins_bind made from which source is found by vertex counts and the order of nodes: a mesh is unchanged,
+ * or joined from rigid nodes, then from skinned ones. `before` is the model's nodes before binding. */
 static skin_source *sources_of(const oracle *o, const model *before, const model *after, uint32_t mesh)
 {
     skin_source *out = test_zeros(sizeof *out * (after->meshes[mesh].vertex_count + 1u));

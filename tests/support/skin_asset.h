@@ -25,8 +25,8 @@ typedef struct skin_asset {
 void skin_asset_open(skin_asset *a, const char *name, const skin_options *options);
 void skin_asset_close(skin_asset *a);
 
-/* Every mesh's positions as the oracle draws them: out[vertex_count][3] for mesh m of the pack. `weights` are the weights
- * of the node that draws it. */
+/* Every mesh's positions as the oracle draws them: out[vertex_count][3] for mesh m of the pack. `weights` are the
+ * weights of the node that draws it. */
 void skin_asset_expected(const skin_asset *a, uint32_t mesh, const double *worlds, const double *weights, double *out);
 
 /* A skeleton's model-space matrices out of the oracle's local transforms, by the library. matrices to be freed. */

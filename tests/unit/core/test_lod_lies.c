@@ -308,8 +308,8 @@ LIES(X)
 SPLIT_LIES(X)
 #undef X
 
-/* Each of these fields, wrong in the header of one level alone, is named by its byte; in the full mesh's header too, where
- * only the count of texels cannot be checked against the array that it sizes. */
+/* Each of these fields, wrong in the header of one level alone, is named by its byte; in the full mesh's header too,
+ * where only the count of texels cannot be checked against the array that it sizes. */
 static void errors_name_the_field(void **state)
 {
 #define AT(field) offsetof(noh_mesh_header, field)

@@ -156,8 +156,8 @@ static void any_bits_come_back(void **state)
     free(bytes);
 }
 
-/* Smooth pictures take less than half of what their bytes do; pictures of two colours in each block, which need the modes
- * whose free bits are guessed, less than their bytes. */
+/* Smooth pictures take less than half of what their bytes do; pictures of two colours in each block, which need the
+ * modes whose free bits are guessed, less than their bytes. */
 static void pictures_take_few_bytes(void **state)
 {
     (void)state;

@@ -1,6 +1,6 @@
 /* Errors of the source documents about skinning, morphing and picking: each test shows how the source's version fails
- * and what the library does instead. tests/README.md names the sources. Where an error is about what a GPU binds, the test
- * is of the data. */
+ * and what the library does instead. tests/README.md names the sources. Where an error is about what a GPU binds, the
+ * test is of the data. */
 #include "support/skin_asset.h"
 
 #include <math.h>
@@ -450,7 +450,8 @@ static model *two_tubes(int shuffle)
     return m;
 }
 
-/* The source's code computes A(1 - S) + B S; the comment next to the formula says the opposite, which would begin with B. */
+/* The source's code computes A(1 - S) + B S; the comment next to the formula says the opposite, which would begin with
+ * B. */
 static void the_mix_begins_with_the_source(void **state)
 {
     model *m = two_tubes(0), *source = two_tubes(0);

@@ -267,9 +267,9 @@ static fall let_fall(const noh_ragdoll_rig *rig, float scale, int steps)
     return f;
 }
 
-/* For every character lengths grow with the size, times with its root. The robot's legs end in bodies that have hardly any
- * skin, and its trunk is wide where it has none: such bodies flew apart by metres, and spun past limits by 25 degrees.
- */
+/* For every character lengths grow with the size, times with its root. The robot's legs end in bodies that have hardly
+ * any skin, and its trunk is wide where it has none: such bodies flew apart by metres, and spun past limits by 25
+ * degrees. */
 static void everybody_falls_and_lies(void **state)
 {
     static const char *const all[] = { "hero/body.glb", "hero/body_8inf.glb", "hero/body_quantized.glb",

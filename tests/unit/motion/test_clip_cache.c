@@ -155,7 +155,8 @@ static void the_default_follows_from_instances_and_tracks(void **state)
 
 /* ---- sizes ---- */
 
-/* Clips of floats only together with clips of joints: an entry is as large as its own clip needs, not as the largest does. */
+/* Clips of floats only together with clips of joints: an entry is as large as its own clip needs, not as the largest
+ * does. */
 static void entries_are_as_large_as_their_segments(void **state)
 {
     noh_clip_bank_desc desc = desc_of();
@@ -377,8 +378,8 @@ static noh_clip_cache_stats play_side_by_side(uint32_t count)
     return stats;
 }
 
-/* Decoding ahead takes no entry that plays at the time: where only what is played has room, no more is decoded than with
- * room for all. */
+/* Decoding ahead takes no entry that plays at the time: where only what is played has room, no more is decoded than
+ * with room for all. */
 static void decoding_ahead_evicts_nothing_that_plays(void **state)
 {
     const noh_clip_cache_stats all = play_side_by_side(32768);

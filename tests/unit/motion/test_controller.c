@@ -764,8 +764,8 @@ static void clips_of_joints_and_of_floats_do_not_mix(void **state)
     assert_true(pose_apart(g.pose, walk, JOINTS) > 1e-2 && floats_apart(g.floats, face_floats, FLOATS) > 1e-2);
 }
 
-/* The same in the high group: a speaking face neither covers the walk below nor dilutes the bow of the same group, and a bow
- * that moves no floats leaves them to the face. */
+/* The same in the high group: a speaking face neither covers the walk below nor dilutes the bow of the same group, and
+ * a bow that moves no floats leaves them to the face. */
 static void clips_of_joints_and_of_floats_do_not_mix_in_the_high_group(void **state)
 {
     stage g;
