@@ -413,7 +413,7 @@ static void check_led_size(const char *hips, const char *head, const char *expec
     raw_set_free(set);
 }
 
-/* The format has no unit: a size that no person has is told, with the unit that would give one. */
+/* The format has no unit: an implausible size for a person is reported, with the unit that would fit. */
 static void sizes_of_people(void **state)
 {
     (void)state;

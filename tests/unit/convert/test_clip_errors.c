@@ -315,7 +315,7 @@ static void worst_of_all(const opened *o, uint32_t skeleton, uint32_t clip, doub
     free(way);
 }
 
-/* The stated error is not much less than that of the worst vertex, and never more than the bound for all points that
+/* The stated error is not much less than the worst vertex's, and never more than the bound for all points that
  * the joints reach. */
 static void expect_rates(const opened *o, uint32_t skeleton)
 {

@@ -348,7 +348,7 @@ static void only_what_moves_or_transforms_is_a_joint(void **state)
     assert_int_equal(l.made->skins[0].set, 0);
     assert_int_equal(l.made->skins[0].joints[0], 2);
     assert_int_equal(l.made->skins[0].joints[1], 1);
-    /* who moves whom */
+    /* the joint that moves each node */
     static const uint32_t movers[7] = { 0, 0, 1, 1, 2, 2, MODEL_NONE };
     for (uint32_t n = 0; n < 7; ++n) assert_int_equal(l.made->nodes[n].joint, movers[n]);
     assert_int_equal(l.made->nodes[6].set, MODEL_NONE);

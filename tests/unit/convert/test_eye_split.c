@@ -22,7 +22,7 @@ typedef struct ball {
 
 static const ball left = { { 0.032, 0.06, 0.09 }, 0.0121, 0.08 }, right = { { -0.032, 0.06, 0.09 }, 0.0121, 0.08 };
 
-/* A ball of rings about z, the first of which is the pupil. */
+/* A ball of rings about z; the first is the pupil. */
 static void add_ball(model_mesh *mesh, const ball *b)
 {
     const uint32_t first = mesh->vertex_count;

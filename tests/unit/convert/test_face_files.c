@@ -60,7 +60,7 @@ static void compare(const byte_buffer packs[FORMS])
         assert_true(pairs[i] == pairs[0]);
         assert_int_equal(packs[i].count, packs[0].count);
         while (at < packs[0].count && packs[i].bytes[at] == packs[0].bytes[at]) at++;
-        if (at < packs[0].count) fail_msg("byte %zu of %s differs from that of %s", at, names[i], names[0]);
+        if (at < packs[0].count) fail_msg("byte %zu of %s differs from %s", at, names[i], names[0]);
     }
 }
 

@@ -33,7 +33,7 @@ static const uint8_t compressed[355] = {
 
 /* What is wrong with a file; zeros: nothing. */
 typedef struct lie {
-    size_t flipped, bytes; /* a byte that is another; so many are there, 0: all */
+    size_t flipped, bytes; /* the index of a changed byte; the length of the file, 0: all of it */
     int vertices, normal_id, view, required;
 } lie;
 

@@ -379,7 +379,7 @@ static void check_weights(const asset *a, const char *clip, const model_channel 
     if (!near_a_step(channel, made, time)) {
         const double limit = channel->interpolation == MODEL_STEP ? 0.0 : made->source_error_cm;
         if (!(strays <= limit * 1.05 + 1e-3)) { /* the error is looked for at quarters of a frame */
-            fail_msg("'%s' at %g s: frames stray %g cm from the curves, %g were told", clip, time, strays, limit);
+            fail_msg("'%s' at %g s: frames stray %g cm from the curves, stated: %g cm", clip, time, strays, limit);
         }
     }
 }

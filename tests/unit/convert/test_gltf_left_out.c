@@ -167,7 +167,7 @@ static void cameras_and_other_scenes(void **state)
            "node 'table' was left out: it is not in the default scene (and 1 more like it)");
 }
 
-/* A hundred nodes with lights are one warning, and do not hide that of the camera. */
+/* A hundred nodes with lights are one warning, and do not hide the camera's warning. */
 static void many_are_one(void **state)
 {
     (void)state;

@@ -1259,7 +1259,7 @@ static void old_vrm_turns_round(void **state)
     model_free(m);
 }
 
-/* Nothing of it has the type that it should have: it is as if it were not there. */
+/* No part has the type that it should have: the reader ignores it. */
 static void damaged_vrm_is_ignored(void **state)
 {
     (void)state;
@@ -1278,7 +1278,7 @@ static void damaged_vrm_is_ignored(void **state)
     }
 }
 
-/* Two tones and the edge between them; the unlit material beside it is for readers that know no MToon. */
+/* Two tones and the edge between them; the unlit material next to it is for readers that know no MToon. */
 static void mtoon_is_a_toon(void **state)
 {
     static const char materials[] =
@@ -1303,7 +1303,7 @@ static void mtoon_is_a_toon(void **state)
     model_free(m);
 }
 
-/* Before 1.0 materials have a list beside them, the tones begin and end at cosines. */
+/* Before 1.0 materials have a second list, the tones begin and end at cosines. */
 static void old_mtoon_is_a_toon(void **state)
 {
     scene *s = vrm_scene(
@@ -1743,7 +1743,7 @@ static void deep_json_is_refused(void **state)
     file_refused("nested deeper", "JSON byte");
 }
 
-/* What must be there and is not is told with its place. */
+/* A missing required part is reported with its place. */
 static void missing_members_are_refused_by_name(void **state)
 {
     (void)state;

@@ -114,7 +114,7 @@ static void a_spring_bone_is_a_chain(void **state)
     free(bytes);
 }
 
-/* Colliders without a shape, springs of one joint, nodes that are none: left out with a word. */
+/* Colliders without a shape, springs of one joint, numbers that are no nodes: left out with a warning. */
 static void what_is_broken_is_left_out(void **state)
 {
     noh_springs_desc d;

@@ -139,7 +139,7 @@ static void facets_get_levels(void **state)
 #define CARDS 24u
 #define ROWS 9u
 
-/* Cards of two columns, bent a little, beside each other. */
+/* Cards of two columns, bent a little, side by side. */
 static model_mesh hair_cards(void)
 {
     model_mesh m = mesh_new(CARDS * ROWS * 2u, CARDS * (ROWS - 1u) * 6u, 1);

@@ -161,7 +161,7 @@ static void vertices_are_the_same(void **state)
     each_level(check_vertices);
 }
 
-/* Its own indices, and those of coarser levels, use each of its vertices; the submeshes' runs hold theirs. */
+/* Its own indices, and the coarser levels' indices, use each of its vertices; the submeshes' runs hold theirs. */
 static void check_use(const example *e, const noh_mesh *level, const noh_mesh *finer)
 {
     uint8_t *used = test_zeros(level->header->vertex_count);
@@ -653,7 +653,7 @@ static void large_meshes_have_word_indices(void **state)
     lod_pack p;
     noh_mesh level;
     (void)state;
-    /* the width is that of the vertices; an eighth of the triangles is simplified in an eighth of the time */
+    /* the width is the vertices' width; an eighth of the triangles is simplified in an eighth of the time */
     m->meshes[0].index_count = m->meshes[0].submeshes[0].index_count = m->meshes[0].index_count / 8u / 3u * 3u;
     lod_pack_make(m, &two, 0, &p);
     level = noh_mesh_at_lod(&p.mesh, 1);

@@ -160,7 +160,7 @@ static void levels_have_none_beyond_their_share(void **state)
     model_free(m);
 }
 
-/* Light reaches vertices that lie beside the surface where the surface is. */
+/* Vertices off the surface are lit as at the surface. */
 static void light_reaches_the_surface_beside_them(void **state)
 {
     (void)state;

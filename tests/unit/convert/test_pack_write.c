@@ -32,7 +32,7 @@ static void the_same_model_gives_the_same_bytes(void **state)
     free(packs[1]);
 }
 
-/* ---- limits: a count at the limit passes, one more is refused and both are told ---- */
+/* ---- limits: a count at the limit passes, one more is refused and both are reported ---- */
 
 static void expect_limit(model *m, uint32_t *count, uint32_t limit, const char *word)
 {
@@ -171,7 +171,7 @@ static void the_scene_is_kept(void **state)
     model_free(m);
 }
 
-/* A target's largest displacement, which culling and LOD levels trust, is that of the model's deltas. */
+/* A target's largest displacement, which culling and LOD levels trust, is the largest of the model's deltas. */
 static void targets_say_how_far_they_move(void **state)
 {
     model *m = whole();

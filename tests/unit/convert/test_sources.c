@@ -336,7 +336,7 @@ static void strangers_are_refused_in_part_too(void **state)
     source_free(&other);
 }
 
-/* What a file of clips has to say is not lost beside a model's, nor is a unit that is not the model's. */
+/* Warnings of a file of clips are kept together with the model's, nor is a unit that is not the model's. */
 static void warnings_of_joined_files_are_kept(void **state)
 {
     static const double units[] = { 1.0, 0.6, 1.9, 0.01, 100.0 };

@@ -1,4 +1,4 @@
-/* Tests of tools/convert/texture/: blocks decode to what the encoder says that they do, in every mode; how near they
+/* Tests of tools/convert/texture/: blocks decode to what the encoder says that they do, in every mode; how close they
  * come; which format a texture gets. */
 #include "support.h"
 
@@ -71,7 +71,7 @@ static void punch(etc2_texels *t, uint32_t holes)
     for (int i = 0; i < 16; i++) t->counts[i] = t->counts[i] && !(holes >> i & 1u);
 }
 
-/* Each mode alone: the error that it claims is that of its block decoded. */
+/* Each mode alone: the error that it claims is the decoded block's error. */
 static void every_mode_says_what_its_block_decodes_to(void **state)
 {
     static void (*const modes[])(const etc2_texels *, etc2_best *) = { etc2_try_halves, etc2_try_paints,
@@ -152,7 +152,7 @@ static void holes_cost_little(void **state)
     assert_true(shades < 40.0);
 }
 
-/* What is like the block beside it becomes that, and loses no more than its bits are worth. */
+/* A block like its neighbour becomes the same block, and loses no more than its bits are worth. */
 static void blocks_are_repeated_where_that_costs_little(void **state)
 {
     uint32_t repeated[2] = { 0, 0 };

@@ -105,7 +105,7 @@ static void normals_stay_unit(void **state)
     buffer_free(&out);
 }
 
-/* One texel in four stays at a cutoff of 1/2. Means alone would leave nothing of it in the first smaller level. */
+/* One texel in four stays at a cutoff of 1/2. Means alone would remove all of them in the first smaller level. */
 static void masks_keep_their_coverage(void **state)
 {
     uint8_t rgba[32 * 32 * 4];

@@ -453,7 +453,7 @@ static void mip_levels_are_those_of_the_whole_texture(void **state)
         assert_int_equal(trimmed.whole_height, 512);
         assert_int_equal(trimmed.width, 128);
         assert_int_equal(trimmed.height, 128);
-        for (uint32_t k = 0; k < 4; k++) { /* from 128, 256 on, that of the first cells */
+        for (uint32_t k = 0; k < 4; k++) { /* from 128, 256 on, the picture of the first cells */
             const size_t side = 128u >> k, row = 512u >> k, x = 128u >> k, y = 256u >> k;
             for (size_t i = 0; i < side; i++) {
                 assert_memory_equal(a.bytes + at[0] + 4 * ((y + i) * row + x), b.bytes + at[1] + 4 * i * side,

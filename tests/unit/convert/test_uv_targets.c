@@ -1,6 +1,6 @@
 /* Targets that move texture coordinates: within the error stated of the source's, at every level, alone and among
  * others, in two palettes; through strips and the wire form to the byte; lies about them are refused; a mesh whose
- * targets move none has nothing of it. */
+ * targets move none stores none. */
 #include "support/lod_fixture.h"
 
 #include <math.h>

@@ -523,7 +523,7 @@ static void axis_at(const wrinkle_field *f, const wrinkle_raster *r, size_t at, 
 }
 
 /* Shares of the texels that shrink by 3 % or more and whose mean slope is at right angles to the principal axis, to 15
- * degrees. surface: the slope within two texels against the mean strain about the triangle; triangle: of those of them
+ * degrees. surface: the slope within two texels against the mean strain about the triangle; triangle: of the texels
  * in the same triangle, against its exact strain; turned: the first axis a quarter turn away, which creases must not
  * follow. */
 typedef struct agreement {

@@ -326,7 +326,7 @@ static void a_change_begins_with_what_is_shown(void **state)
 }
 
 /* No error was measured of cross-fades. Once what is shown has reached the new state (a period after the wake), its
- * error is at most 1.5 times that of the worse of the two clips. */
+ * error is at most 1.5 times the larger error of the two clips. */
 static void cross_fades_stay_near_the_measured_error(void **state)
 {
     test_random r = test_random_from(44);

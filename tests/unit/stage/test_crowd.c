@@ -127,7 +127,7 @@ static void one_that_holds_its_place_is_walked_around(void **state)
     free(crowd);
 }
 
-/* All in one place: no direction is no number, and those who are asked to part do. */
+/* All in one place: no direction is NaN, and agents that must part do. */
 static void coincident_agents_part(void **state)
 {
     const noh_crowd_desc desc = field_of(9, 40.0f);
@@ -178,7 +178,7 @@ static void none_is_stuck_on_a_convex_obstacle(void **state)
     }
 }
 
-/* Who is pushed by many, and runs, does not get through a wall. */
+/* An agent that many push, and that runs, does not get through a wall. */
 static void none_gets_through_a_wall(void **state)
 {
     static const noh_crowd_obstacle wall = { { 0.0f, -20.0f }, { 0.0f, 20.0f }, 0.0f };
@@ -398,8 +398,8 @@ static void removed_agents_are_gone(void **state)
     free(crowd);
 }
 
-/* A crowd whose origin moves, there and back, goes on as one whose origin stays: agents, what they aim at, walls, grids
- * and flow fields. */
+/* A crowd whose origin moves, there and back, moves exactly like one whose origin stays: agents, what they aim at,
+ * walls, grids and flow fields. */
 static void the_origin_may_move(void **state)
 {
     static const noh_crowd_obstacle wall = { { -1.0f, 0.0f }, { 4.0f, 0.0f }, 0.1f };

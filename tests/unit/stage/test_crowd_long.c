@@ -1,5 +1,5 @@
 /* Ten minutes of a crowd, or with NOH_LONG not set the first twenty seconds: the same bits on every processor, with one
- * job and with four, whatever the agents' order. Of everything: walls, flow fields that are aimed anew, slopes, agents
+ * job and with four, whatever the agents' order. With everything: walls, flow fields with new goals, slopes, agents
  * of each sort that hold their place, leave and enter. */
 #include "stage/crowd/crowd.h"
 #include "noh/base.h"

@@ -149,7 +149,7 @@ static void a_straight_wall_is_walked_round(void **state)
     }
 }
 
-/* A goal that nobody can stand on is the place beside it; one that is shut in is walked round, and walls hold. */
+/* A goal that nobody can stand on is the nearest free place; one that is shut in is walked round, and walls hold. */
 static void goals_that_cannot_be_reached(void **state)
 {
     const noh_crowd_obstacle walls[] = { WALL(-3, -3, 3, -3), WALL(3, -3, 3, 3), WALL(3, 3, -3, 3),

@@ -47,7 +47,7 @@ static void sheet_add(sheet *s, uint32_t n, float z)
     }
 }
 
-/* With room for so many triangles, up to ROOM. Of one patch at a time. */
+/* A patch with room for `room` triangles, up to ROOM. One patch at a time. */
 #define ROOM 400u
 static noh_decal_patch with_room(uint32_t room)
 {
@@ -199,7 +199,7 @@ static void a_mark_keeps_its_fold_when_levels_change(void **state)
     before.triangles = fine;
     noh_decal_grow(&mark, &s.mesh, NOH_NONE, &before);
     assert_true(before.count > 20 && before.triangles[0] < SIDE * SIDE * 2u);
-    coarse = s.mesh; /* the same vertices, of which the first sheet's have moved on */
+    coarse = s.mesh; /* the same vertices; the first sheet's have moved on */
     coarse_header = s.header;
     coarse.header = &coarse_header;
     for (uint32_t v = 0; v < (SIDE + 1u) * (SIDE + 1u); v++) s.positions[3u * v + 2u] = -0.003f;

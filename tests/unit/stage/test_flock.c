@@ -98,7 +98,7 @@ static void coincident_agents_part(void **state)
 
 static noh_crowd *flock(uint32_t flags, uint32_t turn);
 
-/* Three in a row, parted in place, one pair after the other: where they end depends on who is first. Read and written
+/* Three in a row, parted in place, one pair after the other: where they end depends on their order. Read and written
  * apart they end alike, and so does a crowd that meets a post. */
 static void the_order_of_agents_changes_nothing(void **state)
 {
@@ -284,7 +284,7 @@ static noh_crowd *flock(uint32_t flags, uint32_t turn)
     return crowd;
 }
 
-/* How alike their directions are: 1, all the same. And how near the two nearest are. */
+/* How alike their directions are: 1, all the same. And the distance of the two nearest. */
 static float polarisation(const noh_crowd *crowd, float *nearest)
 {
     float sum[2] = { 0.0f, 0.0f };
@@ -320,7 +320,7 @@ static void a_flock_turns_one_way(void **state)
     free(together);
 }
 
-/* How alike their directions are, after three seconds, of whom half want to go one way, half another. */
+/* How alike their directions are after three seconds, where half want to go one way, half another. */
 static float alike(uint32_t flags)
 {
     static const float goals[2][2] = { { -1000.0f, 1000.0f }, { 1000.0f, 1000.0f } };

@@ -314,7 +314,7 @@ static void a_limit_holds_finer_levels_back(void **state)
     assert_int_equal(d.mesh, LEVELS - 2u);
     assert_int_equal(d.mesh_wanted, 0);
     assert_int_equal(noh_lod_finest(&d), 0);
-    assert_true(d.error_m >= t.meshes[LEVELS - 2u].error_m); /* and error_m is that of the coarser level */
+    assert_true(d.error_m >= t.meshes[LEVELS - 2u].error_m); /* and error_m is the coarser level's */
     noh_lod_set_limit(&d, 0);
     noh_lod_choose(&d, &t, &s, 1e5f, rates, clock += FRAME);
     assert_int_equal(d.mesh, 0);

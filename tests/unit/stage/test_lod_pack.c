@@ -1,6 +1,6 @@
 /* Tests of lod_pack.c: LOD tables and joint radii out of packs: exact bytes, metres, safe values
- * where little is known, and radii that contain every vertex. The pack is that of $NOH_BUILD/demo/arm.glb, which `make
- * check` makes. */
+ * where little is known, and radii that contain every vertex. The pack is made from $NOH_BUILD/demo/arm.glb, which
+ * `make check` makes. */
 #include "support/level_fixture.h"
 
 #include <math.h>

@@ -290,7 +290,7 @@ static void the_nearer_of_equals_comes_first(void **state)
     free(p);
 }
 
-/* Six slots, of which eight ask and seven are shown: the first six have one, the seventh rests, the last is left out.
+/* Six slots; eight actors ask and seven are shown: the first six have one, the seventh rests, the last is left out.
  */
 static void who_finds_no_slot_rests_and_who_is_too_many_is_left_out(void **state)
 {
@@ -349,7 +349,7 @@ static void ask_some(noh_lod_pools *p, const wish *wishes, uint32_t moves)
 }
 
 /* However the wishes leap, few slots change hands in a frame; once they stay, all settle within as many frames as that
- * takes, and stand as without a bound: fair, and none waits. Whoever holds a slot keeps one meanwhile. */
+ * takes, and stand as without a bound: fair, and none waits. An actor that holds a slot keeps one meanwhile. */
 static void few_slots_change_hands_in_a_frame(void **state)
 {
     test_random r = test_random_from(72);

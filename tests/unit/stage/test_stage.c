@@ -77,7 +77,7 @@ static void actor_levels_rise_in_error(void **state)
     cast_close(&c);
 }
 
-/* Down to the smallest stage every bound is kept, and says what it cost; below it is MEMORY, with the need. */
+/* Down to the smallest stage every bound is kept, and its cost is reported; below it is MEMORY, with the need. */
 static void a_bound_is_kept_or_refused(void **state)
 {
     uint64_t largest, least = 0;
@@ -316,7 +316,8 @@ static void a_face_is_played_over_a_body(void **state)
     cast_close(&c);
 }
 
-/* The pose of a played clip is that of a controller joined by hand, and root motion is where it takes the actor. */
+/* The pose of a played clip equals the pose of a controller joined by hand, and root motion is where it takes the
+ * actor. */
 static void a_walk_takes_the_actor_along(void **state)
 {
     noh_clip_bank_desc desc;
@@ -444,7 +445,7 @@ static void inertia_takes_over_without_a_leap(void **state)
     cast_close(&c);
 }
 
-/* Clips beside each other play on; their weights are those of the tracks; a layer without a free track refuses. */
+/* Clips played together play on; their weights are the tracks' weights; a layer without a free track refuses. */
 /* How far joints leap when a clip of another name begins. */
 static float leap_at_a_change(const noh_play *play)
 {
@@ -1128,7 +1129,7 @@ static void a_kind_may_have_no_clips(void **state)
     cast_close(&c);
 }
 
-/* Level k of an actor is that of each mesh, and is shown where its look or its stage says so. */
+/* Level k of an actor is level k of each mesh, and is shown where its look or its stage says so. */
 static void levels_are_those_of_the_meshes(void **state)
 {
     cast c;
@@ -1160,8 +1161,8 @@ static void levels_are_those_of_the_meshes(void **state)
     }
 }
 
-/* A camera that goes away: one level fades into the next until the coarsest shows, and what is told of its error is
- * what the stage tells of all. */
+/* A camera that goes away: one level fades into the next until the coarsest shows, and the error reported for
+ * it is the stage's error. */
 static void detail_is_told_as_it_is_shown(void **state)
 {
     const noh_place middle = { .position = { 0.0f, 0.8f, -2.0f } };

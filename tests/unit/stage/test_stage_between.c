@@ -1,5 +1,5 @@
-/* Frames between two steps of a stage: places and poses are mixed, whoever leaps does not smear, and what is asked
- * agrees with what shows. */
+/* Frames between two steps of a stage: places and poses are mixed, an actor that leaps does not smear, and what is
+ * asked agrees with what shows. */
 #include "support/stage_fixture.h"
 
 #include <math.h>
@@ -182,8 +182,8 @@ static void a_walk_is_shown_on_its_way(void **state)
 
 /* ---- poses ---- */
 
-/* At alpha 1 a frame shows the pose of the last step, at 0 that of the one before, to the bit, and half way the mean
- * of the two. */
+/* At alpha 1 a frame shows the pose of the last step, at 0 the pose of the step before it, to the bit, and half way the
+ * mean of the two. */
 static void poses_are_mixed(void **state)
 {
     float exact[2][12 * JOINTS_MAX], shown[12 * JOINTS_MAX], moved = 0.0f;

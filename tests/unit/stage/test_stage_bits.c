@@ -1,5 +1,5 @@
 /* A stage has the same bits on every processor: the states of a show, saved and put back in the middle, are hashed
- * frame by frame. The build for this machine writes the hashes beside its packs; those for other processors (make
+ * frame by frame. The build for this machine writes the hashes next to its packs; builds for other processors (make
  * cross) read the same packs, and compare. */
 #include "support/look_part.h"
 #include "support/support.h"
@@ -148,7 +148,7 @@ static void every_processor_has_the_same_bits(void **state)
     fclose(file);
     assert_int_equal(count, FRAMES);
     for (uint32_t f = 0; f < FRAMES && !WRITES; f++) {
-        if (hashes[f] != others[f]) fail_msg("the state differs from that of x86-64 from frame %u on", (unsigned)f);
+        if (hashes[f] != others[f]) fail_msg("the state differs from x86-64 from frame %u on", (unsigned)f);
     }
 }
 

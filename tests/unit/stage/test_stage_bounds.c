@@ -1,6 +1,6 @@
 /* Where an actor is, as a stage takes it: what it shows lies in its sphere, whatever the weights, the pose and the
- * level; a view that looks at it sees it, a ray that meets it hits it; and how finely it is shown follows from how near
- * it is. */
+ * level; a view that looks at it sees it, a ray that meets it hits it; and how finely it is shown follows from its
+ * distance. */
 #include "support/stage_fixture.h"
 
 #include <math.h>
@@ -14,7 +14,7 @@
 
 #define HALF_ROOT 0.70710678f
 
-/* ---- a figure: a tube with joints and targets, and a rigid head without joints beside it ---- */
+/* ---- a figure: a tube with joints and targets, and next to it a rigid head without joints ---- */
 
 typedef struct figure {
     model *m, *moves; /* of the meshes, of the clips */
@@ -214,7 +214,7 @@ static void everything_shown_lies_in_the_sphere(void **state)
     figure_close(&f);
 }
 
-/* ---- who looks at a vertex sees it; who shoots at it hits ---- */
+/* ---- a view of a vertex sees it; a ray at it hits ---- */
 
 typedef struct some {
     test_random *r;
@@ -248,7 +248,7 @@ static noh_stage_view look_closely(const double at[3], uint32_t seed)
     return view;
 }
 
-/* Weights of which the clips know nothing, that the game says before the first frame. */
+/* Weights that are in no clip, which the game sets before the first frame. */
 static void a_view_of_any_vertex_sees_it_in_the_first_frame(void **state)
 {
     static const float head[3] = { 3.0f, 0.5f, -1.0f }, origin[3] = { 1.0f, 2.0f, 3.0f };
@@ -388,7 +388,8 @@ static void a_weight_of_a_clip_takes_nobody_out_of_view(void **state)
     model_free(m);
 }
 
-/* A joint that is no root, which a clip takes twenty units away: whoever looks there sees it, never posed as it is. */
+/* A joint that is no root, which a clip takes twenty units away: a view of that place sees it, though it was never
+ * posed. */
 static void a_joint_that_travels_is_seen_where_it_is(void **state)
 {
     const float at[3] = { 0.0f, 0.0f, 0.0f };
@@ -413,7 +414,7 @@ static void a_joint_that_travels_is_seen_where_it_is(void **state)
     }
 }
 
-/* ---- how near ---- */
+/* ---- distances ---- */
 
 typedef struct nearest {
     const noh_stage_view *view;
@@ -440,8 +441,8 @@ static double pixels_at(const noh_stage_view *view, double distance)
     return 0.5 * view->height_px / (tan(0.349066) * distance);
 }
 
-/* From outside the sphere: its nearest point, and no nearer where it stands beside the eye. From inside: of what is in
- * the picture, no less than at the nearest vertex, and within a few times of it. Close outside: between the two. */
+/* From outside the sphere: its nearest point, and no nearer where it stands level with the eye. From inside: of what is
+ * in the picture, no less than at the nearest vertex, and within a few times of it. Close outside: between the two. */
 static void pixels_a_metre_are_those_of_the_nearest_point(void **state)
 {
     static const float head[3] = { 0.6f, 0.5f, 0.2f }, origin[3] = { 0.0f, 0.0f, 0.0f };
@@ -600,7 +601,7 @@ static void of_equal_sizes_the_nearer_has_the_slot(void **state)
     cast_close(&c);
 }
 
-/* After a cut of the camera, or when it was away, the slots are those of the new place: holding one counts nothing. */
+/* After a cut of the camera, or when it was away, the slots follow the new place: holding one counts nothing. */
 static void a_cut_gives_the_slot_to_whoever_is_nearer_now(void **state)
 {
     static const float middle[3] = { 0.0f, 1.0f, -1.0f };
@@ -634,7 +635,7 @@ static void a_cut_gives_the_slot_to_whoever_is_nearer_now(void **state)
     cast_close(&c);
 }
 
-/* What hangs on a joint is as large and as near as it is drawn. */
+/* An attached actor is as large and as near as it is drawn. */
 static void what_hangs_on_a_scaled_figure_is_measured_where_it_hangs(void **state)
 {
     static const float origin[3] = { 0.0f, 0.0f, 0.0f };

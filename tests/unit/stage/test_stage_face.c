@@ -189,7 +189,7 @@ static void eyes_with_joints_turn(void **state)
             face.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
             for (uint32_t i = 0; i < 3; i++) face.face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
         }
-        face.face.eyes[0][0] += 0.06f; /* the tube's joints stand above each other: the lower one is told exactly */
+        face.face.eyes[0][0] += 0.06f; /* the joints are in line: separate the eyes; the lower eye keeps its place */
         c.kinds[0] = c.kinds[TUBES];
         c.kinds[0].face = noh_face_module(&face);
         c.desc.kind_count = 1;
@@ -291,7 +291,7 @@ static void nothing_that_lives_stands_still(void **state)
     }
 }
 
-/* ---- what it is told ---- */
+/* ---- its inputs ---- */
 
 static void emotions_by_name_leave_the_mouth_to_speech(void **state)
 {
@@ -371,7 +371,7 @@ static void a_pack_brings_its_own_recipe_and_correctives(void **state)
     free(strings);
 }
 
-/* A kind that asks for them keeps its pack's rules, whoever says the weights; another one does not. */
+/* A kind that asks for them keeps its pack's rules, whatever sets the weights; another one does not. */
 static void rules_for_weights_hold_on_request(void **state)
 {
     static const char more[] = "-jawOpen\0mouthFunnel";

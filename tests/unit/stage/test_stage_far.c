@@ -69,7 +69,7 @@ static void a_day_of_turns_adds_nothing(void **state)
     for (uint32_t i = 0; i < 86400u * 60u; i++) {
         noh_root_drive(1, i < 86400u ? &quarter : &sixth, 2.0, position, rotation);
     }
-    /* the sixths are 2^-32 turns too long: so many of those they add up to */
+    /* the sixths are 2^-32 turns too long: their sum, in that unit */
     assert_true(fabs(2.0 * atan2(rotation[1], rotation[3]) -
                      remainder(2.0 * atan2(0.6, 0.8) + 6.283185307179586 * (86400.0 * 59.0) / 3.0 / 4294967296.0,
                                6.283185307179586)) < 1e-5);
@@ -137,7 +137,7 @@ static float farthest(const float *a, const float *b, uint32_t count)
     return worst;
 }
 
-/* Joints, what hangs on them, spheres and detail are the same to a tenth of a millimetre, between steps too. */
+/* Joints, actors attached to them, spheres and detail are the same to a tenth of a millimetre, between steps too. */
 static void frames_are_the_same_anywhere(void **state)
 {
     static const float alphas[] = { 1.0f, 0.37f };
@@ -269,7 +269,7 @@ static void world_shows(world *w, int frame, int falls, float *joints)
 }
 
 /* The origin moves there and back again, time after time, under one of two worlds. Returns how far joints of walkers and
- * what they hold are apart, at most; *fallen: those of one who falls. */
+ * what they hold are apart, at most; *fallen: the same for an actor that falls. */
 static float shifts(const float by[3], int falls, float *fallen)
 {
     const noh_actor nobody = { 0 };
@@ -300,8 +300,8 @@ static float shifts(const float by[3], int falls, float *fallen)
     return worst;
 }
 
-/* Nobody sees that the origin moved, whoever walks, looks, stands on uneven ground, falls, or is held; nor what hung on
- * another and was let go. Joints are compared as floats of the old world, which are within ten metres of its origin. */
+/* No actor shows that the origin moved: one that walks, looks, stands on uneven ground, falls, is held, or was attached
+ * and then detached. Joints are compared as floats of the old world, which are within ten metres of its origin. */
 static void a_shift_is_not_seen(void **state)
 {
     static const float far_off[3] = { 100000.0f, 16.0f, -64000.0f }, near_by[3] = { 64.0f, 16.0f, -32.0f };

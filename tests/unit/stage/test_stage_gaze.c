@@ -153,7 +153,7 @@ static void puppets_look_and_reach(void **state)
     close_scene(&s);
 }
 
-/* Any number of jobs gives the same bits, as does a state that is put back; one that is none is refused. */
+/* Any number of jobs gives the same bits, as does a state that is put back; bytes that are not a state are refused. */
 static void they_are_state_of_the_stage(void **state)
 {
     static const uint32_t jobs[] = { 1, 3 };

@@ -367,7 +367,7 @@ static void on_key(void *user, noh_stage *stage, const noh_stage_event *event)
     }
 }
 
-/* The keys of the graph and of a clip that plays beside it come in the order of time, also in steps of many of them,
+/* The keys of the graph and of a clip that plays with it come in the order of time, also in steps of many of them,
  * and with the weight that the graph has on its layer. */
 static void keys_come_in_the_order_of_time(void **state)
 {

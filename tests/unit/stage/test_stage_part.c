@@ -1,5 +1,5 @@
-/* Parts: what changes a pose before it is shown. A gaze that turns a head, floats that a part sets, what parts are told
- * of time, their states saved and put back. */
+/* Parts: what changes a pose before it is shown. A gaze that turns a head, floats that a part sets, the time that parts
+ * receive, their states saved and put back. */
 #include "support/stage_fixture.h"
 
 #include "support/look_part.h"
@@ -77,7 +77,7 @@ static float aim(const cast *c, noh_actor actor, const look_joint *joint)
 
 /* ---- poses ---- */
 
-/* The head of a walking puppet turns to what it is told to look at, and with it all that hangs on it; the feet stay. */
+/* The head of a walking puppet turns to its target, with all that is attached to it; the feet stay. */
 static void a_head_turns_to_a_target(void **state)
 {
     noh_modifier gaze;
@@ -143,7 +143,7 @@ static void parts_set_floats_in_their_order(void **state)
         open_cast(&c, 3, parts, 2);
         c.kinds[0].mesh = &c.packs[MASKS];
         c.kinds[0].root_axes = 0;
-        if (without_clips) { /* those of another skeleton */
+        if (without_clips) { /* clips of another skeleton */
             no_clips = c.packs[PUPPETS];
             c.kinds[0].clips = &no_clips;
         }
@@ -199,9 +199,9 @@ static void frames_of(const cast *c, uint32_t count)
         assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
 }
 
-/* Each step of a frame works on what the one before has left: parts see where the face has turned the head; who lies,
- * lies as the ragdoll does, whatever parts do to the limbs; and springs hang on the limbs that lie there, not on those
- * of the clip, which walks on. */
+/* Each step of a frame works on what the one before has left: parts see where the face has turned the head; an actor
+ * that lies, lies as the ragdoll does, whatever parts do to the limbs; and springs are attached to the limbs that lie
+ * there, not to the limbs of the clip, which walks on. */
 static void face_parts_ragdoll_and_springs_in_this_order(void **state)
 {
     static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
@@ -295,7 +295,7 @@ static void log_time(noh_modifier_work *w)
     l->last = w->clock;
 }
 
-/* The ticks that a part is told add up to the clock, near and far, at any rate; out of view it is not called, and what
+/* The ticks that a part receives add up to the clock, near and far, at any rate; out of view it is not called, and what
  * comes after that is a cut. */
 static void parts_are_told_how_much_time_has_passed(void **state)
 {

@@ -1,6 +1,6 @@
 /* Feet, gazes, hands, springs and ragdolls of a stage have the same bits on every processor: puppets walk over steps
  * and rough ground, look, reach, are hit, fall and get up; each frame's state is hashed. As in test_stage_bits the
- * build for this machine writes the hashes beside its packs, and those for other processors (make cross) compare. */
+ * build for this machine writes the hashes next to its packs, and builds for other processors (make cross) compare. */
 #include "support/support.h"
 
 #include <stdio.h>
@@ -86,7 +86,7 @@ static void lay_ground(show *s)
     assert_int_equal(noh_world_check(&s->world, NULL), NOH_OK);
 }
 
-/* Sleeves and hem hang, each from one joint, beside a ball round the hips. */
+/* Sleeves and hem hang, each from one joint, next to a ball round the hips. */
 static void hang_cloth(show *s, const noh_skeleton *joints)
 {
     noh_springs_desc desc;
@@ -254,7 +254,7 @@ static void every_processor_has_the_same_bits(void **state)
     fclose(file);
     assert_int_equal(count, FRAMES);
     for (uint32_t f = 0; f < FRAMES && !WRITES; f++) {
-        if (hashes[f] != others[f]) fail_msg("the state differs from that of x86-64 from frame %u on", (unsigned)f);
+        if (hashes[f] != others[f]) fail_msg("the state differs from x86-64 from frame %u on", (unsigned)f);
     }
 }
 

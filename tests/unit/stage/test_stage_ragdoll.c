@@ -1,5 +1,5 @@
 /* Ragdolls of actors: a puppet that walks, is hit, falls, lies and gets up; parts that fall, joints with strength; how
- * many may fall, who is dead; states saved, put back and tampered with; the same bits for any number of jobs. */
+ * many may fall, dead actors; states saved, put back and tampered with; the same bits for any number of jobs. */
 #include "support/stage_fixture.h"
 
 #include "noh/base.h"
@@ -107,7 +107,7 @@ static void who_walks_falls_and_lies(void **state)
     close_cast(&c);
 }
 
-/* The first frame of the fall goes on as the walk did: velocities come from the last two poses. Without a floor: that
+/* The first frame of the fall continues the walk: velocities come from the last two poses. Without a floor: that
  * would brake the feet. */
 static void speeds_are_handed_over(void **state)
 {
@@ -176,7 +176,7 @@ static void it_falls_far_away(void **state)
     }
 }
 
-/* The game moves its world while actors stand, fall and lie: all of them go on as they would. */
+/* The game moves its world while actors stand, fall and lie: all of them move as they would have. */
 static void a_world_is_shifted(void **state)
 {
     const noh_kind_ragdoll ragdoll = { .count = 2 };
@@ -197,7 +197,7 @@ static void a_world_is_shifted(void **state)
             const float back[3] = { -way[0], -way[1], -way[2] };
             assert_int_equal(noh_stage_shift_origin(c.stage, back, NULL), NOH_OK);
         }
-        assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK); /* at the speed of before */
+        assert_int_equal(noh_actor_fall(c.stage, actors[1], NULL), NOH_OK); /* at its earlier speed */
         run(&c, 20);
         for (uint32_t i = 0; i < 2; i++) {
             joint_at(&c, actors[i], "hips", at[i]);
@@ -444,7 +444,7 @@ static void hold(const cast *c, noh_actor actor, const char *joint, const noh_bo
     assert_int_equal(noh_actor_hold_body(c->stage, actor, index, how, &said), NOH_OK);
 }
 
-/* An arm hangs from one who walks: all else is as it is without, and the arm is not. */
+/* An arm hangs from a walking actor: all else is as without the ragdoll, and the arm is not. */
 static void an_arm_falls_alone(void **state)
 {
     static const noh_body_hold held = { .held = 1 }, limp = { 0 };
@@ -480,8 +480,8 @@ static void an_arm_falls_alone(void **state)
     close_cast(&c);
 }
 
-/* Two who are hit alike in the air: joints with strength keep the pose of the clip, limp ones do not; and what is shown
- * as clips have it has no strength, but shows it. */
+/* Two actors that are hit alike in the air: joints with strength keep the pose of the clip, limp ones do not; and what
+ * is shown as clips have it has no strength, but shows it. */
 static void joints_have_strength(void **state)
 {
     static const noh_body_hold strong = { .hertz = 15.0f }, shown = { .animated = 1.0f };

@@ -287,7 +287,7 @@ static void close_swingers(cast *c)
     noh_file_unmap(&c->files[0]);
 }
 
-/* The directions of a joint's axes in those of the actor's root: [9]. */
+/* A joint's axes in the axes of the actor's root: [9]. */
 static void axes_of(const cast *c, noh_actor actor, uint32_t joint, double out[9])
 {
     float m[12], root[12];
@@ -345,7 +345,7 @@ static void a_kind_swings_by_itself(void **state)
     for (int k = 0; k < 2; k++) close_swingers(&c[k]);
 }
 
-/* From 3 to 90 m and back: in no frame a sleeve turns by much more than beside an observer who stays near; far away
+/* From 3 to 90 m and back: in no frame a sleeve turns by much more than for an observer that stays near; far away
  * nothing swings. */
 static void far_away_they_fade_without_a_pop(void **state)
 {
@@ -418,7 +418,7 @@ static void time_stops_and_sizes_differ(void **state)
     close_swingers(&c);
 }
 
-/* A leap that is told leaves the springs at rest, as their parents are turned; one that is not, finite. */
+/* A leap that the stage is informed of leaves the springs at rest, turned with their parents; any other, finite. */
 static void leaps_are_told_or_survived(void **state)
 {
     static const noh_place origin = { { 0.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f },
@@ -466,7 +466,7 @@ static void a_fork_goes_on(void **state)
 }
 
 /* At any rate of frames sleeves are where they are at 60 Hz, but for the arms' way between two poses. Frames longer
- * than an eighth of a second once began all of them anew. */
+ * than an eighth of a second once restarted all of them. */
 static void seldom_frames_swing_alike(void **state)
 {
     static const uint32_t rates[] = { 60, 12, 7, 5, 3, 2 };

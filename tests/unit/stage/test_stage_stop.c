@@ -97,7 +97,7 @@ static float apart(const shape *a, const shape *b)
     return most;
 }
 
-/* From a shape to another one in so many frames: on the way from the first on, without a leap, and all the way. */
+/* From a shape to another one in `frames` frames: on the way from the first on, without a leap, and all the way. */
 static void goes_there(const cast *c, noh_actor actor, shape goal, uint32_t frames)
 {
     shape last = shape_of(c, actor);

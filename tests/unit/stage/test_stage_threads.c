@@ -1,4 +1,4 @@
-/* The jobs of a stage run by four threads at once: in every frame the state and what is shown are those of one thread
+/* The jobs of a stage run by four threads at once: in every frame the state and what is shown equal one thread's
  * to the bit, and (tests/tsan.sh) there is no race. */
 #define _POSIX_C_SOURCE 200112L
 #include "support/look_part.h"

@@ -117,7 +117,7 @@ static void update(line *l, double kind)
     l->value[u.pose] = wave((double)u.pose_clock, kind);
 }
 
-/* Updated on time the error is that of interpolation, h^2 / 8 times the second derivative, and what is
+/* Updated on time the error is the interpolation's, h^2 / 8 times the second derivative, and what is
  * shown at an update is true; rates change at random. */
 static void updates_on_time_have_the_error_of_interpolation(void **state)
 {
@@ -386,8 +386,8 @@ static void a_turn_has_the_error_of_its_sagitta(void **state)
     }
 }
 
-/* A mix cuts a point's arc short by its sagitta: points on the axis have no error, and that of a point with two joints
- * lies between those of each alone. */
+/* A mix cuts a point's arc short by its sagitta: points on the axis have no error, and the error of a point with two
+ * joints lies between its errors with each alone. */
 static void points_have_the_errors_of_their_own_sagittas(void **state)
 {
     ALIGNED uint8_t memory[1024];
@@ -439,8 +439,8 @@ static void sample_walk(void *user, uint32_t clip, uint32_t tick, uint32_t joint
     pose[0].translation[0] = 3.0f * (float)tick / (float)t->clip.duration_ticks;
 }
 
-/* A loop that walks as it turns has the errors of one that turns on the spot when the probe travels; else that of its
- * jump back. */
+/* A loop that walks as it turns has the errors of one that turns on the spot when the probe travels; else the error of
+ * its jump back. */
 static void points_follow_a_loop_that_travels(void **state)
 {
     ALIGNED uint8_t memory[1024];
@@ -510,10 +510,10 @@ static void errors_of_what_plays(void **state)
     track = track_of(WAVE, 0.25f);
     assert_int_equal(noh_controller_start(c, &s.set, 1, &track, NULL), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
-    assert_true(out[0] == 0.0f && out[1] == 3.0f && out[3] == 9.0f); /* that of the wave, however small its weight */
+    assert_true(out[0] == 0.0f && out[1] == 3.0f && out[3] == 9.0f); /* the wave's, however small its weight */
     assert_int_equal(noh_controller_set_speed(c, 0, -2 * NOH_SPEED_ONE), NOH_OK);
     noh_time_lod_error(c, errors[0], out);
-    assert_true(out[2] == 8.0f); /* that of the walk, four times */
+    assert_true(out[2] == 8.0f); /* the walk's, four times */
     track = track_of(LEAN, 0.5f);
     track.flags = NOH_TRACK_ADDITIVE;
     assert_int_equal(noh_controller_start(c, &s.set, 2, &track, NULL), NOH_OK);
@@ -612,7 +612,7 @@ static float farthest_off(const played *x, const float *direction, float part)
     return farthest;
 }
 
-/* At random periods and ticks, no joint's shell has a larger error than was measured. */
+/* At random periods and ticks, the shell of every joint stays within the measured error. */
 static void real_clips_stay_within_what_was_measured(void **state)
 {
     static const char *const names[] = { "clips/Knight__Walking_A.rcl", "clips/Knight__Idle.rcl", "clips/Fox__Walk.rcl",

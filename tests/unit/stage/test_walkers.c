@@ -195,7 +195,7 @@ typedef struct slides {
     float length;           /* of all of `lengths`, from where one foot came down to where the next did */
     uint32_t small;         /* of these, those that slid by at most 3 % of a step of 0.426 m */
     float each[SLIDES_MAX]; /* what they slid */
-    float lag, lag_sum;     /* from the agent: the longest, and that of all frames */
+    float lag, lag_sum;     /* from the agent: the longest, and the sum of all frames */
     uint32_t frames;
 } slides;
 
@@ -722,8 +722,8 @@ static float apart(const street *s, noh_actor actor, const float heading[2])
     return fabsf((parts[0][1][0] - parts[1][1][0]) * heading[0] + (parts[0][1][2] - parts[1][1][2]) * heading[1]);
 }
 
-/* Who stops closes with a step and then stands, feet beside each other; who turns on the spot steps, too; and no foot on
- * the ground slides meanwhile. Stops at eight moments of a pass. */
+/* A walker that stops closes with a step and then stands, feet together; one that turns on the spot steps, too; and no
+ * foot on the ground slides meanwhile. Stops at eight moments of a pass. */
 static void stops_and_turns_are_steps(void **state)
 {
     static const float back[2] = { 0.0f, -1.0f }, aside[2] = { 1.0f, 0.0f };
@@ -789,7 +789,7 @@ static void nobody_turns_faster_than_asked(void **state)
     }
 }
 
-/* ---- who falls ---- */
+/* ---- falling ---- */
 
 #define DOLLS 3u
 
@@ -936,7 +936,7 @@ static void it_gets_up_where_it_lies(void **state)
     close_street(&s);
 }
 
-/* Nobody falls of a kind without ragdolls; who is dead stays, and is gone around. */
+/* No actor of a kind without ragdolls falls; a dead one stays, and others walk around it. */
 static void who_is_dead_lies(void **state)
 {
     static const float at[2] = { 0.0f, 0.0f }, goal[2] = { 0.0f, 9.0f }, point[3] = { 0.0f, 1.2f, 0.0f };
