@@ -73,11 +73,11 @@ awk -F '\t' -v table="$table" '
           exit bad }' "$work/now" >"$work/differences"
 status=$?
 if [ $status != 0 ]; then
-    echo "not ok 1 - budgets are those of $table"
+    echo "not ok 1 - budgets equal $table"
     grep -v '^skip' "$work/differences" | sort -k2 | sed 's/^/# /'
     echo '# if that is meant: make budgets-update'
 else
-    echo "ok 1 - budgets are those of $table"
+    echo "ok 1 - budgets equal $table"
 fi
 if grep -q '^skip' "$work/differences"; then
     echo "SKIP: $(sed -n 's/^skip //p' "$work/differences" | tr '\n' ' ')came out with other bytes than in the table"

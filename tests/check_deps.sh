@@ -39,7 +39,7 @@ deps "$lock" "$lock"
 expect 0 'waits for the lock of the package lists'
 check 'by trying again' test "$(calls update)" = 3
 deps '' 'E: Could not get lock /var/cache/apt/archives/lock. It is held by process 7 (apt-get)'
-expect 0 'and for that of the archives'
+expect 0 'and for the lock of the archives'
 deps "$lock" "$lock" "$lock" "$lock" "$lock" "$lock"
 expect 1 'for five minutes'
 check 'and says who holds it' grep -q 'process 7' "$work/err"

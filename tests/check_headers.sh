@@ -43,7 +43,7 @@ while read -r header; do
     case $header in noh/noh_gl.h | noh/gl_device.h | noh/low_gl.h | noh/noh_low.h) continue ;; esac
     reached "$header" | grep -E '^noh/(noh_gl|gl_device|low_gl)\.h$' | sed "s|^|$header reaches |"
 done <"$work/public" >"$work/reach_gl"
-check 'only headers of GL reach those of GL' sh -c '! grep . "$1"' - "$work/reach_gl"
+check 'only GL headers include GL headers' sh -c '! grep . "$1"' - "$work/reach_gl"
 while read -r header; do
     grep -Hn '^ *# *include *<' "$headers/$header" | grep -v '<std\(int\|def\)\.h>'
     sed -n 's/^ *# *include *"\([^"]*\)".*/\1/p' "$headers/$header" | while read -r included; do

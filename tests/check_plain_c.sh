@@ -32,7 +32,7 @@ for name in $names; do
 done
 
 if ! echo '#include <stddef.h>' | ${CC:-gcc} -m32 -E - >/dev/null 2>&1 || ! command -v nm >/dev/null 2>&1; then
-    skip 'i386 without SSE asks for nothing of libm' "${CC:-gcc} does not build for i386 here, or nm is missing"
+    skip 'i386 without SSE needs no libm' "${CC:-gcc} does not build for i386 here, or nm is missing"
 else
     for source in runtime/*/*/*.c; do
         case $source in runtime/gl/device/* | runtime/gl/draw/* | runtime/gl/morph/*) continue ;; esac
@@ -42,7 +42,7 @@ else
     # the compiler's own: 64-bit arithmetic, and where the program lies
     grep -vE '^(memcpy|memset|memcmp|__u?(div|mod)di3|__udivmoddi4|__divmoddi4|__fixunssfdi|__c[lt]z[sd]i2|__fixunsdfdi|_GLOBAL_OFFSET_TABLE_|__x86\..*)$' \
         "$work/asked" >"$work/foreign"
-    check 'i386 without SSE asks for nothing of libm' sh -c '! grep . "$1"' - "$work/foreign"
+    check 'i386 without SSE needs no libm' sh -c '! grep . "$1"' - "$work/foreign"
     check 'the list was read' grep -qx __udivdi3 "$work/asked"
     check 'x87 without that word is refused' sh -c '! "$1" -std=c99 -m32 -march=i386 -mno-sse -Iruntime -fsyntax-only runtime/core/base/trig.c 2>"$2" && grep -q "mfpmath=sse" "$2"' - \
         "${CC:-gcc}" "$work/refused"

@@ -72,7 +72,7 @@ target() {
     case $name in
     aarch64 | armv7) [ -z "${NOH_LONG:-}" ] || at_levels "$name" "$cc" "$ar" -O0 -Os -O3 ;;
     esac
-    # Where multiply-add is fused by default: results would differ from those of other processors.
+    # Where multiply-add is fused by default: results would differ from other processors' results.
     if [ "$name" = aarch64 ]; then
         aarch64-linux-gnu-objdump -d "$folder/libnoh.a" >"$folder/code.txt"
         if grep -q '[[:space:]]fmul[[:space:]]' "$folder/code.txt" && ! grep '[[:space:]]\(fn\?m\(add\|sub\)\|fml[as]\)[[:space:]]' "$folder/code.txt"; then

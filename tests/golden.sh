@@ -6,7 +6,7 @@
 #   golden.sh            all of them (`make golden`)
 #   golden.sh short      what `make check` runs: gcc without and with optimisation
 #   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here
-#   golden.sh update     write golden.txt anew, after a change that is meant to change results
+#   golden.sh update     write golden.txt again, after a change that is meant to change results
 #
 # The table applies to packs with the checksums in it; if the demo's packs differ, builds are only compared with the
 # first build, with a message. Prints TAP.

@@ -94,7 +94,7 @@ check_pack() {
         NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 1500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
         count $? "$out/figure.txt"
     fi
-    case $name in mask | wig) # with levels, of which the coarsest come first, and without
+    case $name in mask | wig) # with levels, the coarsest first, and without
         timeout -k 5 1500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
         count $? "$out/load.txt"
         ;;

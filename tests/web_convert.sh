@@ -25,7 +25,7 @@ same() { # NAME FILE... OPTION...
     "$build/noh" build "$@" -o "$out/$name.noh" --quiet >/dev/null 2>&1 || not_ok "$name: noh build fails"
     rm -f "$out/$name.web.noh"
     web build "$@" -o "$out/$name.web.noh" --quiet >"$out/$name.txt" 2>&1 || not_ok "$name: the page's converter fails: $(cat "$out/$name.txt")"
-    if cmp -s "$out/$name.noh" "$out/$name.web.noh"; then ok; else not_ok "$name: other bytes than those of noh build"; fi
+    if cmp -s "$out/$name.noh" "$out/$name.web.noh"; then ok; else not_ok "$name: bytes differ from noh build's"; fi
 }
 
 # The same messages except for the folder.

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
 out=$build/web-check/package
-project=$build/web-check/project # three.js is not installed in it, but beside it
+project=$build/web-check/project # three.js is installed next to it, not in it
 tarball=$build/npm/noh-character-$(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/noh/base.h).tgz
 passed=0 failed=0
 
@@ -17,7 +17,7 @@ leave_out() {
     exit 0
 }
 . tests/web/find_browser.sh
-find_browser "$build/web-check" playwright-core axe-core typescript three @types/three # those of web.sh: npm removes others
+find_browser "$build/web-check" playwright-core axe-core typescript three @types/three # the same list as in web.sh: npm removes others
 ok() { passed=$((passed + 1)); }
 not_ok() {
     failed=$((failed + 1))

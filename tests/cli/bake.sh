@@ -15,7 +15,7 @@ open(sys.argv[1], 'wb').write(b'\x89PNG\r\n\x1a\n' + chunk(b'IHDR', struct.pack(
 END
     noh bake "$work/ramp.png" -o "$work/normal.png" --depth 255
     expect 0 'a map out of heights'
-    check 'says what it wrote' grep -q 'normal.png: 32 x 8 texels$' "$work/out"
+    check 'names the file and its size' grep -q 'normal.png: 32 x 8 texels$' "$work/out"
     noh bake "$work/ramp.png" -o "$work/again.png" --depth 255 --json
     expect 0 'the same with --json'
     check 'is JSON' python3 -c 'import json, sys; assert json.load(open(sys.argv[1]))["width"] == 32' "$work/out"

@@ -96,7 +96,7 @@ awk 'BEGIN {
 }' >"$work/swing.bvh"
 noh build "$work/swing.bvh" -o "$work/swing.noh"
 expect 0 'a recording with gaps'
-check 'of which nothing is said unasked' sh -c '! grep -q clean "$1"' - "$work/out"
+check 'not reported without --clean' sh -c '! grep -q clean "$1"' - "$work/out"
 noh build "$work/swing.bvh" -o "$work/clean.noh" --clean all
 expect 0 'cleaned up'
 check 'both gaps are filled' grep -q "^clean 'swing': filled 2 gaps in 1 tracks, the longest of 0.083 s; left 0 longer" "$work/out"
@@ -124,7 +124,7 @@ noh build "$work/march.bvh" -o "$work/march.noh" --clean contact-keys --events "
 expect 0 'callback keys of footsteps'
 check 'two steps a foot' grep -q "^clean 'march': 4 callback keys where 2 feet come down" "$work/out"
 noh info "$work/march.noh" --json
-check 'in ticks where each comes down, with those of a file' python3 -c "
+check 'in ticks where each comes down, with the keys of a file' python3 -c "
 import json, sys
 keys = json.load(open(sys.argv[1]))['clips'][0]['event_list']
 times = {n: [e['seconds'] for e in keys if e['name'] == n] for n in ('left_foot', 'right_foot', 'shout')}
@@ -187,5 +187,5 @@ expect 2 'a blend without a clip is a usage error'
 noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --blend kick
 expect 2 'a blend and a transition is one'
 noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --transition jump
-expect 2 'so is a transition that is none'
+expect 2 'so is an unknown transition'
 finish

@@ -26,7 +26,7 @@ expect 0 'why this path'
 check 'the path named is the cheaper one' awk '
     /^why: / { taken = $2; sub(":", "", taken) } $1 == "mrt" { mrt = $2 } $1 == "gather" { gather = $2 }
     END { exit !(mrt > 0 && gather > 0 && taken == (gather <= mrt ? "gather" : "mrt")) }' "$work/out"
-check 'what gather sends at most is told' grep -q '^an update of all instances sends at most [1-9]' "$work/out"
+check 'the most that gather sends is reported' grep -q '^an update of all instances sends at most [1-9]' "$work/out"
 if [ -n "$json" ]; then
     noh budget "$build/mask.noh" --nominal --why --json
     check 'as JSON, too' sh -c '[ -s "$1" ]' - "$work/out"
@@ -39,7 +39,7 @@ expect 0 'a stage of twenty'
 cp "$work/out" "$work/whole"
 check 'the parts add up' adds_up "$work/whole"
 check 'nothing is given up' sh -c '! grep -q "^gave up" "$1"' - "$work/whole"
-check 'the kind is told' grep -q "^kind 'puppet_levels': 20 actors, 2 meshes, 47 joints, " "$work/whole"
+check 'the kind is reported' grep -q "^kind 'puppet_levels': 20 actors, 2 meshes, 47 joints, " "$work/whole"
 check 'with the levels of its meshes' grep -q '^  0 .* 0 0$' "$work/whole"
 check 'its slots are as many as its actors' awk '
     /^  level / { inside = 1; next } inside && !/^  [0-7] / { exit } inside { slots += $4 } END { exit slots != 20 }' "$work/whole"
@@ -132,7 +132,7 @@ actor_count 3
 END
 noh budget --desc "$work/cast/cast.txt" --nominal
 expect 0 '--desc'
-check 'its paths are those beside it, and the parts add up' adds_up "$work/out"
+check 'its paths are relative to it, and the parts add up' adds_up "$work/out"
 check 'within its bound' test $(($(sum_of 2 "$work/out") + $(sum_of 3 "$work/out"))) -le 4194304
 check 'of both kinds' sh -c 'grep -q "^kind .hero.: 20 actors, .* 5 tracks" "$1" && grep -q "^kind .face.: 3 actors" "$1"' - "$work/out"
 noh budget --desc "$work/cast/cast.txt" --nominal --bytes 100000000

@@ -17,7 +17,7 @@ check 'the same bytes from another folder and under another name' cmp "$work/a.n
 noh build "$mask" -o "$work/a.noh" --quiet
 expect 0 'build over an older pack'
 check 'which is replaced' cmp "$work/a.noh" "$work/b.noh"
-check 'nothing else is left beside it' sh -c 'test "$(ls "$1" | grep -c noh)" = 3' - "$work"
+check 'no other file is left in its folder' sh -c 'test "$(ls "$1" | grep -c noh)" = 3' - "$work"
 
 # ---- the error asked for ----
 
@@ -62,7 +62,7 @@ expect 1 'what is attached must be there'
 check 'and is named' grep -q nobody.glb "$work/err"
 noh build "$build/demo/arm.glb" --attach "$build/demo/puppet.glb" -o "$work/x.noh"
 expect 1 'joints of other names'
-check 'are told' grep -q 'none of its joints has the name' "$work/err"
+check 'are reported' grep -q 'none of its joints has the name' "$work/err"
 noh build "$build/demo/arm.glb" --attach "$build/demo/arm.glb" --only mesh -o "$work/two.noh"
 expect 0 'what is attached shares the joints'
 # A face without joints, on a joint: the head's, or one that is named.
@@ -77,7 +77,7 @@ noh info "$work/x.noh"
 check 'is moved by it' grep -q "skin 'mask': 1 joint" "$work/out"
 noh build "$work/small.glb" --attach "$mask" --attach-joint c --only mesh -o "$work/x.noh"
 expect 1 'a face on no joint'
-check 'is told' grep -q "no joint 'c'" "$work/err"
+check 'is reported' grep -q "no joint 'c'" "$work/err"
 noh build "$mask" --attach-joint b -o "$work/x.noh"
 expect 2 'a joint without a face'
 noh build "$mask" --seam mend --only mesh -o "$work/x.noh"

@@ -173,17 +173,17 @@ check 'of a crowd that is dense and of one in the open' awk '/"crowd\/people\/(d
 noh crowd "$puppets" --place "$festival" --agents 60 --time 3 -o "$work/place.png" --size 320x180 --light sky
 expect 0 'puppets at a festival'
 cp "$work/out" "$work/drawn"
-check 'of whom those who are near stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
+check 'the near ones stand on the ground' grep -q '60 in .*feet of 48 on the ground' "$work/out"
 noh crowd "$puppets" --place "$festival" --agents 20 --time 1 --strip 2,0.5 -o "$work/strip.png" --size 64x48
 expect 0 'two pictures of a place'
-check 'lie beside each other' test "$(od -An -tu1 -j16 -N8 "$work/strip.png" | tr -s ' ')" = ' 0 0 0 128 0 0 0 48'
+check 'lie side by side' test "$(od -An -tu1 -j16 -N8 "$work/strip.png" | tr -s ' ')" = ' 0 0 0 128 0 0 0 48'
 noh crowd "$puppets" --place "$festival" --agents 20 --time 1 --strip 1 -o "$work/one.png" --size 64x48
 noh crowd "$puppets" --place "$festival" --agents 20 --time 1 -o "$work/alone.png" --size 64x48
 check 'a strip of one is the picture' cmp -s "$work/one.png" "$work/alone.png"
 noh crowd "$puppets" --place "$festival" --agents 60 --time 4 --hit 3,0,3,6 -o "$work/hit.png" --size 320x180 --light sky
 expect 0 'a push'
-check 'without a terrain none is told of' sh -c '! grep -q ^terrain "$1"' - "$work/out"
-check 'those who are near fall' awk '/^hit: / { found = $2 > 0 && $2 <= 16 && $(NF - 4) == $2 } END { exit !found }' "$work/out"
+check 'without a terrain none is reported' sh -c '! grep -q ^terrain "$1"' - "$work/out"
+check 'the near ones fall' awk '/^hit: / { found = $2 > 0 && $2 <= 16 && $(NF - 4) == $2 } END { exit !found }' "$work/out"
 noh crowd "$puppets" --place "$festival" --agents 60 --time 12 --hit 3,0,3,6 -o "$work/hit.png" --size 32x18 --light sky
 check 'and get up' grep -q '^hit: [1-9][0-9]* of a pool of 16 fell, 0 not on their feet' "$work/out"
 for refused in '--strip 0' '--strip 2,0' '--strip x' '--strip 2,1,1' '--strip 8193 --size 1x1' '--hit 1,2' '--hit 1,2,x' '--hit 1,2,3,4,5,6' '--hit -1,0,0'; do

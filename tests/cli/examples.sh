@@ -15,7 +15,7 @@ look() { # FILE WIDTH HEIGHT
     tail -c $(($2 * $3 * 3)) "$1" | od -An -v -tu1 -w3 |
         awk '{ n++; if ($1 > 60 || $2 > 60 || $3 > 60) drawn++; tone[$2] = 1 } END { for (t in tone) tones++; print int(100 * drawn / n), tones + 0, n }'
 }
-shows() { # NAME FILE WIDTH HEIGHT LEAST MOST: a figure that takes so many percent of the picture, in at least 100 tones
+shows() { # NAME FILE WIDTH HEIGHT LEAST MOST: a figure of LEAST to MOST percent of the picture, in at least 100 tones
     look "$2" "$3" "$4" >"$work/figures" 2>/dev/null
     read -r percent tones pixels <"$work/figures"
     check "$1 ($percent % of the pixels, $tones tones)" test "$pixels" = $(($3 * $4)) -a "$percent" -ge "$5" -a "$percent" -le "$6" -a "$tones" -ge 100

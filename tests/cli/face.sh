@@ -66,7 +66,7 @@ check 'their joints are there' grep -q "skin 'face': 3 joints" "$work/out"
 noh build "$build/demo_none.glb" -o "$work/bad.noh" --eyes
 expect 1 'no such model'
 
-# Correctives: by a text, by names, by glTF extras; a triangle, one corner of which each target moves by 1 along x.
+# Correctives: by a text, by names, by glTF extras; a triangle; each target moves one corner by 1 along x.
 triangle=$(printf '\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0' | base64 | tr -d '\n')
 cat >"$work/both.gltf" <<END
 {"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
@@ -82,7 +82,7 @@ printf 'PP jaw_grin 0.25\ncorrective grin jaw 0.5 jaw50\n' >"$work/both.recipe"
 noh build "$work/both.gltf" -o "$work/both.noh"
 expect 0 'correctives by name'
 check 'they are counted' grep -q '^2 correctives by target names' "$work/out"
-check 'a line of extras that is none is a warning' grep -q "'wink jaw' was left out: 'wink' is not a channel" "$work/out"
+check 'a malformed line of extras is a warning' grep -q "'wink jaw' was left out: 'wink' is not a channel" "$work/out"
 noh face "$work/both.noh"
 expect 0 'face of that'
 check 'extras give a recipe' grep -q '^  aa  *pack  *jaw 0.8$' "$work/out"
@@ -164,6 +164,6 @@ fi
 
 noh bench "$build/mask.noh" --only face --quick --json
 expect 0 'a bench of a thousand faces'
-check 'beside the step of a controller' sh -c 'tr -d " \n" <"$1" | grep -q "\"face/weights\",\"baseline\":\"noh_controller_step\""' - "$work/out"
+check 'compared with the step of a controller' sh -c 'tr -d " \n" <"$1" | grep -q "\"face/weights\",\"baseline\":\"noh_controller_step\""' - "$work/out"
 
 finish

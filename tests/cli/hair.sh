@@ -20,7 +20,7 @@ noh build "$build/demo/arm.glb" -o "$work/again.noh" --quiet --hair "$work/arm.h
 check 'the same bytes again' cmp "$work/hair.noh" "$work/again.noh"
 noh info "$work/hair.noh"
 expect 0 'info'
-check 'says what it is' grep -q '^hair: 18 control hairs of 5 points, 12 patches, 4 spheres, 200 strips of 6 segments' "$work/out"
+check 'describes it' grep -q '^hair: 18 control hairs of 5 points, 12 patches, 4 spheres, 200 strips of 6 segments' "$work/out"
 check 'and what it takes' grep -q 'on a stage 3728 bytes an actor; drawn with 1356 bytes on the CPU, 1440 on the GPU' "$work/out"
 noh info "$work/hair.noh" --json
 check 'as JSON, too' grep -q '"gpu_bytes": 1440' "$work/out"

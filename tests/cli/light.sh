@@ -17,7 +17,7 @@ expect 1 'a pack without transfers is refused'
 says '--transfer 4 or 6'
 
 noh build "$mask" -o "$work/x.noh" --transfer 5
-expect 2 'an order that is none'
+expect 2 'an invalid order'
 says "--transfer must be 4, 6, seed-4 or seed-6, not '5'"
 noh build "$mask" -o "$work/x.noh" --transfer 4 --only anim
 expect 2 'no transfer without meshes'

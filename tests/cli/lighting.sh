@@ -55,7 +55,7 @@ noh render "$pack" -o "$work/auto.png" --size 128x128
 noh render "$pack" -o "$work/studio.png" --size 128x128 --light studio
 check 'a picture is lit by the studio' cmp -s "$work/auto.png" "$work/studio.png"
 noh render "$pack" -o "$work/plain.png" --size 128x128 --light none
-check 'unless it is told not to be' sh -c '! cmp -s "$1" "$2"' - "$work/auto.png" "$work/plain.png"
+check 'unless an option turns it off' sh -c '! cmp -s "$1" "$2"' - "$work/auto.png" "$work/plain.png"
 noh render "$pack" -o "$work/auto.png" --size 128x128 --debug normal
 noh render "$pack" -o "$work/plain.png" --size 128x128 --debug normal --light none
 check 'values as colours are not' cmp -s "$work/auto.png" "$work/plain.png"

@@ -91,7 +91,7 @@ END
 export NODE_PATH="$work/node_modules"
 compared "$work/sheets.gltf" --npm "$script" "$work"
 expect 0 'with a package'
-check 'its version is told' grep -q 'npm: meshoptimizer 0.0.0-test' "$work/out"
+check 'its version is reported' grep -q 'npm: meshoptimizer 0.0.0-test' "$work/out"
 check 'the best weight of each level is found' test "$(grep -c 'with weight 64$' "$work/out")" = 3
 check 'and its levels are as they were sent' sh -c 'test "$(grep -c "npm.s 484 (242)" "$1")" = 3' - "$work/out"
 check 'with which nothing is lost' sh -c \

@@ -13,7 +13,7 @@ silent() {
 
 noh --version
 expect 0 '--version'
-check 'is that of version.h' sh -c 'grep -qx "noh $(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/noh/base.h)" "$1"' - "$work/out"
+check 'is NOH_VERSION' sh -c 'grep -qx "noh $(sed -n "s/^#define NOH_VERSION \"\(.*\)\"/\1/p" runtime/noh/base.h)" "$1"' - "$work/out"
 for verb in $verbs; do
     verb=$(echo "$verb" | tr _ ' ')
     noh $verb --help
@@ -71,7 +71,7 @@ if command -v bash >/dev/null 2>&1; then
     check 'bash completes a verb' test "$(complete rend)" = render
     check 'an option' test "$(complete render --acc)" = --accumulate
     check 'a word of an option' test "$(complete render --path per)" = per-layer
-    check 'not those of another verb' test -z "$(complete info --acc)"
+    check 'not the options of another verb' test -z "$(complete info --acc)"
     check 'a verb of the lab' test "$(complete lab zo)" = zoom
     check 'and its options' test "$(complete lab zoom --jit)" = --jitter
     check 'a word of one' test "$(complete lab zoom --driver os)" = osmesa

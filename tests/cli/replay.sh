@@ -6,7 +6,7 @@
 pack=$build/mask.noh
 noh lab replay "$pack" --seconds 3 --actors 2 --seed 5 -o "$work/a.session"
 expect 0 'draw a session'
-check 'says what it is' grep -q '^180 frames, [0-9]* inputs in [0-9]* bytes ([0-9.]* a frame), hash [0-9a-f]\{8\}$' "$work/out"
+check 'describes it' grep -q '^180 frames, [0-9]* inputs in [0-9]* bytes ([0-9.]* a frame), hash [0-9a-f]\{8\}$' "$work/out"
 noh lab replay "$pack" --play "$work/a.session" -o "$work/b.session"
 expect 0 'play it'
 check 'to the same hashes' grep -q 'every part of every frame equals' "$work/out"
@@ -35,7 +35,7 @@ expect 0 'a session with one more input, without hashes'
 noh lab bisect "$work/a.session" "$work/more2.session"
 expect 1 'differs'
 check 'from that input on' grep -q '^the inputs differ from frame 50 on$' "$work/out"
-check 'and so does what comes of it' grep -q '^frame 50 is the first that differs' "$work/out"
+check 'and so does the result' grep -q '^frame 50 is the first that differs' "$work/out"
 noh lab bisect "$work/a.session" "$work/more.session"
 expect 1 'a session without hashes'
 says 'noh lab replay PACK --play'

@@ -28,7 +28,7 @@ if [ -n "$json" ]; then
         if $json "$expression" <"$work/speech.json"; then ok "$expression"; else not_ok "$expression"; fi
     done
 fi
-# p, b, p, b, b, m and so on: at the middle of each the strongest shape is that of shut lips, and the mouth is not open
+# p, b, p, b, b, m and so on: at the middle of each the strongest shape is shut lips, and the mouth is not open
 if command -v python3 >/dev/null 2>&1; then
     check 'lips meet for every p, b and m' python3 -c '
 import json, sys
@@ -59,7 +59,7 @@ noh render "$build/demo/puppet_levels.noh" -o "$work/both.png" --anim "$build/de
     --anim "$work/says.noh" --clip walk --clip speech --time 0.5 --size 64x64
 expect 0 'two packs of clips'
 noh render "$build/demo/puppet_levels.noh" -o "$work/walk.png" --clip walk --time 0.5 --size 64x64
-check 'whoever walks speaks, too' sh -c '! cmp -s "$1" "$2"' - "$work/both.png" "$work/walk.png"
+check 'a walking figure speaks, too' sh -c '! cmp -s "$1" "$2"' - "$work/both.png" "$work/walk.png"
 noh render "$build/mask.noh" -o "$work/still.png" --anim "$work/line.noh" --clip speech --time 0.5 --size 64x64
 noh render "$build/mask.noh" -o "$work/joy.png" --anim "$work/line.noh" --clip speech --time 0.5 --size 64x64 \
     --face on --feel joy=1

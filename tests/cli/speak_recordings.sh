@@ -129,7 +129,7 @@ noh speak "$work/said.wav" --text "$(yes 'Papa bought me five boats.' | head -n 
 expect 1 'more words than anyone could say in it'
 says 'bytes of text are not said in'
 
-# ---- German: another throat than those of the warp, made by other means (Klatt) ----
+# ---- German: another throat than the warp's, made by other means (Klatt) ----
 german='Am Montag brachte Peter seiner Mutter bunte Blumen und ein Buch.'
 noh speak "$german" --lang de+klatt4 --wav "$work/german.wav" --json
 expect 0 'a sentence in German'
@@ -205,7 +205,7 @@ says 'no words to speak'
 noh speak "$work/said.wav" --text ' . '
 expect 1 'a text without words'
 noh speak "$work/said.wav" --text 'The sun rose over seven hills.'
-expect 0 'other words than those of the recording'
+expect 0 'other words than in the recording'
 says 'do not seem to be those'
 
 # ---- clips ----

@@ -64,7 +64,7 @@ noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras that say nothing'
 check 'are named' grep -q "the extra 'surface' must be plain, skin, eye, teeth or toon" "$work/out"
 check 'each of them' grep -q "the extra 'unitMm' must be" "$work/out"
-check 'that of tint, too' grep -q "the extra 'tint' must be true or false" "$work/out"
+check 'tint, too' grep -q "the extra 'tint' must be true or false" "$work/out"
 noh info "$work/extras.noh"
 check 'and the name counts' grep -q "material 'skin': skin" "$work/out"
 

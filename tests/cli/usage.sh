@@ -65,7 +65,7 @@ noh build in.glb -o
 expect 2 'an option without its value'
 says '-o needs a value'
 noh build in.glb -o "$work/out.noh" --error-um ten
-expect 2 'a number that is none'
+expect 2 'an invalid number'
 says "--error-um must be a number, not 'ten'"
 for value in 0 -1 1e9 nan inf; do
     noh build in.glb -o "$work/out.noh" --error-um $value

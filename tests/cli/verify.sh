@@ -118,6 +118,6 @@ expect 0 'the mask'
 check 'half floats are within their bounds, which are tight' \
     awk '$2 == "f16" && $5 ~ /^[0-9.]+$/ { rows++; if (!($5 > 0 && $5 <= $6 && $6 <= 3 * $5)) bad = 1 } END { exit !(rows >= 3 && !bad) }' "$work/out"
 noh info "$build/mask.noh" --json
-check 'weights of 0 to 1 are off by less than those of -2 to 2' \
+check 'weights of 0 to 1 are off by less than weights of -2 to 2' \
     awk '/"f16_bound_0_to_1_um"/ { gsub(/[^0-9.]/, "", $2); one = $2 } /"f16_bound_um"/ { gsub(/[^0-9.]/, "", $2); two = $2 } END { exit !(one > 0 && 2 * one <= two) }' "$work/out"
 finish

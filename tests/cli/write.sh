@@ -61,7 +61,7 @@ noh dump "$pack" -o "$folder/second.obj"
 expect 0 'through two symbolic links'
 check 'the links stay' test -L "$folder/second.obj" -a -L "$folder/out.obj"
 check 'their target is written' cmp "$work/elsewhere/real.obj" "$work/plain.obj"
-check 'and nothing is left beside it' test "$(ls -A "$work/elsewhere")" = real.obj
+check 'and no other file is left' test "$(ls -A "$work/elsewhere")" = real.obj
 rm "$work/elsewhere/real.obj"
 noh dump "$pack" -o "$folder/out.obj"
 expect 0 'through a link to a file that is not there yet'
@@ -96,7 +96,7 @@ if mknod "$folder/null" c 1 3 2>/dev/null && mknod "$folder/full" c 1 7 2>/dev/n
     check 'it stays a device' test -c "$folder/full"
     noh render "$pack" -o "$folder/full" --size 16x16
     expect 1 'render into a full device'
-    check 'and says nothing of success' test ! -s "$work/out"
+    check 'and does not report success' test ! -s "$work/out"
     only null full
     rm "$folder/null" "$folder/full"
 else

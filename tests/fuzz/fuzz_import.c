@@ -1,5 +1,5 @@
 /* fuzz_import.c: any bytes as the files that noh build reads: glTF, VRM, OBJ with targets, BVH, raw clips, pictures, and
- * the texts beside them. What is read is converted, and the pack used in full.
+ * their text files. What is read is converted, and the pack used in full.
  *
  * The kind follows from the first bytes, so that seeds are files as they are. A .glb is tried as it is, then with the
  * lengths of its chunks made right. An .obj file is also its own target. */

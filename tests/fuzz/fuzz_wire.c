@@ -1,4 +1,4 @@
-/* fuzz_wire.c: any bytes, unpacked as a wire form and, where a pack comes of it, used in full.
+/* fuzz_wire.c: any bytes, unpacked as a wire form and, where the result is a pack, used in full.
  *
  * Each input is tried as it is, then with its length and the checksums of its header and blocks made right, so that
  * filters see sections and symbols that no writer makes. Everything lies in blocks of exactly the size asked for. */

@@ -58,7 +58,7 @@ static void write_clip_pack(const char *folder, const char *name, const char *ra
     buffer_free(&out);
 }
 
-/* Springs: three chains, one of which hangs on another, and a collider. */
+/* Springs: three chains, one of them attached to another, and a collider. */
 static void write_springs(const char *in)
 {
     size_t count = 0;

@@ -1,6 +1,6 @@
 #!/bin/sh
 # The policy `--path blend`: layered draws where supported, per-layer passes otherwise, refused without float blending;
-# and the line that `make demo` prints. The pictures equal those of gather, which does not blend, byte for byte.
+# and the line that `make demo` prints. The pictures equal gather's, which does not blend, byte for byte.
 . tests/cli/lib.sh
 mask=$build/mask.noh
 

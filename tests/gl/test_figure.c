@@ -144,7 +144,7 @@ static void debug_views_and_levels_show(void **state)
     fixture_expect_no_errors();
 }
 
-/* The vertices on the GPU are those of the CPU, of each mesh. */
+/* The vertices on the GPU equal the CPU's, of each mesh. */
 static void vertices_are_those_of_the_cpu(void **state)
 {
     gpu *g = fixture_gpu();
@@ -235,7 +235,7 @@ static double backdrop_mean(gpu *g, const figure *f, noh_backdrop *b, noh_backdr
     return sum;
 }
 
-/* A backdrop shows the light: another one once the reflection is made anew; the same after a lost context. */
+/* A backdrop shows the light: another one once the reflection is made again; the same after a lost context. */
 static void what_is_behind_is_the_light(gpu *g, figure *f, lighting *light)
 {
     static __attribute__((aligned(16))) uint8_t scratch[1024 * 1024];

@@ -1,4 +1,4 @@
-/* Hair of actors, one head and crowds: strips of the vertex shader are those of the CPU; which hair moves; exact bytes
+/* Hair of actors, one head and crowds: strips of the vertex shader equal the CPU's; which hair moves; exact bytes
  * and draw calls; a lost context; fewer strips cover as much; far away hair fades into the texture of the head. */
 #include "support/gl_fixture.h"
 

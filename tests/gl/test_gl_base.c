@@ -440,7 +440,7 @@ static int said(const char *output, const char *name)
         if (*line == '\n') line++;
         if (strncmp(line, key, length) == 0) return atoi(line + length);
     }
-    print_error("the child said nothing of %s:\n%s", name, output);
+    print_error("the child did not print %s:\n%s", name, output);
     fail();
     return -1;
 }

@@ -19,8 +19,8 @@ static void rest_normal(const noh_mesh *mesh, const noh_pick_hit *hit, double no
     for (int k = 0; k < 3; k++) normal[k] /= sqrt(square);
 }
 
-/* How near to the middle of a mark that faces as the place does: 0 there, 1 at the edge of its spot. facing: the least
- * cosine */
+/* The distance to the middle of a mark that faces as the place does: 0 there, 1 at the edge of its spot. facing: the
+ * least cosine */
 static double nearest_mark(const noh_decals *ring, uint32_t mesh, const float rest[3], const double normal[3],
                            double facing)
 {
@@ -146,7 +146,7 @@ static double green(const uint8_t *rgba, double middle[2])
 
 /* The source's u = 0.5 + 2 s (p - c) . R / (s / 4) makes a mark of 0.0625 metres right and every other one wrong: at
  * its edge it is 0.5 + 8 s, where ours is 1 for any size, so that areas go by the square of sizes. Nor is a mark on a
- * triangle larger than itself lost, as where vertices alone are asked: those of the forehead are farther apart than the
+ * triangle larger than itself lost, as where vertices alone are asked: the forehead's are farther apart than the
  * smallest spot here. */
 static void a_mark_is_as_large_as_asked(void **state)
 {

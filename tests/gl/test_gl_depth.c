@@ -1,4 +1,4 @@
-/* The pass that draws depth alone: its depth is that of the colour pass in every bit, however the mesh is drawn; it
+/* The pass that draws depth alone: its depth equals the colour pass's in every bit, however the mesh is drawn; it
  * writes no colour, and its programs fetch nothing but positions, and what alpha needs where a material cuts. Run on
  * every driver by matrix.sh. */
 #include "support/tube_fixture.h"

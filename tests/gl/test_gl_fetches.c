@@ -287,7 +287,7 @@ static char *whole_text(noh_gl_variant_key key)
     return text;
 }
 
-/* transfer: as in the key; light is then that of noh_gl.h */
+/* transfer: as in the key; light is then noh_gl.h's */
 static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t transfer)
 {
     noh_gl_variant_key key = { 0 };

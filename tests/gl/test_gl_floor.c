@@ -64,7 +64,7 @@ static void close_scene(scene *s)
     fixture_expect_no_errors();
 }
 
-/* nearest: how near something is to the light, all over the map, 1: nothing is */
+/* nearest: the least depth from the light, all over the map, 1: nothing is there */
 static void picture(scene *s, float nearest, const noh_stage_view *view, float before, uint8_t *rgba)
 {
     canvas c;

@@ -210,7 +210,7 @@ static void a_toon_shader_has_its_steps(void **state)
 
 typedef struct binder {
     uint32_t calls, made;
-    GLuint programs[64]; /* of which `made` were told */
+    GLuint programs[64]; /* `made` of them were received */
     GLuint texture;
     const noh_material *material;
 } binder;
@@ -313,7 +313,7 @@ static void textures_uniforms_and_defines_arrive(void **state)
     free(bytes);
 }
 
-/* A vertex shader that moves the surface moves its depth too: with depth first, nothing of it is lost. */
+/* A vertex shader that moves the surface moves its depth too: with depth first, no pixel is lost. */
 static void depth_follows_an_own_vertex_shader(void **state)
 {
     static const char vertex[] =

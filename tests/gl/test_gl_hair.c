@@ -1,5 +1,5 @@
 /* Hair, lashes and brows with alpha from 24 angles: the opaque core and the blended fringe of noh_gl_draw_mesh against
- * what blends in the right order at each pixel. Orders of whole triangles beside them: from the farthest, from the
+ * what blends in the right order at each pixel. Compared with orders of whole triangles: from the farthest, from the
  * nearest, as stored. */
 #include "support/peel.h"
 #include "support/renderer.h"
@@ -234,7 +234,7 @@ static tally all_angles(head *h)
 #define CARDS 160u
 #define STRAND_PX 64u
 
-/* Strands beside each other, opaque along their middle, clear between, thinner towards the tip: narrower, or soft all
+/* Strands side by side, opaque along their middle, clear between, thinner towards the tip: narrower, or soft all
  * over. */
 static void fill_strands(model *m, int soft)
 {

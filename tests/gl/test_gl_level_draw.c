@@ -32,7 +32,7 @@ static void close_both(void)
     }
 }
 
-/* Open one side, with at most so many joints per palette, 0: all. Kept for the tests that follow; skips without a
+/* Open one side, with at most `palette` joints per palette, 0: all. Kept for the tests that follow; skips without a
  * context. */
 static void open_split(uint32_t palette)
 {
@@ -215,7 +215,7 @@ static void no_lod_is_the_finest(void **state)
                  picture_of_level(SKINNED, LEVELS - 1u)); /* beyond the last level: the coarsest */
 }
 
-/* Uploaded from level 1 on: finer levels take no memory, and a draw of one is that of level 1. */
+/* Uploaded from level 1 on: finer levels take no memory, and a draw of one draws level 1. */
 static void finer_levels_can_stay_away(void **state)
 {
     const noh_gl_lod lods[LEVELS] = { { 0, 0.0f, 1.0f }, { 1, 0.0f, 1.0f }, { 2, 0.0f, 1.0f } };
@@ -264,7 +264,8 @@ static float noise(uint32_t x, uint32_t y)
     return (float)((x * 0xc13fa9a9u + y * 0x91e10da6u) >> 8) / 16777216.0f;
 }
 
-/* Each pixel is that of the level that the pattern says, or of the background: never of both levels, never of none. */
+/* Each pixel comes from the level that the pattern selects, or from the background: never of both levels, never of
+ * none. */
 static void check_fade(draw_kind kind, float f)
 {
     const noh_gl_lod lods[2] = { { 1, 0.0f, f }, { 0, f, 1.0f } };
@@ -275,7 +276,7 @@ static void check_fade(draw_kind kind, float f)
         const int is_in = noise(i % SIDE, i / SIDE) < f;
         const uint8_t *expected = is_in ? in : out;
         if (memcmp(got + 4u * i, expected + 4u * i, 4) != 0) {
-            fail_msg("fade %g: pixel %u, %u is not that of the level that %s", (double)f, i % SIDE, i / SIDE,
+            fail_msg("fade %g: pixel %u, %u does not show the level that %s", (double)f, i % SIDE, i / SIDE,
                      is_in ? "comes" : "goes");
         }
         from_in += is_in && covered(in, i);
@@ -320,7 +321,7 @@ static void a_draw_of_no_pixels_draws_none(void **state)
     free(got);
 }
 
-/* In every block of 8 x 8 pixels, the share that is drawn is nearly that of the fade, and rises with it. */
+/* In every block of 8 x 8 pixels, the share that is drawn is nearly the fade's, and rises with it. */
 static void the_pattern_is_even(void **state)
 {
     (void)state;

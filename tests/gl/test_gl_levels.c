@@ -296,7 +296,7 @@ static void levels_of_a_mesh_share_their_tables(void **state)
     in_every_way(coarse, counts, 1, check_pools); /* the coarsest alone */
 }
 
-/* The same beside other meshes, whose tables lie behind. */
+/* The same with other meshes, whose tables lie behind. */
 static void pools_stand_beside_other_meshes(void **state)
 {
     const noh_mesh views[5] = { noh_mesh_at_lod(&meshes[0], 1), meshes[FIXTURE_BARE], noh_mesh_at_lod(&meshes[2], 2),

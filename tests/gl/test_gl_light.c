@@ -207,7 +207,7 @@ static void a_square_casts_its_shadow(void **state)
     scene_close(&s);
 }
 
-/* A sphere shadows its own far side and nothing of its near one. */
+/* A sphere shadows its own far side and never its near side. */
 static void no_surface_shadows_itself(void **state)
 {
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, all[4] = { 0.0f, 0.0f, 0.0f, 1.1f };

@@ -303,9 +303,9 @@ static void levels_come_and_go_on(fixture_way way, uint32_t *made)
     (*made)++;
 }
 
-/* By blending, by lists and on the CPU (NOH_LONG: on every path, in floats and half floats; under sanitizers on one): the picture is that
- * of coarse packs before and while levels are loaded, that of full packs afterwards, that of coarse packs once they are
- * dropped; over states and lost contexts. */
+/* By blending, by lists and on the CPU (NOH_LONG: on every path, in floats and half floats; under sanitizers on one):
+ * the picture equals the coarse packs' before and while levels are loaded, the full packs' afterwards, the coarse
+ * packs' once they are dropped; over states and lost contexts. */
 static void levels_come_and_go(void **state)
 {
     uint32_t made = 0;
@@ -372,8 +372,8 @@ static uint64_t load_alone(act *a, uint32_t kind, uint32_t bound)
     return sum;
 }
 
-/* With nobody on the stage all that is uploaded is levels: as much as is told, and no more than the bound, whatever it
- * is; and in all as much as without a bound. */
+/* With nobody on the stage all that is uploaded is levels: as much as is reported, and no more than the bound, whatever
+ * it is; and in all as much as without a bound. */
 static void each_frame_keeps_the_bound(void **state)
 {
     static const uint32_t bounds[] = { 1, 100, 5000, 65536, 100u << 20 };

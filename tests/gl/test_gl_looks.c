@@ -401,7 +401,7 @@ static void every_way_of_drawing_has_the_tint(void **state)
 
 /* ---- bytes, order, errors ---- */
 
-/* A set of the kind's own pack takes no byte on the GPU, one of another pack those of the textures that it takes. */
+/* A set of the kind's own pack takes no byte on the GPU, one of another pack takes the bytes of its textures. */
 static void sets_take_what_is_planned(void **state)
 {
     gpu *g = fixture_gpu();
@@ -432,7 +432,7 @@ static void sets_take_what_is_planned(void **state)
     fixture_expect_no_errors();
 }
 
-/* Two kinds, of which one's mesh pack is the other's texture set: the texture is on the GPU once. */
+/* Two kinds; one's mesh pack is the other's texture set: the texture is on the GPU once. */
 static void textures_are_shared_between_kinds(void **state)
 {
     noh_kind_desc kinds[2];

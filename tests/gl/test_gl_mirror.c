@@ -1,4 +1,4 @@
-/* test_gl_mirror.c: what hangs on a joint that mirrors is drawn alike among many of its kind and alone. */
+/* test_gl_mirror.c: an actor attached to a joint that mirrors is drawn alike among many of its kind and alone. */
 #include "support/clip_bank_fixture.h"
 #include "support/gl_fixture.h"
 #include "support/octahedra.h"
@@ -20,7 +20,7 @@ static noh_pack pack_of(octahedra *o, const char *name, const char *json, uint8_
     return test_open(*bytes, count);
 }
 
-/* The second kind's actor hangs on the first kind's joint, beside its octahedron. */
+/* The second kind's actor is attached to the first kind's joint, next to its octahedron. */
 static void draw_pair(gpu *g, const noh_pack packs[2], uint32_t of_kind, uint32_t *rgba)
 {
     static char shader_log[4096];

@@ -16,7 +16,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define SIDE 5u /* pixels across a picture, of which only the middle one counts */
+#define SIDE 5u /* pixels across a picture; only the middle one counts */
 
 /* ---- closed forms ---- */
 

@@ -1,5 +1,5 @@
 /* A game's own shaders, the examples of shaders_es/README.md: behind noh_gl_shader_prefix, and put together from single
- * files as the README says. The vertices of a mesh that morphs and bends are those of the CPU, with palettes in a block
+ * files as the README says. The vertices of a mesh that morphs and bends equal the CPU's, with palettes in a block
  * and in a texture, with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 

@@ -36,7 +36,7 @@ static int is_changed(const uint8_t *a, const uint8_t *b, size_t pixel)
     return memcmp(a + 4u * pixel, b + 4u * pixel, 3) != 0;
 }
 
-/* Whether the mark is on a pixel and on the four beside it: on its border, samples with and without it are mixed. */
+/* Whether the mark is on a pixel and on its four neighbours: on its border, samples with and without it are mixed. */
 static int is_inside(const uint8_t *with, const uint8_t *without, uint32_t x, uint32_t y)
 {
     const size_t at = (size_t)y * WIDTH + x;

@@ -44,7 +44,7 @@ static void play_frames(cast *c, uint32_t first, uint32_t count)
     }
 }
 
-/* Fewer slots than actors, of which few change hands in a frame. */
+/* Fewer slots than actors; few slots change hands in a frame. */
 static void few_are_seen(cast *c)
 {
     c->kinds[PUPPETS].seen_max = 3;
@@ -200,7 +200,7 @@ static void the_picture_is_that_of_the_parts(void **state)
     fixture_expect_no_errors();
 }
 
-/* A show of five jobs, the last one first: the picture is that of one job. */
+/* A show of five jobs, the last one first: the picture equals one job's. */
 static void pictures_do_not_depend_on_the_jobs(void **state)
 {
     static uint32_t one[PIXELS], five[PIXELS];
@@ -443,7 +443,7 @@ static void frames_make_nothing(void **state)
 #define CROWD_SEEN 12u
 #define CROWD_MOVES 4u
 
-/* Masks in a square, of which few are seen at once. */
+/* Masks in a square; few are seen at once. */
 static void open_crowd(cast *c, gpu *g, uint32_t seen_max)
 {
     cast_open(c);
@@ -465,8 +465,8 @@ static void open_crowd(cast *c, gpu *g, uint32_t seen_max)
     }
 }
 
-/* Nobody who is left out stands nearer than the farthest who is drawn, but for the quarter that keeps equals from
- * taking turns. */
+/* No culled actor stands nearer than the farthest drawn one, but for the quarter that keeps equals from taking turns.
+ */
 static void expect_the_nearest(const cast *c, const noh_stage_view *view)
 {
     float farthest = 0.0f, nearest = 1e9f;
@@ -546,7 +546,7 @@ static void random_casts_use_what_is_planned(void **state)
         noh_actor actor;
         uint64_t full;
         memset(&g, 0, sizeof g);
-        open_null(&g); /* anew: it never gives a name twice, and has only so many */
+        open_null(&g); /* again: it never gives a name twice, and has few of them */
         memset(kinds, 0, sizeof kinds);
         memset(&c.desc, 0, sizeof c.desc);
         c.desc.kinds = kinds;

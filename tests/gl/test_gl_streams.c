@@ -1,5 +1,5 @@
 /* The path streams: up to four targets as vertex attributes, added by the draw. Its vertices are the CPU's, whatever
- * vertices share texels; of more targets it draws those that move the most; its bytes are those of the plan; and what
+ * vertices share texels; of more targets it draws those that move the most; its bytes equal the plan's; and what
  * it cannot do is refused. */
 #include "support/gl_fixture.h"
 
@@ -96,7 +96,7 @@ static void four_targets_are_added_by_the_draw(void **state)
     close_scene(&s);
 }
 
-/* By |weight| x radius, in index order, against sorting; the vertices are those of the four alone. */
+/* By |weight| x radius, in index order, against sorting; the vertices equal the sums of the four alone. */
 static void the_four_that_move_most_are_drawn(void **state)
 {
     test_random r = test_random_from(5);
@@ -128,7 +128,7 @@ static void the_four_that_move_most_are_drawn(void **state)
     close_scene(&s);
 }
 
-/* Five streams of 32 bytes, of which streams 1 to 4 bring texture coordinates that nothing reads: 8 bytes a vertex and
+/* Five streams of 32 bytes; streams 1 to 4 bring texture coordinates that nothing reads: 8 bytes a vertex and
  * target. Here a vertex of a target takes 12 bytes, normal and tangent included. */
 static void streams_hold_no_texture_coordinates(void **state)
 {

@@ -217,7 +217,7 @@ static void an_eye_shows_the_lamp(void **state)
     }
 }
 
-/* Straight before the pupil, the line of sight is bent by Snell's law, and meets the iris beside it. */
+/* Straight before the pupil, the line of sight is bent by Snell's law, and meets the iris off-centre. */
 static void the_iris_lies_behind_the_cornea(void **state)
 {
     static const char own[] = "in vec3 v_world;\nin vec3 v_normal;\nin vec2 v_uv;\n"

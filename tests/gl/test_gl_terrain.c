@@ -1,5 +1,5 @@
 /* A height field drawn in blocks: where rays meet it, without a hole between any levels, within a pixel of the whole,
- * in the bytes that were told, and again after a lost context. */
+ * in the reported bytes, and again after a lost context. */
 #include "support/gl_fixture.h"
 
 #include <math.h>

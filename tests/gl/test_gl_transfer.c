@@ -39,7 +39,7 @@ static uint8_t *with_transfer(uint8_t *bytes, size_t *count, uint32_t order, uin
     return lit;
 }
 
-/* Of the room, turned about an axis that is none of the coordinates'. */
+/* Of the room, turned about an axis that is no coordinate axis. */
 static void turned_room(double degrees, noh_lighting *lighting)
 {
     const double a = degrees * PI / 180.0, s = sin(a), c = cos(a), x = 0.6, y = 0.8;
@@ -239,7 +239,7 @@ static int open_sums(fixture_morph *sums, const tube *t, noh_gl_morph_desc *desc
     return 1;
 }
 
-/* The occlusion of one way is that of the CPU: to the bit in 32 bits, where this driver blends so. */
+/* The occlusion of one way equals the CPU's: to the bit in 32 bits, where this driver blends so. */
 static void check_way(const tube *t, fixture_way way, const noh_gl_caps *caps, const float *right, const float *cpu)
 {
     const int blended = way.path != NOH_MORPH_CPU && way.path != NOH_MORPH_GATHER;
@@ -282,7 +282,7 @@ static void every_way_sums_the_same_occlusion(void **state)
     uint8_t *bytes;
     tube t;
     (void)state;
-    for (uint32_t k = 1; k < 3; k++) { /* a waist, and a bulge beside it */
+    for (uint32_t k = 1; k < 3; k++) { /* a waist, and a bulge next to it */
         model_target *target = &m->meshes[0].targets[k];
         for (uint32_t v = 0; v < m->meshes[0].vertex_count; v++) {
             const float *at = m->meshes[0].position + 3u * v, y = at[1] - 0.5f * (float)k;

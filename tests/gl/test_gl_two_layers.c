@@ -1,5 +1,5 @@
-/* Accumulators without a layer of tangents, drawn: where no shader looks at tangents, the pictures are those of three
- * layers on every path; a tangent is then that of the bind pose, turned with the normal. */
+/* Accumulators without a layer of tangents, drawn: where no shader looks at tangents, the pictures equal three
+ * layers' on every path; a tangent is then the bind pose's, turned with the normal. */
 #include "support/tube_fixture.h"
 
 #include "support/skin_asset.h"

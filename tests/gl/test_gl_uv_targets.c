@@ -158,7 +158,7 @@ static void each_of_a_crowd_has_its_own(void **state)
     fixture_expect_no_errors();
 }
 
-/* The variants of depth: without alpha nothing of it is there, with it the coordinates are fetched. */
+/* The variants of depth: without alpha none exists, with it the coordinates are fetched. */
 static void depth_fetches_them_where_alpha_cuts(void **state)
 {
     static const char *const varyings[] = { "v_uv" };

@@ -315,8 +315,8 @@ static void what_may_be_drawn_is_kept(void **state)
 
 /* ---- drawing ---- */
 
-/* Bound, a mesh has the morphed vertices; unbound, those of the bind pose again. By its own vertex array, then by those
- * of the instances. */
+/* Bound, a mesh has the morphed vertices; unbound, the bind pose's again. By its own vertex array, then by the
+ * instances' arrays. */
 static void a_mesh_is_drawn_from_them(void **state)
 {
     gpu *g = fixture_gpu();
@@ -373,7 +373,7 @@ static void a_mesh_is_drawn_from_them(void **state)
 
 /* ---- plans ---- */
 
-/* Where sums are needed there are none, and the plan is that of sums. */
+/* Where sums are needed there are none, and the plan is the plan for sums. */
 static void where_sums_are_needed_there_are_none(void **state)
 {
     (void)state;

@@ -240,7 +240,7 @@ static void mask_texture(const program *p, noh_gl_texture *t, noh_gl_ledger *led
     p->gl->TexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, (GLsizei)SIDE, (GLsizei)SIDE, GL_RGBA, GL_UNSIGNED_BYTE, codes);
 }
 
-/* Every code in every channel, beside others: the source's formula, to the rounding of floats. */
+/* Every code in every channel, alone and with others: the source's formula, to the rounding of floats. */
 static void pixels_read_masks_as_the_source_does(void **state)
 {
     static uint8_t codes[SIDE * SIDE * 4];

@@ -195,7 +195,7 @@ static void levels_come_back(void **state)
     finished = 0;
 }
 
-/* The same on the null platform, which knows which names exist: nothing of the old context is touched. */
+/* The same on the null platform, which knows which names exist: no object of the old context is touched. */
 static void nothing_old_is_called_by(fixture_way way)
 {
     noh_null_report before, after;

@@ -17,7 +17,7 @@ typedef struct game {
     gpu g;
     test_random calls;      /* draws what is called: the same for both stages */
     test_random driver;     /* draws when contexts are lost, and what refuses a restore */
-    noh_actor known[KNOWN]; /* of now and of before */
+    noh_actor known[KNOWN]; /* present and past */
     uint8_t *saved;         /* a copy of the state, size bytes */
     size_t saved_bytes;
     int in_frame, lost, loses;
@@ -236,7 +236,7 @@ static noh_result call_save(game *g, noh_error *error)
     return NOH_OK;
 }
 
-/* A state as it was saved, or with a word of it overwritten: taken, if it still makes sense, or refused. */
+/* A state as it was saved, or with one of its words overwritten: taken, if it still makes sense, or refused. */
 static noh_result call_load(game *g, noh_error *error)
 {
     uint8_t *copy = test_aligned(g->saved, g->saved_bytes);

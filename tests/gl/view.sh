@@ -196,7 +196,7 @@ if ${CC:-gcc} "$tests_gl/drop.c" -lX11 -o "$work/drop" >/dev/null 2>&1; then
     check 'so can one that is no pack' "$work/drop" "$window" "$work/xvfb"
     figure
     check 'and what was shown stays' same "$bones" "$shot"
-    check 'the reason is told' grep -q "^noh: $work/xvfb: " "$work/err"
+    check 'the reason is reported' grep -q "^noh: $work/xvfb: " "$work/err"
 else
     skip 'drop' 'no X11 headers to compile a source of drops with'
 fi

@@ -90,7 +90,7 @@ expect "light turned 20.0, room"
 save undone.png
 HAND
 draw room.png rest.png "$mask" --light room --rotate 20
-check 'its shadow and its background are those of noh render' same rest.png room.png
+check 'its shadow and its background equal noh render' same rest.png room.png
 draw turned_room.png rest.png "$mask" --light room --rotate 35
 check '] turns it by 15 degrees' same turned.png turned_room.png
 check 'and a lost context does not turn it back' same turned.png lost.png
@@ -205,7 +205,7 @@ click "stop all"
 expect-not "track "
 HAND
 check 'a ring marks what was clicked on' differ rest.png picked.png
-check 'a click beside the figure lets go' same rest.png let_go.png
+check 'a click on the background lets go' same rest.png let_go.png
 check 'it bows less with less weight' differ bowing.png walking.png
 picked=$(sed -n 's/^picked .* at //p' "$work/out" | tail -n 2)
 check 'but not in the legs, which the mask leaves out' check_near "$(echo "$picked" | sed -n '1s/.* //p')" "$(echo "$picked" | sed -n '2s/.* //p')" 0.0011

@@ -69,7 +69,7 @@ expect-not "preset grin"
 HAND
 check 'and can be taken away' sh -c '! grep -q grin "$1"' - "$work/own.presets"
 printf '[half\nsmile = 1\n' >"$work/own.presets"
-hand 'a file of presets that is none' "$mask" --play off --presets own.presets <<'HAND'
+hand 'a broken file of presets' "$mask" --play off --presets own.presets <<'HAND'
 expect "message line 1: 'half' is neither"
 HAND
 
@@ -112,16 +112,16 @@ frames 1
 save normal.png
 HAND
 draw wires_render.png rest.png "$puppet" --debug wireframe
-check 'wires are those of noh render --debug wireframe' same wires.png wires_render.png
+check 'wires equal noh render --debug wireframe' same wires.png wires_render.png
 draw bones_render.png rest.png "$puppet" --debug bones
-check 'bones those of --debug bones' same bones.png bones_render.png
+check 'bones equal --debug bones' same bones.png bones_render.png
 check 'also after a lost context' same bones.png lost.png
 draw joints_render.png rest.png "$puppet" --debug joints
-check 'joints those of --debug joints' same joints.png joints_render.png
+check 'joints equal --debug joints' same joints.png joints_render.png
 draw hips_render.png rest.png "$puppet" --debug weights --joint hips
-check 'weights those of --debug weights' same hips.png hips_render.png
+check 'weights equal --debug weights' same hips.png hips_render.png
 draw normal_render.png rest.png "$puppet" --debug normal
-check 'a view of the shaders that of --debug normal' same normal.png normal_render.png
+check 'a view of the shaders equals --debug normal' same normal.png normal_render.png
 check 'normals are drawn over it' differ rest.png normals.png
 check 'all of it is undone' same rest.png undone.png
 
@@ -203,7 +203,7 @@ fi
 cp "$build/demo/arm.glb" "$work/arm.glb"
 cp "$mask" "$work/changes.noh"
 cp "$build/mask.glb" "$work/slow.glb" # with levels that takes seconds
-hand 'a model is converted beside the window' "$work/changes.noh" --play off --lod 4 <<HAND
+hand 'a model is converted in the background' "$work/changes.noh" --play off --lod 4 <<HAND
 drag smile 1
 save before.png
 drop arm.glb

@@ -1,8 +1,8 @@
-// compare_fours.js: what compare.js makes of its measurements. What targets add is small beside a frame, and whatever
-// else runs takes more than they do. So frames come in fours, one after another: without targets, with, with,
+// compare_fours.js: what compare.js makes of its measurements. What targets add is small compared with a frame, and
+// whatever else runs takes more than they do. So frames come in fours, one after another: without targets, with, with,
 // without; the middle one of the differences counts. Fours with a frame that took a third longer than the quickest
-// tenth are left out: something else had the machine. What is left falls into six batches in the order of time, so
-// that their quartiles tell of what drifts, too.
+// tenth are left out: something else had the machine. What is left falls into six batches in the order of time, so that
+// their quartiles tell of what drifts, too.
 'use strict';
 
 const batches = 6, enough = 10 * batches;

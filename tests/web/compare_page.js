@@ -63,7 +63,7 @@ async function start() {
         resize: (pixels) => names.forEach((name) => sides[name].resize(pixels)),
         bytes: () => Object.fromEntries(names.map((name) => [name, sides[name].bytes()])),
         draw(active, fixed) { for (const name of names) { frame = fixed; draw(sides[name], count, active); } },
-        // For so many ms, of each of these sides by turns: frames without targets, with so many, with so many, without.
+        // For `ms` ms, of each of these sides by turns: frames without targets, with them, with them, without.
         // They are neighbours, so that what disturbs one disturbs the others, and what drifts meanwhile cancels out.
         measure(asked, active, ms) {
             const out = Object.fromEntries(asked.map((name) => [name, []])), end = performance.now() + ms;

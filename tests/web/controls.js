@@ -54,7 +54,7 @@ async function grouped(browser) {
     await close(page, 'groups');
 }
 
-// A tab shows its panel alone, by a click and by keys; characters beside each other.
+// A tab shows its panel alone, by a click and by keys; characters side by side.
 async function tabbed(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&size=128&tab=face&alive=on');
     const shown = () => page.locator('[role=tabpanel]:visible').evaluateAll((panels) => panels.map((panel) => panel.id).join());
@@ -83,7 +83,7 @@ async function tabbed(browser) {
 
 // ---- how many pixels are drawn ----
 
-// A machine's frames, in ms by the share of pixels across, for so many seconds: what the share was in the end, the least of
+// A machine's frames, in ms by the share of pixels across, for `seconds`: what the share was in the end, the least of
 // them, and how often it changed.
 function play(pixels, seconds, frame, start = 0) {
     const told = { least: 1, changes: 0, at: start };
@@ -196,7 +196,7 @@ async function served() {
 
 // ---- compare_fours.js ----
 
-// Frames of 8 ms, of which targets take 0.2, on a machine that slows down by a tenth, a third of which goes to others.
+// Frames of 8 ms (targets take 0.2) on a machine that slows down by a tenth and gives a third to others.
 async function compared() {
     let seed = 1;
     const random = () => { seed = (seed * 1103515245 + 12345) % 2147483648; return seed / 2147483648; };

@@ -1,7 +1,7 @@
 // festival.js FOLDER CHROMIUM OUT: the crowd's page: it is drawn, goes on, turns by keys, survives a lost context; people
 // are where `noh crowd` has them, since the steps are the same. Prints its checks as TAP, and, with NOH_WEB_RATES=1, as
-// "#" lines, how many people are drawn at 30 frames a second at 640 x 360 (NOH_WEB_AGENTS=25,100: also what a frame of so many
-// takes).
+// "#" lines, how many people are drawn at 30 frames a second at 640 x 360 (NOH_WEB_AGENTS=25,100: also the time of a
+// frame with 25 and with 100).
 'use strict';
 const os = require('os');
 const path = require('path');
@@ -73,8 +73,8 @@ async function crowd(browser) {
     await close(page, 'crowd');
 }
 
-// What a frame of so many people takes at 640 x 360, in ms: of processors, by the browser's own clocks, since others may use
-// the machine, too; and as it passed.
+// What a frame with this crowd takes at 640 x 360, in ms: of processors, by the browser's own clocks, since others may
+// use the machine, too; and as it passed.
 async function frameOf(browser, agents, frames = 30) {
     const page = await open(browser, `agents=${agents}&size=640x360`), client = await browser.newBrowserCDPSession();
     const read = async () => {
@@ -94,8 +94,8 @@ async function frameOf(browser, agents, frames = 30) {
     return told;
 }
 
-// The most people of which 30 frames a second are drawn, in whole doublings and then by halves, down to one; 0: not even one.
-// By processors: the page is one thread, SwiftShader has all cores.
+// The most people that are drawn at 30 frames a second, in whole doublings and then by halves, down to one; 0: not even
+// one. By processors: the page is one thread, SwiftShader has all cores.
 async function rates(browser) {
     if (process.env.NOH_WEB_RATES !== '1') return;
     const cores = os.cpus().length, most = 1000 / 30, holds = ({ page, gpu }) => page <= most && page + gpu <= most * cores;

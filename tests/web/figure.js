@@ -1,5 +1,5 @@
 // figure.js FOLDER CHROMIUM OUT SIZE: hair, spots under feet, precomputed light and pushes on the page, where its pack has
-// them; where it has not, that it says so. Prints its checks as TAP.
+// them; where it has none, that it says so. Prints its checks as TAP.
 'use strict';
 const path = require('path');
 const { out, check, keep, same, drawn, slide, choose, toggle, open, close, loseAndRestore, run } = require('./harness.js');

@@ -75,7 +75,7 @@ async function faults(page, part) {
 const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
 const toggle = (page, selector) => drawn(page, () => page.click(selector));
 
-// CPU seconds of the browser's processes so far, by kind, with NOH_WEB_TIMES=1; those of a closed page are gone.
+// CPU seconds of the browser's processes so far, by kind, with NOH_WEB_TIMES=1; a closed page's are gone.
 async function spent(browser) {
     if (process.env.NOH_WEB_TIMES !== '1') return null;
     const client = await browser.newBrowserCDPSession(), { processInfo } = await client.send('SystemInfo.getProcessInfo'), sum = {};
@@ -89,8 +89,8 @@ function tell(name, seconds, before, after) {
     console.log(`# ${path.basename(folder)} ${name}: ${seconds.toFixed(1)} s; of processors: ${cpu}`);
 }
 
-// { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served beside the
-// page; start: opens another browser than Chromium.
+// { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served with
+// the page; start: opens another browser than Chromium.
 async function main(parts, flags, places, start = launch) {
     const served = await serve({ ...places, '/': folder });
     address = served.address;

@@ -75,7 +75,7 @@ async function refused(browser) {
     }
 }
 
-// A visitor's own file, chosen and dropped; one that is none or is broken leaves the page as it was.
+// A visitor's own file, chosen and dropped; one that is no pack or is broken leaves the page as it was.
 async function own(browser) {
     const page = await open(browser, wide, `${view}&detail=0`), raw = path.join(folder, 'page.noh');
     await keep(page, 'before_own.png');

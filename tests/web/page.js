@@ -9,7 +9,7 @@ const [clip, time, size, paths] = process.argv.slice(5);
 const forcedPaths = paths.split(' ');
 const owns = forcedPaths.length > 1; // the pack of the page itself: what does not depend on the pack is tried with it
 
-// Draw so many pixels across at a level from now on.
+// Draw `pixels` pixels across at a level from now on.
 const redraw = (page, pixels, level) => drawn(page, () => page.evaluate(([n, l]) => {
     Object.assign(character, { size: n, level: l });
     character.resize();

@@ -19,7 +19,7 @@ function check(name, right, more) {
 
 // ---- a voice ----
 
-// One second of "a": pulses of 120 Hz through three resonances, those of an open mouth.
+// One second of "a": pulses of 120 Hz through the three resonances of an open mouth.
 function vowel() {
     const out = new Float64Array(rate), resonances = [[730, 90], [1090, 110], [2440, 170]];
     for (let i = 0; i < rate; i++) out[i] = i % Math.round(rate / 120) === 0 ? 1 : 0;
@@ -137,7 +137,7 @@ async function file(browser) {
     await close(page, 'a file');
 }
 
-// A browser's voice without a sound: it begins when it is told to, and says "mamama" a word at a time when the test asks.
+// A browser's voice without a sound: it begins on request, and says "mamama" a word at a time when the test asks.
 const voices = `
 window.voice = { queue: [] };
 window.SpeechSynthesisUtterance = function (text) { this.text = text; };

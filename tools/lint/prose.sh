@@ -7,10 +7,10 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 
 # Folders and files that are clean and must stay clean.
-clean='README.md CONTRIBUTING.md platform runtime/deform runtime/gl runtime/life runtime/motion shaders_es tools/README.md'
-clean="$clean tests/support tests/unit/deform tests/unit/gl tests/unit/life tests/unit/motion tests/unit/stage"
-clean="$clean tests/unit/tools"
-clean="$clean tools/convert tools/docs tools/noh"
+clean='README.md CONTRIBUTING.md platform runtime/deform runtime/gl runtime/life runtime/motion shaders_es'
+clean="$clean tests/*.sh tests/cli tests/fuzz tests/gl tests/support tests/web tests/unit/deform tests/unit/gl"
+clean="$clean tests/unit/life tests/unit/motion tests/unit/stage tests/unit/tools"
+clean="$clean tools/README.md tools/convert tools/docs tools/noh"
 
 if ! command -v perl >/dev/null 2>&1; then
     echo 'prose skipped: perl is not installed'
