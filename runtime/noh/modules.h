@@ -100,50 +100,17 @@ typedef struct noh_modifier {
  * returns   NULL if the actor is gone or has no such modifier, or during a frame */
 void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier);
 
-/* ======== actor hair ========
- * Hair of the actors of a kind, from one head to a crowd.
+/* ======== hair of actors ========
+ * Hair of the actors of a kind, from one head to a crowd, in fixed memory.
  *
- *   noh_wig_make    a haircut and the joint that carries it
- *   noh_wig_modifier    the modifier that moves it, for noh_kind_desc.modifiers
- *   noh_wig_points  where its control hairs are
- *   noh_wig_seen    where its head is, as it was shown
+ *   noh_actor_hair_desc_make   a haircut and the joint that carries it
+ *   noh_actor_hair_modifier    with in_state 1: the modifier that moves the hair of every actor, for
+ *                              noh_kind_desc.modifiers. Control hairs are then state of the stage: planned, saved, forked
+ *                              and hashed, with the same bits for any number of jobs
+ *   noh_actor_hair_init        the heads of a stage; noh_actor_hair_frame finds those that are visible
  *
- * Control hairs (low_life.h) are state of a modifier: the stage plans, saves, forks and hashes them, with the same bits
- * for any number of jobs. noh_gl.h draws them.
- *
- * Threads: as modules.h. `wind` may be changed between frames. */
-
-typedef struct noh_wig {
-    const noh_haircut *cut;
-    uint32_t joint; /* NOH_NONE: the actor itself */
-    float wind[3];  /* as in noh_hair_carrier, world */
-} noh_wig;
-
-/* skeleton  of the kind; in one without, joint_count is 0
- * errors    NOT_FOUND the skeleton has no such joint */
-noh_result noh_wig_make(const noh_haircut *cut, const noh_pack *pack, uint32_t skeleton, noh_wig *out,
-                        noh_error *error);
-
-/* Get the modifier. The wig and its haircut must outlive the stage.
- * memory  16 bytes and noh_hair_size, in each actor */
-noh_modifier noh_wig_modifier(const noh_wig *wig);
-
-/* shapes  state: of noh_actor_modifier; points[hair_count][point_count][3], head space; at rest if the actor was not
- *         posed yet */
-void noh_wig_points(const noh_wig *wig, const void *state, float *points);
-
-/* Get where the head of an actor was drawn in the last frame.
- * shapes   world[12]: from head space (metres); pixels_per_metre: of head space; views: a bit for each view that sees
- *          it
- * returns  0 if it was not shown; nothing is written then */
-int noh_wig_seen(const noh_wig *wig, const noh_stage *stage, noh_actor actor, float world[12], float *pixels_per_metre,
-                 uint32_t *views);
-
-/* ======== hair of a crowd ========
- * Hair of a whole kind in fixed memory. Hair moves on the actors that look largest; on all others it hangs at
- * rest and follows the head.
- *
- * noh_gl.h draws it.
+ * With in_state 0 the hair moves on the actors that look largest, outside the stage's state; all other hair is at rest
+ * and follows the head. noh_gl.h draws both.
  *
  * Threads: the stage's, outside of steps and frames; noh_actor_hair_size, any. */
 

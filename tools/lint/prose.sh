@@ -7,9 +7,8 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 
 # Folders and files that are clean and must stay clean.
-clean='README.md CONTRIBUTING.md platform runtime/deform runtime/gl runtime/life runtime/motion shaders_es'
-clean="$clean tests/*.sh tests/cli tests/fuzz tests/gl tests/support tests/web tests/unit/deform tests/unit/gl"
-clean="$clean tests/unit/life tests/unit/motion tests/unit/stage tests/unit/tools"
+clean='README.md CONTRIBUTING.md platform runtime shaders_es'
+clean="$clean tests/*.sh tests/cli tests/fuzz tests/gl tests/support tests/web tests/unit"
 clean="$clean tools/README.md tools/convert tools/docs tools/noh"
 
 if ! command -v perl >/dev/null 2>&1; then

@@ -54,7 +54,7 @@ extern "C" {
 #define NOH_UNROLL
 #endif
 
-static inline uint32_t noh_leading_zeros_plain(uint32_t word)
+static inline NOH_UNUSED uint32_t noh_leading_zeros_plain(uint32_t word)
 {
     uint32_t zeros = 0;
     while (!(word & 0x80000000u)) {
@@ -64,7 +64,7 @@ static inline uint32_t noh_leading_zeros_plain(uint32_t word)
     return zeros;
 }
 
-static inline uint32_t noh_trailing_zeros_plain(uint64_t word)
+static inline NOH_UNUSED uint32_t noh_trailing_zeros_plain(uint64_t word)
 {
     uint32_t zeros = 0;
     while (!(word & 1u)) {
