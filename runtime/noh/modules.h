@@ -105,8 +105,8 @@ void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier);
  *
  *   noh_actor_hair_desc_make   a haircut and the joint that carries it
  *   noh_actor_hair_modifier    with in_state 1: the modifier that moves the hair of every actor, for
- *                              noh_kind_desc.modifiers. Control hairs are then state of the stage: planned, saved, forked
- *                              and hashed, with the same bits for any number of jobs
+ *                              noh_kind_desc.modifiers. Control hairs are then state of the stage: planned, saved,
+ *                              forked and hashed, with the same bits for any number of jobs
  *   noh_actor_hair_init        the heads of a stage; noh_actor_hair_frame finds those that are visible
  *
  * With in_state 0 the hair moves on the actors that look largest, outside the stage's state; all other hair is at rest
