@@ -882,14 +882,14 @@ static void automatic_spares_mali_the_blending(void **state)
     assert_int_equal(plan.path, NOH_MORPH_MRT);
 }
 
-static void a_forced_path_says_so(void **state)
+static void a_chosen_path_says_so(void **state)
 {
     const fixture_way way = { NOH_MORPH_CPU, NOH_ACCUMULATE_F16 };
     noh_gl_morph_desc desc = desc_of(way);
     noh_gl_morph_plan plan;
     (void)state;
     assert_int_equal(noh_gl_morph_plan_make(&desc, &fixture_gpu()->caps, &plan, NULL), NOH_OK);
-    assert_non_null(strstr(plan.reason, "forced"));
+    assert_non_null(strstr(plan.reason, "chosen by the desc"));
 }
 
 /* The gather path needs no extension at all: the floats' bits in RGBA32UI. */
@@ -976,7 +976,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(calibration_takes_the_fastest_path),
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
     cmocka_unit_test(automatic_spares_mali_the_blending),
-    cmocka_unit_test(a_forced_path_says_so),
+    cmocka_unit_test(a_chosen_path_says_so),
     cmocka_unit_test(a_third_is_saved_without_tangents),
     cmocka_unit_test(gather_works_on_core_es3),
 };
