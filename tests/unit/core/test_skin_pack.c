@@ -76,45 +76,45 @@ static forged reach(uint8_t *bytes)
     return f;
 }
 
-#define LIES(X)                                                                                               \
-    X(skin_without_joints, f->skin->joint_count = 0, "no joints")                                             \
-    X(skin_of_too_many_joints, f->skin->joint_count = 70000, "too many")                                      \
-    X(skin_of_no_skeleton, f->skin->skeleton = 1, "skeleton that is not there")                               \
-    X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                          \
-    X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                          \
-    X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")                 \
-    X(skin_bind_beyond, f->inverse_bind[0] = -3e38f, "larger than 10^12")                                     \
-    X(bind_pose_beyond, f->bind_pose[24] = 2.0f * NOH_NUMBER_MAX, "larger than 10^12")                        \
-    X(scales_beyond, f->bind_pose[7] = f->bind_pose[17] = f->bind_pose[27] = 1e5f, "joint and its ancestors") \
-    X(reach_beyond, (f->bind_pose[7] = 1e5f, f->bind_pose[15] = 1e8f), "joint and its ancestors")             \
-    X(joint_box_beyond, f->joint_boxes[3] = 3e38f, "larger than 10^12")                                       \
-    X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                           \
-    X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                           \
-    X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                                \
-    X(no_influences, f->mesh->influence_count = 0, "neither 1, 2, 4 nor 8")                                   \
-    X(no_palettes, f->mesh->palette_count = 0, "palette count is zero")                                       \
-    X(too_many_palettes, f->mesh->palette_count = 300, "palette count is zero or over")                       \
-    X(too_many_palette_joints, f->mesh->palette_joint_count = 4096, "too many joints")                        \
-    X(split_without_texels, f->mesh->flags &= ~NOH_MESH_TEXELS, "texel references")                           \
-    X(palette_empty, f->palettes[0].joint_count = 0, "palette is empty")                                      \
-    X(palette_too_long, f->palettes[1].joint_count += 1, "palette is empty, too large")                       \
-    X(palettes_apart, f->palettes[1].first_joint += 1, "does not follow the previous palette")                \
-    X(palettes_short, f->palettes[f->mesh->palette_count - 1].joint_count -= 1, "do not add up")              \
-    X(palette_joint_outside, f->palette_joints[0] = 6, "joint that its skin does not have")                   \
-    X(place_outside, f->influences[0] |= 0xff, "outside its palette")                                         \
-    X(second_place_outside, f->influences[0] |= 0xff00, "outside its palette")                                \
-    X(weightless_joint, f->influences[1] = f->influences[2] = 0, "without a weight")                          \
-    X(weights_above_one, (f->influences[1] = 0xffffffffu, f->influences[2] = 0xffffffffu), "above 1")         \
-    X(later_texel, *f->texels += 1, "texel of a later vertex")                                                \
-    X(no_such_palette, *f->texels |= 0xff400000u, "of another palette")                                       \
-    X(another_palette, *f->texels ^= 0x00400000u, "")                                                         \
-    X(submesh_without_palette, f->submeshes[0].palette = 40, "palette that is not there")                     \
-    X(submesh_of_another_palette, f->submeshes[0].palette = 1, "vertex of another palette")                   \
-    X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                         \
-    X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                            \
-    X(joint_box_inside_out, f->joint_boxes[0] = f->joint_boxes[3] + 1.0f, "inside out")                       \
-    X(target_box_inside_out, f->target_boxes[0] = 9.0f, "inside out")                                         \
-    X(target_box_empty, (f->target_boxes[0] = f->target_boxes[1] = f->target_boxes[2] = 9.0f), "inside out")  \
+#define LIES(X)                                                                                                     \
+    X(skin_without_joints, f->skin->joint_count = 0, "no joints")                                                   \
+    X(skin_of_too_many_joints, f->skin->joint_count = 70000, "too many")                                            \
+    X(skin_of_no_skeleton, f->skin->skeleton = 1, "skeleton that is not there")                                     \
+    X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                                \
+    X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                                \
+    X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")                       \
+    X(skin_bind_beyond, f->inverse_bind[0] = -3e38f, "larger than 10^12")                                           \
+    X(bind_pose_beyond, f->bind_pose[24] = 2.0f * NOH_NUMBER_MAX, "larger than 10^12")                              \
+    X(scales_beyond, f->bind_pose[7] = f->bind_pose[17] = f->bind_pose[27] = 1e5f, "joint and its ancestors")       \
+    X(reach_beyond, (f->bind_pose[7] = 1e5f, f->bind_pose[15] = 1e8f), "joint and its ancestors")                   \
+    X(joint_box_beyond, f->joint_boxes[3] = 3e38f, "larger than 10^12")                                             \
+    X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                                 \
+    X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                                 \
+    X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                                      \
+    X(no_influences, f->mesh->influence_count = 0, "neither 1, 2, 4 nor 8")                                         \
+    X(no_palettes, f->mesh->palette_count = 0, "palette count is zero")                                             \
+    X(too_many_palettes, f->mesh->palette_count = 300, "palette count is zero or over")                             \
+    X(too_many_palette_joints, f->mesh->palette_joint_count = 4096, "too many joints")                              \
+    X(split_without_texels, f->mesh->flags &= ~NOH_MESH_TEXELS, "texel references")                                 \
+    X(palette_empty, f->palettes[0].joint_count = 0, "palette is empty")                                            \
+    X(palette_too_long, f->palettes[1].joint_count += 1, "palette is empty, too large")                             \
+    X(palettes_apart, f->palettes[1].first_joint += 1, "does not follow the previous palette")                      \
+    X(palettes_short, f->palettes[f->mesh->palette_count - 1].joint_count -= 1, "do not add up")                    \
+    X(palette_joint_outside, f->palette_joints[0] = 6, "joint that its skin does not have")                         \
+    X(place_outside, f->influences[0] |= 0xff, "outside its palette")                                               \
+    X(second_place_outside, f->influences[0] |= 0xff00, "outside its palette")                                      \
+    X(weightless_joint, f->influences[1] = f->influences[2] = 0, "without a weight")                                \
+    X(weights_above_one, (f->influences[1] = 0xffffffffu, f->influences[2] = 0xffffffffu), "above 1")               \
+    X(later_texel, *f->texels += 1, "texel of a later vertex")                                                      \
+    X(no_such_palette, *f->texels |= 0xff400000u, "of another palette")                                             \
+    X(another_palette, *f->texels ^= 0x00400000u, "")                                                               \
+    X(submesh_without_palette, f->submeshes[0].palette = 40, "palette that is not there")                           \
+    X(submesh_of_another_palette, f->submeshes[0].palette = 1, "vertex of another palette")                         \
+    X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                               \
+    X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                                  \
+    X(joint_box_inside_out, f->joint_boxes[0] = f->joint_boxes[3] + 1.0f, "above its maximum")                      \
+    X(target_box_inside_out, f->target_boxes[0] = 9.0f, "above its maximum")                                        \
+    X(target_box_empty, (f->target_boxes[0] = f->target_boxes[1] = f->target_boxes[2] = 9.0f), "above its maximum") \
     X(reserved_field, f->mesh->reserved[1] = 1, "reserved")
 
 #define X(name, lie, message)                                                       \

@@ -273,7 +273,7 @@ static void triangles_come_once_and_first(void **state)
         assert_int_equal(noh_wire_begin(f, &s), 0);
         s.kind = NOH_WIRE_INDICES;
         assert_int_equal(noh_wire_begin(f, &s), -1);
-        assert_non_null(strstr(f->wrong, "twice"));
+        assert_non_null(strstr(f->wrong, "two sections of triangles"));
     }
     free(f->scratch);
     free(f);

@@ -217,7 +217,7 @@ typedef struct forged {
     X(vertices_overflow, "past", f->h->vertex_count = 0xffffffffu)      \
     X(influences_overflow, "past", f->h->influence_count = 0xfffffff0u) \
     X(elsewhere, "begin", f->h->joints_offset -= 16)                    \
-    X(most, "another number", f->h->most = 32)                          \
+    X(most, "differs from the most", f->h->most = 32)                   \
     X(vertex_past, "not its mesh's", f->vertices[0] = 100000)           \
     X(vertex_twice, "ascending", f->vertices[3] = f->vertices[2])       \
     X(first, "begin at 0", f->firsts[0] = 1)                            \

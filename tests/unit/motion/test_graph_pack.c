@@ -518,7 +518,7 @@ static noh_pack_graph_node *kind(forged *f, uint32_t which)
     X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->child_count = 1, "children that do not suit")                     \
     X(kind(&f, NOH_PACK_NODE_MACHINE)->first_child = 400, "children are not in the chunk")                \
     X(kind(&f, NOH_PACK_NODE_MACHINE)->item_count = 9, "transitions of a machine")                        \
-    X(kind(&f, NOH_PACK_NODE_SPACE_1D)->item_count = 1, "not one point for each child")                   \
+    X(kind(&f, NOH_PACK_NODE_SPACE_1D)->item_count = 1, "differs from its children")                      \
     X(kind(&f, NOH_PACK_NODE_SPACE_2D)->first_item = 1, "blend space that is not there")                  \
     X(f.points[1] = -1.0f, "do not rise")                                                                 \
     X(f.points[3] = INFINITY, "point of a blend space is not finite")                                     \

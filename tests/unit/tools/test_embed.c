@@ -85,7 +85,7 @@ static void need_tool(void)
         print_message("SKIP: build/embed is not built (NOH_EMBED may name it)\n");
         skip();
     }
-    assert_int_equal(run(output, sizeof output, "rm -rf ./* && mkdir -p gl/device"), 0);
+    assert_int_equal(run(output, sizeof output, "rm -rf ./* && mkdir -p noh"), 0);
 }
 
 /* A stand-in for the real header: the tool's output needs only the struct. */
@@ -97,7 +97,7 @@ static const char program_header[] = "#ifndef PROGRAM_H\n#define PROGRAM_H\ntype
 static void read_back(const char *name, char *output, size_t room)
 {
     char main_text[1024];
-    write_text("gl/device/gl_program.h", program_header);
+    write_text("noh/low_gl.h", program_header);
     snprintf(main_text, sizeof main_text,
              "#include <stdio.h>\n#include \"out.h\"\nint main(void) {\n"
              "fputs(%s.version, stdout);\n"
@@ -226,7 +226,7 @@ static void snippets(void **state)
     char output[8192];
     need_tool();
     write_text("piece.glsl", "/* about */\nint a;\n\n  /* b */\n\n\n\n\n\n\n\n\n\nint f() { return 1; }\n");
-    write_text("gl/device/gl_program.h", program_header);
+    write_text("noh/low_gl.h", program_header);
     write_text(
         "main.c",
         "#include <stdio.h>\n#include \"out.h\"\nint main(void) { fputs(noh_shader_piece_glsl, stdout); return 0; }\n");
