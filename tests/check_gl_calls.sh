@@ -1,12 +1,12 @@
 #!/bin/sh
 # check_gl_calls.sh: the GL functions that a port has to provide.
-#   - NOH_GL_REQUIRED (runtime/gl/device/gl_api.h) lists exactly the functions that runtime/ calls
+#   - NOH_GL_REQUIRED (runtime/noh/gl_device.h) lists exactly the functions that runtime/ calls
 #   - an optional function that runtime/ calls is compared with NULL somewhere
 #   - only code that creates programs calls GetUniformLocation: draws use the locations it found
 #   - platform/README.md has the same list, and the page implements each function (platform/web/package/gl.js)
 set -u
 . tests/cli/lib.sh
-header=$(find runtime -name gl_api.h)
+header=runtime/noh/gl_device.h
 
 find runtime -name "*.c" -exec cat {} + >"$work/sources"
 

@@ -56,7 +56,7 @@ cat >"$work/walk.c" <<'END'
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "noh.h"
+#include "noh/modules.h"
 
 static unsigned char file[32u << 20] __attribute__((aligned(64)));
 

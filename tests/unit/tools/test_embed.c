@@ -85,7 +85,7 @@ static void need_tool(void)
         print_message("SKIP: build/embed is not built (NOH_EMBED may name it)\n");
         skip();
     }
-    assert_int_equal(run(output, sizeof output, "rm -rf ./* && mkdir -p noh"), 0);
+    assert_int_equal(run(output, sizeof output, "rm -rf ./* && mkdir -p noh gl"), 0);
 }
 
 /* A stand-in for the real header: the tool's output needs only the struct. */
