@@ -29,7 +29,7 @@ expect 2 'an unknown kind of mark'
 says 'rest or grown'
 noh render "$pack" -o "$work/miss.png" --size 128x128 --camera 0,0 --decal 0.01,0.01
 expect 1 'next to the figure'
-says 'nothing is at 0.01,0.01 of the picture'
+says 'the figure at rest is not at 0.01,0.01 in the picture'
 for bad in 0.5 1.5,0.5 0.5,0.5,-1 0.5,0.5,0.1,red 0.5,0.5,0.1,aabbcc,1 ''; do
     noh render "$pack" -o "$work/bad.png" --decal "$bad"
     expect 2 "--decal '$bad'"

@@ -113,7 +113,7 @@ static int strike(figure *f, const figure_mark *mark, const noh_stage_view *view
     if (!noh_view_ray(view, (float)(mark->x * width - 0.5), (float)(mark->y * height - 0.5), width, height, origin,
                       direction) ||
         noh_stage_pick(f->stage, origin, direction, FAR_AWAY, &hit, NULL)) {
-        return tool_fail("--decal", "--decal: the figure at rest is not at %g,%g in the picture", mark->x, mark->y);
+        return tool_fail("--decal", "the figure at rest is not at %g,%g in the picture", mark->x, mark->y);
     }
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         if (f->actors[k].id == hit.actor.id && noh_decals_strike(&f->rings[k], f->stage, &hit, &desc, NULL, &error)) {
