@@ -12,11 +12,7 @@
 #include "start.h"
 #include "target.h"
 #include "toon.h"
-#include "noh/clip.h"
 #include "noh/low_gl.h"
-#include "noh/modules.h"
-#include "noh/noh.h"
-#include "noh/noh_gl.h"
 
 #define ACTORS 20u
 #define HEROES 4u

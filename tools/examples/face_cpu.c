@@ -6,10 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh/base.h"
 #include "noh/deform.h"
-#include "noh/format.h"
-#include "noh/pack.h"
 #include "picture.h"
 
 static unsigned char file[8u << 20] ALIGNED_16;

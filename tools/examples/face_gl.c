@@ -9,11 +9,7 @@
 #include <EGL/egl.h>
 
 #include "egl_context.h"
-#include "noh/base.h"
-#include "noh/gl_device.h"
 #include "noh/low_gl.h"
-#include "noh/noh_gl.h"
-#include "noh/pack.h"
 
 #define SIZE 512
 #define ALIGNED_16 __attribute__((aligned(16))) /* required of every block for noh */

@@ -8,10 +8,7 @@
 
 #include "start.h"
 #include "target.h"
-#include "noh/clip.h"
 #include "noh/low_gl.h"
-#include "noh/noh.h"
-#include "noh/noh_gl.h"
 
 static noh_gl gl;
 

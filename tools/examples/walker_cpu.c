@@ -7,14 +7,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "noh/base.h"
-#include "noh/clip.h"
 #include "noh/deform.h"
-#include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
-#include "noh/pack.h"
 #include "picture.h"
 
 #define FRAME_TICKS (NOH_TICKS_PER_SECOND / 60u)
