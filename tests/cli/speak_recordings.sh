@@ -127,7 +127,7 @@ check 'and nothing is left behind' sh -c '! test -e "$1"' - "$work/other.noh"
 
 noh speak "$work/said.wav" --text "$(yes 'Papa bought me five boats.' | head -n 1000 | tr '\n' ' ')"
 expect 1 'more words than anyone could say in it'
-says 'bytes of text are not said in'
+says 'bytes of text are too many for'
 
 # ---- German: another throat than the warp's, made by other means (Klatt) ----
 german='Am Montag brachte Peter seiner Mutter bunte Blumen und ein Buch.'
@@ -201,12 +201,12 @@ expect 0 'a clipped recording'
 says 'clipped'
 noh speak "$work/said.wav" --text-file "$work/empty.txt"
 expect 1 'an empty text'
-says 'no words to speak'
+says 'write the words to speak'
 noh speak "$work/said.wav" --text ' . '
 expect 1 'a text without words'
 noh speak "$work/said.wav" --text 'The sun rose over seven hills.'
 expect 0 'other words than in the recording'
-says 'do not seem to be those'
+says 'do not seem to match the recording'
 
 # ---- clips ----
 noh speak "$work/said.wav" --text 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh"
@@ -274,5 +274,5 @@ assert all(j["words_match"] for j in files)
 cat "$work/check" | sed 's/^/# /'
 noh speak "$speech/sense_0920.wav" --text-file "$speech/sense_0890.txt"
 expect 0 'the words of another recording'
-says 'do not seem to be those'
+says 'do not seem to match the recording'
 finish
