@@ -49,7 +49,7 @@ awk -v foreign='^(stbi_|meshopt_|WebP|egl[A-Z]|gl[A-Z])' '
             if (part == "test" || /^(static|#)/ && FILENAME ~ /[.]c/) seen[FILENAME, name] = 1 # its own
             else if (!/;$/ && !(name in owner) && (/^(extern|static)/ || FILENAME ~ /[.]c$/)) {
                 owner[name] = FILENAME
-                outside[name] = part == "other"
+                outside[name] = part == "other" || FILENAME == "tests/cross/files.c" # those only fail
             }
         }
         while (match($0, /[A-Za-z_][A-Za-z0-9_]*\(/)) {
