@@ -17,7 +17,7 @@ export NOH_LONG
 mkdir -p "$work"
 includes="-Iruntime -Iplatform -Itools -Itools/noh -Itools/demo_assets -I$build/gen"
 # Not the page (emscripten's headers), the template for porters, and what a build without windows has instead of view/.
-find runtime platform tools -name '*.c' ! -path 'platform/web/*' ! -name template.c ! -name view_without.c | sort >"$work/files"
+find runtime platform tools -name '*.c' ! -path 'platform/web/*' ! -name template.c ! -name view_without.c ! -path 'tools/examples/window/*' | sort >"$work/files"
 if [ ! -f /usr/include/espeak-ng/speak_lib.h ]; then
     sed -i '/train_ear\/voices\.c$/d' "$work/files"
     echo 'without tools/train_ear/voices.c: no libespeak-ng-dev here'
