@@ -1,5 +1,5 @@
 #include "bounds.h"
-#include "deform/pick/bounds.h"
+#include "deform/pick/bounds_internal.h"
 
 static void grow(float box[6], const float world[12], const float p[3])
 {

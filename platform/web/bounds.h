@@ -1,4 +1,4 @@
-/* deform.h: the bounds of the figures, for the page's camera. */
+/* bounds.h: the bounds of the figures, for the page's camera. */
 #ifndef NOH_PLATFORM_WEB_BOUNDS_H
 #define NOH_PLATFORM_WEB_BOUNDS_H
 

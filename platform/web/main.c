@@ -6,8 +6,8 @@
 
 #include "bounds.h"
 #include "web.h"
-#include "deform/pick/bounds.h"
-#include "gl/device/gl_api.h"
+#include "deform/pick/bounds_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/low_core.h"
 #include "noh/low_gl.h"
 #include "noh/low_motion.h"

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "web.h"
-#include "gl/draw/gl_skin.h"
+#include "gl/draw/gl_skin_internal.h"
 
 __attribute__((import_module("noh"), import_name("feedback"))) void web_gl_feedback(int begins);
 

@@ -66,8 +66,8 @@ typedef enum noh_half_mode {
  * All limits. Building a pack over a limit fails with the limit in the message; opening one fails too. A desc
  * over a limit is NOH_ERR_ARG or NOH_ERR_LIMIT, with the number requested.
  *
- * Limits set by the width of a field are with the field: limits of a compressed clip (NOH_CLIP_*_MAX) in low_motion.h,
- * limits of time (NOH_DURATION_MAX, NOH_SPEED_MAX, NOH_POSITION_MAX) in low_motion.h.
+ * Limits set by the width of a field are with the field: limits of time (NOH_DURATION_MAX, NOH_SPEED_MAX,
+ * NOH_POSITION_MAX) in clip.h, limits of a compressed clip (NOH_CLIP_*_MAX) in low_motion.h.
  * Threads: constants. */
 
 #define NOH_NONE 0xffffffffu /* no index; above every count */

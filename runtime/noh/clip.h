@@ -57,7 +57,7 @@ typedef struct noh_frame_clock {
  *
  * A noh_clip_entry describes one clip: name, duration, loop mode, callback keys and sync markers, as plain data with
  * indices instead of pointers. How poses are stored is up to noh_clip_set.sample. Any number of instances share one
- * set. A game fills in its own set, or uses the one in a noh_clip_bank (clip.h).
+ * set. A game fills in its own set, or uses the one in a noh_clip_bank.
  *
  * Threads: a set is read-only while instances use it. Threads may share it if `sample` may run on several threads. If
  * not, give each thread a copy with its own `user`; for clips of packs, noh_clip_bank_view holds that copy. */
@@ -320,7 +320,7 @@ noh_result noh_controller_set_lod(noh_controller *c, uint32_t lod, uint32_t join
 
 /* ---- time ---- */
 
-/* Start or schedule a change over time (clip.h).
+/* Start or schedule a change over time.
  * errors  ARG a field of the desc; LIMIT the table of changes is full */
 noh_result noh_controller_change(noh_controller *c, const noh_clip_set *set, const noh_change_desc *desc,
                                  noh_error *error);
@@ -414,7 +414,7 @@ typedef struct noh_mask_view {
  *
  * Threads: a controller and a scratch belong to one thread at a time. Several threads may pose controllers of one set,
  * each with its own scratch, if set->sample allows it. With a noh_clip_bank give each thread its own view
- * (clip.h). */
+ *. */
 
 /* Working memory for posing. It holds no state between calls, so instances of a set that are posed one after another
  * share it. The exception: between noh_controller_inertia_capture and _begin it holds the captured poses. */

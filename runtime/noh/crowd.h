@@ -170,7 +170,7 @@ int noh_crowd_agent_stepped(const noh_crowd *crowd, uint32_t index, noh_crowd_ag
 uint32_t noh_crowd_hash(const noh_crowd *crowd);
 
 /* ======== walkers ========
- * Agents of a crowd (crowd.h) as actors of a stage.
+ * Agents of a crowd as actors of a stage.
  *
  *   noh_walkers_size, noh_walkers_init   walkers in one block, and their clips
  *   noh_walkers_add, noh_walkers_remove  bind an actor to an agent, and unbind it

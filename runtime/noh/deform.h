@@ -61,7 +61,7 @@ typedef struct noh_morph_kernel {
      * but are never read */
     void (*accumulate_some)(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers,
                             const uint8_t *groups);
-    /* noh_morph_finish (deform.h) */
+    /* noh_morph_finish */
     void (*finish)(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out);
 } noh_morph_kernel;
 
@@ -269,7 +269,7 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
  * s C is the inverse transpose times the absolute determinant: normals stay orthogonal to the surface under any scale,
  * and unlike the inverse, the cofactors exist where an axis has no length.
  *
- * Meshes with NOH_MESH_DUAL_QUATERNION use deform.h instead. The SIMD path is chosen when the library is
+ * Meshes with NOH_MESH_DUAL_QUATERNION use noh_skin_vertices_dual instead. The SIMD path is chosen when the library is
  * compiled; each gives the bits of noh_skin_vertex.
  *
  * source  Granberg, Character Animation with Direct3D, 2009, chapters 3 and 8 (whose shader moves normals by M itself);

@@ -316,7 +316,7 @@ void noh_face_apply(const noh_face_link *links, uint32_t link_count, const float
  * The mean of |sample| over a tenth of a second, relative to 0.3 of the recent peak level, selects one of three shapes
  * and its weight (Granberg, "Character Animation with Direct3D", 2009, ch. 10, with its errors corrected: a partial
  * window is divided by its own length, there is no division by silence, windows do not drift, and the peak level is a
- * percentile of peaks, which one click does not change). face.h recognises shapes; this needs one addition per sample.
+ * percentile of peaks, which one click does not change). noh_ear recognises shapes; this needs one addition per sample.
  *
  * Threads: one thread at a time. */
 

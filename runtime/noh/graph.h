@@ -1,4 +1,4 @@
-/* low_motion.h: animation graphs of a pack, found and read by name. noh.h plays them: noh_actor_play_graph. */
+/* graph.h: animation graphs of a pack, found and read by name. noh.h plays them: noh_actor_play_graph. */
 
 #ifndef NOH_GRAPH_H
 #define NOH_GRAPH_H

@@ -26,7 +26,7 @@ extern "C" {
 
 /* ======== what a GPU can do ======== */
 
-/* `version` and `geometry_defines` for the desc of a program with a geometry stage (low_gl.h). The version is NULL
+/* `version` and `geometry_defines` for the desc of a program with a geometry stage. The version is NULL
  * without geometry shaders; the defines are NULL if no #extension is needed. */
 const char *noh_gl_geometry_version(const noh_gl_api *api);
 const char *noh_gl_geometry_defines(const noh_gl_api *api);
@@ -346,7 +346,7 @@ typedef struct noh_gl_morph_desc {
 } noh_gl_morph_desc;
 
 typedef struct noh_gl_morph noh_gl_morph;
-struct noh_gl_mesh; /* low_gl.h */
+struct noh_gl_mesh;
 
 /* Counts of one update. */
 typedef struct noh_gl_morph_stats {
@@ -658,7 +658,7 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
  *   noh_gl_mesh_lod          the indices of an LOD level
  *   noh_gl_mesh_bind         bind its vertex array, with an instance's finished vertices; noh_gl_mesh_unbind
  *   noh_gl_mesh_create_empty buffers for levels loaded later; noh_gl_mesh_fill fills them piece by piece
- *   noh_gl_picture_create    upload a texture; delete it with noh_gl_texture_delete (low_gl.h)
+ *   noh_gl_picture_create    upload a texture; delete it with noh_gl_texture_delete
  *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
  *                            _variant
  *   noh_gl_draw_begin        begin drawing; noh_gl_draw_end ends it
@@ -686,7 +686,7 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
 #define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer record; only with a transfer */
 #define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of the record */
 #define NOH_ATTRIBUTE_UV_TEXEL 14u       /* uint: accumulation texel of its UV; only with NOH_MESH_UV_TARGETS */
-/* Locations 10 to 13 are delta texels (uvec3) on the path streams: NOH_ATTRIBUTE_STREAMS (low_gl.h). On other paths
+/* Locations 10 to 13 are delta texels (uvec3) on the path streams: NOH_ATTRIBUTE_STREAMS. On other paths
  * the first two are the bind pose, even if finished vertices are at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL */
 #define NOH_ATTRIBUTE_REST 10u        /* vec3 */
 #define NOH_ATTRIBUTE_REST_NORMAL 11u /* ivec2 */

@@ -71,7 +71,7 @@ void noh_segments_closest(const float a_from[3], const float a_to[3], const floa
  *   noh_ragdolls_shift                     move the origin of their space
  *   noh_ragdoll_measure                    violations of joint limits and contacts
  *
- * Bodies are capsules along their z axis. A rig (low_life.h makes one from a character) defines how they are joined.
+ * Bodies are capsules along their z axis. A rig (noh_ragdoll_rig_make makes one) defines how they are joined.
  * Angles and limits count from the rig's rest, so a doll placed at rest has nothing to correct.
  *
  * Extended position based dynamics in small steps. Dolls have the same bodies and joints, so each SIMD lane computes
@@ -423,7 +423,7 @@ void noh_correctives_apply(const noh_corrective_term *terms, uint32_t term_count
  *
  * Ranges are applied first, then opposites, then groups. The last two ignore negative weights. A stage applies the
  * rules of kinds that request it (noh_kind_desc.weight_rules), whatever the source of the weights. Correctives follow
- * from other targets (low_life.h) and have no rules.
+ * from other targets and have no rules.
  *
  * source   Lewis and others, "Practice and Theory of Blendshape Facial Models", Eurographics 2014, section 3.1
  *          (limits); combining opposites by their difference is the two-ended slider of facial rigs

@@ -288,7 +288,7 @@ void noh_event_queue_clear(noh_event_queue *queue);
  * A compressed clip, opened for playing.
  *
  * The clip's bytes are used in place; its header, a few bits per joint, is expanded once into the caller's memory.
- * Frames are decoded through a cache: low_motion.h.
+ * Frames are decoded through a noh_clip_cache.
  *
  *   noh_clip_measure   counts, duration, certificate and memory size, before it is opened
  *   noh_clip_size      the bytes that noh_clip_init needs
@@ -368,7 +368,7 @@ void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
  *   noh_clip_cache_stats_of, _capacity, _holds_all, _clip   statistics and contents
  *
  * Threads: every call that takes a non-const cache is for one thread at a time, with no other call on that cache at the
- * same time. To sample on several threads between those calls, give each a view: low_motion.h.
+ * same time. To sample on several threads between those calls, give each a noh_clip_view.
  *
  * Memory: a cached segment takes the bytes of its frames. A cache of n segments has room for the n largest segments of
  * its clips: segments are sorted into size classes (four per doubling), and each class has as many entries as it has

@@ -34,7 +34,7 @@ extern "C" {
  *
  * Threads: a noh_lod belongs to one thread at a time; tables and settings are read-only and shared. */
 
-/* Update rate: how often an instance is posed (low_stage.h). */
+/* Update rate: how often an instance is posed. */
 typedef enum noh_update_rate {
     NOH_UPDATE_RATE_FULL = 0, /* every frame */
     NOH_UPDATE_RATE_30,       /* Hz */
@@ -208,7 +208,7 @@ typedef struct noh_time_probe {
  *   noh_character_step(ch, set, ticks, fn, user)              every character: clock and callback keys
  *   due = noh_character_select_lod(ch, table, settings, scale)      characters in view: chooses LOD levels
  *   noh_character_update(ch, set, skeleton, radii, &scratch)  characters that are due: samples, blends, makes matrices
- *   noh_character_skin(ch, skin, matrices)                    drawn characters: skinning matrices (low_stage.h)
+ *   noh_character_skin(ch, skin, matrices)                    drawn characters: skinning matrices
  * A scheduler can spread updates within a time budget. Change tracks through noh_character_controller,
  * then call noh_character_wake. After a memcpy, give the copy its own update phase with noh_character_set_instance.
  *
@@ -373,7 +373,7 @@ noh_result noh_lod_pack_init(void *memory, size_t bytes, const noh_lod_pack_desc
  * converter joined), and two skins may bind one joint differently. Inverse bind matrices therefore belong to skins, not
  * to the skeletons of packs.
  *
- * Threads: as low_stage.h. noh_pose_skin and noh_skin_skeleton write only to their arguments. */
+ * Threads: as noh_character. noh_pose_skin and noh_skin_skeleton write only to their arguments. */
 
 /* Get the skin's matrices of a character in this frame, after an update.
  * shapes  matrices[joint_count of the skin][12]

@@ -169,7 +169,7 @@ const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
 /* ======== feet of actors ========
  * Actors that stand on the ground.
  *
- *   noh_feet_modifier   a modifier of a kind (modules.h) that puts its actors' feet on the ground
+ *   noh_feet_modifier   a modifier of a kind that puts its actors' feet on the ground
  *
  *   noh_feet_rig_make(&source, &feet.rig, &error); feet.ground.world = &world;
  *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
@@ -483,7 +483,7 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
 /* ======== gaze and reach of actors ========
  * Actors that look at points and reach for them.
  *
- *   noh_gaze_modifier    a modifier of a kind (modules.h) that turns spine, neck, head and eyes
+ *   noh_gaze_modifier    a modifier of a kind that turns spine, neck, head and eyes
  *   noh_reach_modifier   a modifier that puts hands on points
  *
  *   noh_gaze_rig_make(&pack, 0, &gaze.rig, &error);

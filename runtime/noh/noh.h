@@ -666,7 +666,7 @@ const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count)
  * errors  ARG by is not finite or beyond NOH_NUMBER_MAX, or called during a step or a frame */
 noh_result noh_stage_shift_origin(noh_stage *stage, const float by[3], noh_error *error);
 
-/* A camera or a light; noh.h has functions that fill one. */
+/* A camera or a light; noh_view_orbit and noh_view_shadow fill one. */
 typedef struct noh_stage_view {
     float view_projection[16]; /* column-major, clip space of GL; perspective or parallel */
     float eye[3];

@@ -471,7 +471,7 @@ void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const
  *   noh_stage_decals_draw     the decals of an actor
  *
  * A pixel shows a decal if its place in the bind pose lies within the sphere of the decal and its surface faces the
- * same way. A fold that only touches the decal in the bind pose shows it, too; noh_gl.h avoids that.
+ * same way. A fold that only touches the decal in the bind pose shows it, too; noh_stage_patches avoids that.
  *
  * Meshes with decals are drawn again, each with all its decals in one draw call: pixels without a decal are discarded,
  * the others are blended over the surface, with its light, normal map and wrinkles. LOD levels may fade meanwhile.
@@ -645,7 +645,7 @@ void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, ui
  *
  * A decal covers only the surface connected to the triangle that was hit, not a fold that touches it in the bind pose.
  * Only triangles with decals are drawn again, all of a mesh in one draw call, from the vertices of the mesh itself:
- * they move exactly as the mesh does. The programs of noh_gl.h draw them, and test only the decals that have
+ * they move exactly as the mesh does. The programs of noh_stage_decals draw them, and test only the decals that have
  * grown over a triangle.
  *
  * A decal grows when it is first drawn at a LOD level: one pass over the triangles of that level for each decal. Two

@@ -10,7 +10,7 @@
 #include "cli/message.h"
 #include "draw/figure.h"
 #include "gpu/canvas.h"
-#include "gl/device/gl_api.h"
+#include "gl/device/gl_api_internal.h"
 
 #define SIDE 160u
 

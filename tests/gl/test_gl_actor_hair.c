@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "file/pack_file.h"
-#include "life/hair/haircut.h"
-#include "stage/actors/actor_hair.h"
+#include "life/hair/haircut_internal.h"
+#include "stage/actors/actor_hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/format.h"

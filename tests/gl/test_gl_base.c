@@ -22,8 +22,8 @@
 #include <unistd.h>
 
 #include "../../platform/platform.h"
-#include "gl/device/gl_api.h"
-#include "gl/device/gl_quirks.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/device/gl_quirks_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

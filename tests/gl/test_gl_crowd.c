@@ -11,8 +11,8 @@
 #include "convert/model/model_build.h"
 #include "crowd/crowd_bodies.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/character/character.h"
-#include "stage/character/scheduler.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/scheduler_internal.h"
 
 #define BODIES 60u
 #define FRAMES 300u

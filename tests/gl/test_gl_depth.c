@@ -6,7 +6,7 @@
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
 #include "support/renderer.h"
-#include "gl/draw/gl_variants.h"
+#include "gl/draw/gl_variants_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -9,7 +9,7 @@
 
 #include <GLES3/gl32.h>
 
-#include "gl/draw/gl_variants.h"
+#include "gl/draw/gl_variants_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_gl.h"

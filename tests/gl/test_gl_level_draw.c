@@ -4,8 +4,8 @@
 #include "support/level_fixture.h"
 #include "support/skin_asset.h"
 #include "support/renderer.h"
-#include "gl/draw/gl_draw.h"
-#include "stage/character/lod_pack.h"
+#include "gl/draw/gl_draw_internal.h"
+#include "stage/character/lod_pack_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

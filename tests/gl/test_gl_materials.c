@@ -4,7 +4,7 @@
 #include "support/gl_fixture.h"
 
 #include "support/lit_quad.h"
-#include "gl/draw/gl_variants.h"
+#include "gl/draw/gl_variants_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

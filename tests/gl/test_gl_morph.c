@@ -1,7 +1,7 @@
 /* Accumulation on the GPU: every path and format, of three layers and of two, against the CPU reference, value for
  * value; what is not accumulated again; and what happens when capabilities are missing. */
 #include "support/gl_fixture.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

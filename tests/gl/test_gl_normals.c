@@ -4,7 +4,7 @@
 #include "support/gl_fixture.h"
 #include "support/renderer.h"
 
-#include "gl/draw/gl_skin.h"
+#include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

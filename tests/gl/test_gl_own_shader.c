@@ -3,7 +3,7 @@
  * and in a texture, with float layers and integer ones, and for a mesh without joints. */
 #include "support/gl_fixture.h"
 
-#include "gl/draw/gl_variants.h"
+#include "gl/draw/gl_variants_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

@@ -2,8 +2,8 @@
  * only touches at rest; all of a mesh in one draw; room, fades, a lost context. */
 #include "support/decal_fixture.h"
 #include "support/srgb.h"
-#include "gl/stage/stage_patch.h"
-#include "stage/actors/decal_grow.h"
+#include "gl/stage/stage_patch_internal.h"
+#include "stage/actors/decal_grow_internal.h"
 
 #include <math.h>
 

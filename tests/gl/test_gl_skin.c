@@ -2,8 +2,8 @@
  * the same picture of split meshes; what is sent, and what is refused. */
 #include "support/gl_skin_fixture.h"
 #include "support/renderer.h"
-#include "gl/draw/gl_draw.h"
-#include "gl/draw/gl_skin.h"
+#include "gl/draw/gl_draw_internal.h"
+#include "gl/draw/gl_skin_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,8 +8,8 @@
 #include <string.h>
 
 #include "gpu/readback.h"
-#include "deform/morph/morph.h"
-#include "gl/morph/gl_morph.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 
 typedef struct scene {
     uint8_t *bytes;

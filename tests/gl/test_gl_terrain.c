@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "life/physics/terrain_lod.h"
+#include "life/physics/terrain_lod_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/gl_device.h"

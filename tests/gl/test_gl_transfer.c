@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "convert/light/pack_transfer.h"
-#include "core/mesh/mesh.h"
-#include "deform/morph/morph.h"
-#include "gl/draw/gl_light.h"
+#include "core/mesh/mesh_internal.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/draw/gl_light_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

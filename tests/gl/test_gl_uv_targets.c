@@ -2,8 +2,8 @@
  * crowds, and in depth passes that cut by alpha; streams refuse them. */
 #include "support/lod_fixture.h"
 #include "support/tube_fixture.h"
-#include "deform/morph/morph.h"
-#include "gl/draw/gl_variants.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/draw/gl_variants_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

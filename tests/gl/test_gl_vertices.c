@@ -3,8 +3,8 @@
  * was mapped, or never finish. */
 #include "support/gl_fixture.h"
 #include "support/level_fixture.h"
-#include "deform/morph/morph.h"
-#include "gl/morph/gl_morph.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/crowd/crowd.h"
+#include "stage/crowd/crowd_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 #include "noh/low_core.h"

@@ -1,6 +1,6 @@
 #include "gl_fixture.h"
-#include "deform/morph/morph.h"
-#include "gl/device/gl_api.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/device/gl_api_internal.h"
 
 #include <math.h>
 #include <stdio.h>

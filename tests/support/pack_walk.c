@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "deform/morph/morph.h"
-#include "stage/cast/springs.h"
+#include "deform/morph/morph_internal.h"
+#include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -7,7 +7,7 @@
 #include "cli/message.h"
 #include "context.h"
 #include "crowd/place_scene.h"
-#include "gl/device/gl_api.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

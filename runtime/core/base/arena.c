@@ -2,8 +2,8 @@
  * twice: over an arena without memory it adds up the bytes, over the real block it hands out the pieces. So a size and
  * the layout that it is the size of cannot disagree. A sum that would overflow stays at SIZE_MAX, which no block has.
  */
-#include "core/base/arena.h"
-#include "core/base/assert.h"
+#include "core/base/arena_internal.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 

@@ -1,6 +1,6 @@
 #include "noh/low_core.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 /* FNV-1a: xor a byte in, then multiply by the FNV prime; it starts from the offset basis. */
 uint32_t noh_hash_name(const char *name)

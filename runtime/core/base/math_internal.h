@@ -16,7 +16,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "noh/base.h"
 
 /* 16: gcc's word for half floats that are kept as they are, and floats, too. */

@@ -8,7 +8,7 @@
 #ifndef NOH_BASE_PROCESSOR_INTERNAL_H
 #define NOH_BASE_PROCESSOR_INTERNAL_H
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 /* Where AVX2 is not compiled in as a whole, the compiler can make single functions of it. */
 #if defined(NOH_GNU) && defined(__x86_64__) && defined(NOH_SSE2) && !defined(NOH_AVX2)

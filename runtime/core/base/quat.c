@@ -2,7 +2,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 
 /* Sums only, with the signs of b applied beforehand: where the processor has fused multiply-adds, gcc 12 makes them out

@@ -45,7 +45,7 @@
 
 #include "core/base/math_internal.h"
 #include "core/base/processor_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 #if defined(NOH_SIMD_SCALAR)
 #elif defined(NOH_SSE2)

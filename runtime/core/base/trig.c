@@ -1,4 +1,4 @@
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/low_core.h"
 
 #include <string.h>

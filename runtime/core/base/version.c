@@ -1,6 +1,6 @@
 #include "noh/base.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 #define TEXT_OF(number) #number
 #define TEXT(number) TEXT_OF(number)

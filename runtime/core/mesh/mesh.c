@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "core/mesh/mesh.h"
+#include "core/base/assert_internal.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_core.h"

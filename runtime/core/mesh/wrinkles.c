@@ -1,11 +1,11 @@
-#include "core/mesh/wrinkles.h"
+#include "core/mesh/wrinkles_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 
 noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_error *error)

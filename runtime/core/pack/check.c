@@ -1,5 +1,5 @@
 /* check.c: what all chunk checkers share. */
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "core/pack/check_internal.h"
 
 #include <string.h>

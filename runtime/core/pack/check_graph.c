@@ -2,8 +2,8 @@
  * graphs does not carry it. What depends on the clips (that they exist, that the clip of a one-shot ends) is checked
  * when a graph is bound to them. */
 #include "core/pack/check_internal.h"
-#include "core/base/assert.h"
-#include "core/pack/pack.h"
+#include "core/base/assert_internal.h"
+#include "core/pack/pack_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

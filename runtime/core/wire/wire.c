@@ -1,5 +1,5 @@
 /* wire.c: takes a file in pieces, collects it by blocks, and hands them to the filters once their checksum is right. */
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_core.h"

@@ -5,7 +5,7 @@
  * source  Duda: Asymmetric numeral systems, 2013; Giesen: Interleaved entropy coders, 2014 */
 #include "core/wire/wire_internal.h"
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 #define SCALE (1u << NOH_WIRE_SCALE_BITS)
 #define RATE_FIRST 4u

@@ -1,8 +1,8 @@
 /* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Products and sums have the same order as
  * in the shaders, so equal inputs give equal bits. */
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
-#include "deform/morph/morph.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

@@ -4,9 +4,9 @@
 #ifndef NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 #define NOH_DEFORM_MORPH_ACCUMULATE_INTERNAL_H
 
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
-#include "deform/morph/morph.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/deform.h"
 #include "noh/format.h"
 #include "noh/pack.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "core/base/octahedral_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/format.h"
 #include "noh/pack.h"
 #include "noh/low_core.h"

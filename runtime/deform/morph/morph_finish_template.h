@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "deform/morph/morph_finish_internal.h"
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/simd_internal.h"
 #include "deform/morph/morph_finish_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 #ifdef NOH_AVX2_AT_RUN_TIME
 #define LANES(name) noh_v8_##name

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 /* The position of a field in a word, and the weight of one unit. The left shift drops the bits above the field; the
  * arithmetic right shift drops the bits below it and extends the sign. */

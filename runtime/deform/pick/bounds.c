@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "deform/pick/bounds.h"
+#include "core/base/assert_internal.h"
+#include "deform/pick/bounds_internal.h"
 #include "noh/deform.h"
 #include "noh/format.h"
 #include "noh/pack.h"

@@ -1,4 +1,4 @@
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/low_core.h"

@@ -11,7 +11,7 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "deform/skin/skin_blend_internal.h"
 
 noh_result noh_pack_skin_list(const noh_pack *pack, uint32_t mesh, noh_skin_list *list, noh_error *error)

@@ -4,8 +4,8 @@
  * optional. Functions beyond ES 3.0 depend on the context: eglGetProcAddress and similar functions return a pointer
  * even for an unsupported name, so the version and the extension strings decide whether a function is available and
  * under which suffix. A local table is filled first and copied only on success. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"

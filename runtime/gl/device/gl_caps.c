@@ -3,8 +3,8 @@
  * Each ability is tested the way the library uses it: known floats are drawn into the three layers of an array texture
  * and read back. A driver may claim a format and then clamp, round or drop the values written to it, so only the values
  * read back count. Each layer gets different values, which reveals swapped and missing layers. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

@@ -1,5 +1,5 @@
 /* gl_debug.c: labels and groups of KHR_debug. */
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

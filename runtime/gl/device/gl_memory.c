@@ -3,9 +3,9 @@
  * The bytes of a texture are the texels of all mip levels, each level half as wide and high as the previous one,
  * rounded down but at least 1 (OpenGL ES 3.0, 3.8.10), times layers and bytes per texel; for a compressed texture,
  * blocks in place of texels. The bytes of a renderbuffer include its samples. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
-#include "gl/device/gl_memory.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *error)
 {

@@ -1,7 +1,7 @@
 /* gl_program.c: compiling and linking. Pending GL errors are cleared first and read last, so that no refused call goes
  * unnoticed. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

@@ -1,6 +1,6 @@
 /* gl_quirks.c: the table of quirks. Each entry has a source, so that it can be checked again and removed. */
-#include "core/base/assert.h"
-#include "gl/device/gl_quirks.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_quirks_internal.h"
 #include "noh/low_gl.h"
 
 #define SOFTWARE_REASON "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work"

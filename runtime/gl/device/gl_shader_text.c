@@ -3,7 +3,7 @@
 
 #include <stddef.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "shaders.gen.h"
 
 static int same(const char *a, const char *b)

@@ -1,8 +1,8 @@
 /* gl_state.c: saves and restores the GL state that noh changes.
  *
  * Draws save each part of the state on its first change: an opaque pass makes five GL queries. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/gl_device.h"
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /* gl_table.c: tables of texels in 2-D textures (gl_table_internal.h). */
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_table_internal.h"
-#include "core/base/assert.h"
-#include "gl/device/gl_memory.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

@@ -1,8 +1,8 @@
 /* gl_timer.c: a ring of queries. `oldest` is the next query to read, `flying` queries from there on are in flight, and
  * the query after them is the next to begin. A disjoint clock invalidates all of them. */
 #include "gl/device/gl_names_internal.h"
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 

@@ -6,11 +6,11 @@
  * Triangles are not sorted, because only the GPU knows their positions. Where the texture of a blended surface is
  * nearly opaque, as along strands of hair, this core is drawn with the opaque surfaces and hides whatever is behind it;
  * only the fringe, thin and mostly of one colour, is blended in stored order. */
-#include "core/base/assert.h"
-#include "gl/draw/gl_draw.h"
-#include "gl/draw/gl_light.h"
-#include "gl/draw/gl_skin.h"
-#include "gl/draw/gl_variants.h"
+#include "core/base/assert_internal.h"
+#include "gl/draw/gl_draw_internal.h"
+#include "gl/draw/gl_light_internal.h"
+#include "gl/draw/gl_skin_internal.h"
+#include "gl/draw/gl_variants_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"
@@ -22,7 +22,6 @@
 
 #include "gl/draw/gl_material_internal.h"
 #include "gl/device/gl_names_internal.h"
-#include "gl/draw/gl_skin_internal.h"
 #include "gl/device/gl_state_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)

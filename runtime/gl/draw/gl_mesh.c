@@ -3,9 +3,9 @@
  * All LOD levels of a mesh share its buffers. The vertices of a coarser level are the first ones of the finer level,
  * and its indices follow the finer level's. A draw therefore chooses a level by an offset into the index buffer, and a
  * vertex keeps its number, which selects its accumulation texel, at every level. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
-#include "gl/draw/gl_draw.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/draw/gl_draw_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -11,10 +11,10 @@
  * refuses, glBufferSubData is used, which the driver orders after the draws. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "deform/morph/morph.h"
-#include "gl/device/gl_api.h"
-#include "gl/morph/gl_morph.h"
+#include "core/base/assert_internal.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"
@@ -22,7 +22,6 @@
 #include "noh/low_gl.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
-#include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 
 /* A refused glBufferSubData goes unnoticed (glGetError would wait for the GPU in some browsers), so every 64th update

@@ -2,8 +2,8 @@
  *
  * ETC2 and EAC blocks go from the pack to the GPU unchanged. For a context without these formats, noh_gl_api.decode
  * decodes a strip of blocks at a time to texels, in stack memory. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -2,11 +2,11 @@
  * restore compiles the same list again. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
-#include "gl/device/gl_api.h"
-#include "gl/draw/gl_draw.h"
-#include "gl/draw/gl_variants.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/draw/gl_draw_internal.h"
+#include "gl/draw/gl_variants_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

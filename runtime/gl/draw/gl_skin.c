@@ -3,9 +3,9 @@
  * All palettes of all instances lie in one array of rows, in the layout of the GL object. Setting matrices writes only
  * rows that differ to this array, and widens one span of rows to send. An update sends the span in one call: a few
  * unchanged rows in between are cheaper to send than more calls. */
-#include "core/base/assert.h"
-#include "gl/device/gl_api.h"
-#include "gl/draw/gl_skin.h"
+#include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"
@@ -18,7 +18,6 @@
 #include <string.h>
 
 #include "gl/device/gl_state_internal.h"
-#include "gl/draw/gl_skin_internal.h"
 
 static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
 

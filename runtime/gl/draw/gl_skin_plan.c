@@ -6,8 +6,7 @@
 #include <string.h>
 
 #include "gl/draw/gl_skin_internal.h"
-#include "core/base/assert.h"
-#include "gl/draw/gl_skin.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 

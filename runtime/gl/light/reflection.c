@@ -1,11 +1,11 @@
-#include "gl/light/reflection.h"
+#include "gl/light/reflection_internal.h"
 #include "noh/base.h"
 #include "noh/light.h"
 #include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 
 /* A face's direction at s, t of -1..1: middle + s * across + t * down. */

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "gl/light/sh_internal.h"
 

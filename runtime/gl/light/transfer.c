@@ -1,4 +1,4 @@
-#include "core/mesh/mesh.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/light.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/octahedral_internal.h"
 #include "gl/light/transfer_internal.h"

@@ -3,10 +3,10 @@
  *
  * Setting weights only marks an instance as changed. noh_gl_morph_update accumulates all changed instances together, so
  * that a crowd costs a few draws. An unchanged instance keeps the sums of its tile. */
-#include "core/base/assert.h"
-#include "deform/morph/morph.h"
-#include "gl/device/gl_api.h"
-#include "gl/morph/gl_morph.h"
+#include "core/base/assert_internal.h"
+#include "deform/morph/morph_internal.h"
+#include "gl/device/gl_api_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"
@@ -17,7 +17,6 @@
 
 #include <string.h>
 
-#include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 
 /* ---- making ---- */

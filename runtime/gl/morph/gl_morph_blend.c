@@ -22,7 +22,7 @@
  * mesh. Here only deltas are summed, so a half-float accumulator never rounds the base. */
 #include <string.h>
 
-#include "gl/device/gl_api.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/gl_device.h"

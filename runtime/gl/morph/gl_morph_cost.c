@@ -12,7 +12,6 @@
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
-#include "gl/morph/gl_morph.h"
 #include "noh/deform.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -4,7 +4,7 @@
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

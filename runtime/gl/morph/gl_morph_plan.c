@@ -8,9 +8,8 @@
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
-#include "core/base/assert.h"
-#include "deform/morph/morph.h"
-#include "gl/morph/gl_morph.h"
+#include "core/base/assert_internal.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

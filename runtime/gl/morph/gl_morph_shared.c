@@ -2,7 +2,7 @@
  * state around a draw. */
 #include <string.h>
 
-#include "gl/device/gl_api.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

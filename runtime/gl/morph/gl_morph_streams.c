@@ -6,8 +6,8 @@
  * targets as whole meshes, with texture coordinates that nothing reads. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "gl/morph/gl_morph.h"
+#include "core/base/assert_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"
@@ -15,7 +15,6 @@
 #include "noh/low_gl.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
-#include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
 
 #define STREAM_CHUNK (NOH_STREAM_CHUNK / NOH_STREAM_STRIDE) /* vertices sent at once at load */

@@ -3,8 +3,8 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "gl/draw/gl_light.h"
+#include "core/base/assert_internal.h"
+#include "gl/draw/gl_light_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

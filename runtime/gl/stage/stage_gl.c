@@ -1,9 +1,9 @@
 /* stage_gl.c: the GPU objects of a stage: measured, created, deleted, restored. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
-#include "gl/draw/gl_skin.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
+#include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

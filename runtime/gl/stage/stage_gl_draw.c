@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "stage/character/character_internal.h"
-#include "core/base/assert.h"
-#include "gl/draw/gl_draw.h"
+#include "core/base/assert_internal.h"
+#include "gl/draw/gl_draw_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -3,7 +3,7 @@
 #define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 
 #include "stage/cast/stage_internal.h"
-#include "gl/draw/gl_skin.h"
+#include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

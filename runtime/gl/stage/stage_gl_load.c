@@ -5,8 +5,8 @@
  * its own, and the accumulators switch to the fine tables once these are complete. */
 #include <string.h>
 
-#include "gl/draw/gl_draw.h"
-#include "gl/morph/gl_morph.h"
+#include "gl/draw/gl_draw_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "gl/stage/stage_gl_internal.h"
-#include "core/base/assert.h"
-#include "gl/morph/gl_morph.h"
+#include "core/base/assert_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

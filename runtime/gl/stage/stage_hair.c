@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "life/hair/haircut.h"
+#include "core/base/assert_internal.h"
+#include "life/hair/haircut_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/format.h"

@@ -1,6 +1,6 @@
-#include "core/base/assert.h"
-#include "gl/stage/stage_patch.h"
-#include "stage/actors/decal_grow.h"
+#include "core/base/assert_internal.h"
+#include "gl/stage/stage_patch_internal.h"
+#include "stage/actors/decal_grow_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"
@@ -14,7 +14,6 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
-#include "gl/stage/stage_patch_internal.h"
 
 #define TRIANGLES_SENT 64u /* uploaded at a time: they are on the stack */
 #define TRIANGLES_MAX (1u << 20)

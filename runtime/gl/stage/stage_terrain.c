@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "life/physics/terrain_lod.h"
+#include "core/base/assert_internal.h"
+#include "life/physics/terrain_lod_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/gl_device.h"

@@ -1,10 +1,10 @@
-#include "life/face/amplitude.h"
+#include "life/face/amplitude_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 enum { MIN_RATE = 1000, MAX_RATE = 192000, MAX_CHANNELS = 64, LOUD_AT_FIRST = 8192 * 16 };
 

@@ -4,7 +4,7 @@
 #include "noh/low_life.h"
 #include "noh/pack.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
 
 /* The rows of one corrective. */

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/face/ear_internal.h"
 
 enum {

@@ -3,17 +3,16 @@
  * A step goes from one event to the next: a blink, a breath, the end of a latency or a saccade, a glance, a
  * microsaccade, the end of an emotion's hold. Between two events all motion is a function of the clock. So a face does
  * not depend on how time is split into steps. */
-#include "core/base/assert.h"
-#include "life/face/face.h"
+#include "core/base/assert_internal.h"
+#include "life/face/face_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 
 #include <string.h>
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
-#include "life/face/face_internal.h"
 
 NOH_STATIC_ASSERT(sizeof(noh_face) == 240, face_bytes);
 

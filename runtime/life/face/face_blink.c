@@ -4,7 +4,7 @@
  * (Bentivoglio and others, "Analysis of blink rate patterns in normal subjects", Movement Disorders 12, 1997). A blink
  * with another cause, a large eye movement or the end of a phrase, replaces the next spontaneous one, and the following
  * one stays due when it would have been: so the rate does not change. */
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/face.h"
 #include "noh/low_core.h"
 #include "life/face/face_internal.h"

@@ -8,11 +8,10 @@
  * fade never passes its goal; mouth shapes are limited to a sum of 1. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "life/face/face.h"
+#include "core/base/assert_internal.h"
+#include "life/face/face_internal.h"
 #include "noh/face.h"
 #include "noh/low_core.h"
-#include "life/face/face_internal.h"
 
 #define LID_TICKS 9000u   /* 0.15 s / 0.8 */
 #define FADE_TICKS 48000u /* 1 s */

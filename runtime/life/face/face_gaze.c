@@ -9,7 +9,7 @@
  * Without commands a face looks away now and then: distance and direction follow Lee, Badler and Badler, "Eyes Alive",
  * SIGGRAPH 2002, as does the time of eye contact while talking or listening. */
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/face.h"
 #include "noh/low_core.h"
 #include "life/face/face_internal.h"

@@ -2,12 +2,11 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/assert.h"
-#include "life/face/face.h"
+#include "core/base/assert_internal.h"
+#include "life/face/face_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/low_core.h"
-#include "life/face/face_internal.h"
 
 /* ---- the head ---- */
 

@@ -1,7 +1,7 @@
 /* face_random.c: random numbers as functions of a seed, a stream and an index. No generator state is kept, and numbers
  * may be drawn in any order. */
 #include "core/base/math_internal.h"
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "life/face/face_internal.h"
 
 /* The finaliser of MurmurHash3 (Austin Appleby), twice: each bit of the result depends on each bit of the three

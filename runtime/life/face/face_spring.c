@@ -3,7 +3,7 @@
  * x(t) = goal + (d + (v + omega d) t) e^(-omega t), with d and v the distance from the goal and the speed at the start:
  * the fastest way to a goal from rest without overshoot. As a function of the time since its start it can be evaluated
  * at any tick, however time is split into steps. */
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/face.h"
 #include "life/face/face_internal.h"
 

@@ -1,5 +1,5 @@
 /* identity.c: groups and bounds identity targets, and draws people from them. */
-#include "life/face/identity.h"
+#include "life/face/identity_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/format.h"
@@ -8,11 +8,10 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 #include "life/face/face_internal.h"
-#include "life/face/identity_internal.h"
 
 /* ---- memory ---- */
 

@@ -14,6 +14,12 @@
 extern "C" {
 #endif
 
+#define NOH_IDENTITY_NONE 0xffffu
+
+/* Get the weight at which target closings[i] closes a person's lids: 0.5..2, 1 on the mesh's own face.
+ * shapes  weights[target_count] of the person */
+float noh_identity_shut(const noh_identity *identity, const float *weights, uint32_t i);
+
 /* Returns 1 if two names have the same number of words and differ in one. Words begin at capitals and after characters
  * other than letters and digits. */
 int noh_identity_one_word_apart(const char *a, const char *b);

@@ -4,7 +4,7 @@
 
 #include "core/base/math_internal.h"
 #include "life/face/identity_internal.h"
-#include "core/mesh/mesh.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

@@ -3,7 +3,7 @@
  * ARPABET is recognised by its capitals; stress digits are skipped. In the International Phonetic Alphabet a phone has
  * one or several characters: stress, length and other marks are skipped, an affricate is one shape, and a diphthong has
  * the shapes of its first and last vowel. */
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/face.h"
 
 typedef struct entry {

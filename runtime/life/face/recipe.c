@@ -1,5 +1,5 @@
 /* recipe.c: channels, and the targets that they move. */
-#include "life/face/recipe.h"
+#include "life/face/recipe_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/format.h"
@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
 #include "life/face/face_internal.h"
 

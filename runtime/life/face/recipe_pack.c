@@ -1,7 +1,7 @@
 /* recipe_pack.c: recipes in packs, and the names of channels. */
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"

@@ -1,11 +1,11 @@
 /* speech.c: mouth shapes of speech. */
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/face/face_internal.h"
 
 #define NEIGHBOURS 8u        /* phones on each side of a tick that can affect it */

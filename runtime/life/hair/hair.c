@@ -1,12 +1,11 @@
 /* hair.c: control hairs at rest, checks of hair from outside, and time. hair_lanes.c moves it. */
-#include "life/hair/hair.h"
+#include "life/hair/hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
-#include "life/hair/hair_internal.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 /* ---- size and init ---- */

@@ -5,8 +5,8 @@
 #include "noh/body.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "life/hair/hair_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/vector_internal.h"

@@ -1,4 +1,4 @@
-#include "life/hair/haircut.h"
+#include "life/hair/haircut_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/format.h"
@@ -6,7 +6,7 @@
 #include "noh/low_life.h"
 #include "noh/pack.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 #define PIXELS_FULL 500.0f

@@ -3,7 +3,7 @@
 #ifndef NOH_SIM_LANES3_INTERNAL_H
 #define NOH_SIM_LANES3_INTERNAL_H
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "core/base/simd_internal.h"
 
 typedef struct lane3 {

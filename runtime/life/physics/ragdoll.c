@@ -1,12 +1,11 @@
 /* ragdoll.c: sets of ragdolls: memory, input and output, sleep. */
-#include "life/physics/ragdoll.h"
+#include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
-#include "life/physics/ragdoll_internal.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 #define STILL_STEPS 30u  /* half a second */

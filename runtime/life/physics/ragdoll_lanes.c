@@ -8,15 +8,13 @@
  *
  * The axis of a capsule is z of its space and its centre the centre of mass, so inertia is two numbers: I^-1 v = across
  * v + (along - across) z (z . v). */
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
-#include "life/physics/motion.h"
-#include "life/physics/ragdoll.h"
-#include "life/physics/world.h"
+#include "life/physics/motion_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 

@@ -1,11 +1,10 @@
 /* ragdoll_measure.c: how far a ragdoll violates its joints' limits and the world. */
-#include "core/base/assert.h"
-#include "life/physics/motion.h"
-#include "life/physics/ragdoll.h"
+#include "core/base/assert_internal.h"
+#include "life/physics/motion_internal.h"
+#include "life/physics/ragdoll_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
-#include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 

@@ -1,7 +1,7 @@
 /* ragdoll_names.c: bodies of a ragdoll from the pack's table, or from the names of joints. */
 #include "core/base/name_internal.h"
-#include "core/base/trig.h"
-#include "life/physics/ragdoll_rig.h"
+#include "core/base/trig_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

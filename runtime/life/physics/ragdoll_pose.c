@@ -1,5 +1,5 @@
 /* ragdoll_pose.c: converts between poses of a skeleton and bodies of a ragdoll. */
-#include "life/physics/ragdoll_pose.h"
+#include "life/physics/ragdoll_pose_internal.h"
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
@@ -8,7 +8,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 /* ---- joints ---- */

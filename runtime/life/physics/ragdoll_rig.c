@@ -1,7 +1,7 @@
 /* ragdoll_rig.c: makes capsules, masses and joints of a ragdoll from a skeleton and its skin. */
-#include "core/base/trig.h"
-#include "life/physics/ragdoll.h"
-#include "life/physics/ragdoll_rig.h"
+#include "core/base/trig_internal.h"
+#include "life/physics/ragdoll_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -10,7 +10,7 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 #define BINS 64u

@@ -1,17 +1,16 @@
 /* rigid.c: a free rigid body: exact flight, rotation by splitting, contacts by impulses. */
-#include "life/physics/motion.h"
-#include "life/physics/rigid.h"
-#include "life/physics/world.h"
+#include "life/physics/motion_internal.h"
+#include "life/physics/rigid_internal.h"
+#include "life/physics/world_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/contact_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
-#include "life/physics/world_internal.h"
 
 #define SECONDS ((float)NOH_RIGID_STEP_TICKS / 48000.0f)
 #define STEPS_MAX 150u /* a quarter of a second */

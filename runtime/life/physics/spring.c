@@ -1,11 +1,10 @@
 /* spring.c: chains at rest, checks of chains from outside, and the ends of joints. spring_lanes.c moves them. */
-#include "life/physics/spring.h"
+#include "life/physics/spring_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
-#include "life/physics/spring_internal.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 /* ---- size and init ---- */

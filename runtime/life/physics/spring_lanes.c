@@ -8,8 +8,8 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/spring_internal.h"
 #include "life/physics/vector_internal.h"

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *error)
 {

@@ -1,12 +1,12 @@
 /* terrain_lod.c: levels of a height field's blocks. */
-#include "life/physics/terrain_lod.h"
+#include "life/physics/terrain_lod_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 
 /* ---- bytes ---- */

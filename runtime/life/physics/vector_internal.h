@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "noh/low_core.h"
 
 static inline void noh_sub3(const float a[3], const float b[3], float out[3])

@@ -3,7 +3,7 @@
 #include "noh/body.h"
 #include "noh/low_life.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 

@@ -4,6 +4,17 @@
 #define NOH_SIM_WORLD_INTERNAL_H
 
 #include "noh/body.h"
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
+
+#ifdef __cplusplus
+}
+#endif
 
 /* Get the distance of a plane from an origin, along its normal. */
 float noh_plane_distance(const noh_plane *plane, const float origin[3]);

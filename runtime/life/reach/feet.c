@@ -2,8 +2,8 @@
  *
  * All of it is in world space. A foot is moved as a whole: turned about its lowest part by its lean, along the ground
  * to stay planted, and up by `shift`. */
-#include "core/base/trig.h"
-#include "life/reach/feet.h"
+#include "core/base/trig_internal.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -11,7 +11,7 @@
 #include "noh/low_life.h"
 #include "noh/low_motion.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 /* Lengths are in leg lengths, speeds in leg lengths per second, times in seconds. */

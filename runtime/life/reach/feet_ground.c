@@ -1,5 +1,5 @@
 /* feet_ground.c: finds the ground straight below a point. */
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"

@@ -1,6 +1,6 @@
 /* feet_rig.c: legs by joint names, soles by the skin of feet. */
-#include "core/base/assert.h"
-#include "life/physics/ragdoll_rig.h"
+#include "core/base/assert_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

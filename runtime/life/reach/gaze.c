@@ -1,7 +1,7 @@
 /* gaze.c: turns the head, with spine and neck, and eyes ahead of them. */
-#include "core/base/trig.h"
-#include "life/physics/ragdoll_rig.h"
-#include "life/reach/gaze.h"
+#include "core/base/trig_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/gaze_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -10,7 +10,7 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
 #include "life/reach/rig_internal.h"
 

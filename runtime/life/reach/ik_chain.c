@@ -1,11 +1,11 @@
 /* ik_chain.c: three solvers over one chain of joints. After each iteration, positions match rotations. */
-#include "core/base/trig.h"
-#include "life/reach/ik_chain.h"
+#include "core/base/trig_internal.h"
+#include "life/reach/ik_chain_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 
 static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };

@@ -1,6 +1,6 @@
 /* ik_look.c: a direction that turns towards a target within a cone. */
-#include "core/base/assert.h"
-#include "core/base/trig.h"
+#include "core/base/assert_internal.h"
+#include "core/base/trig_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "life/physics/vector_internal.h"

@@ -1,6 +1,6 @@
 /* ik_two_bone.c: finds the position of the middle joint, then the rotations that bring it there. */
-#include "core/base/assert.h"
-#include "core/base/trig.h"
+#include "core/base/assert_internal.h"
+#include "core/base/trig_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "life/physics/vector_internal.h"

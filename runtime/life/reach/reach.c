@@ -1,7 +1,7 @@
 /* reach.c: arms by joint names, and their bends. */
-#include "core/base/trig.h"
-#include "life/physics/ragdoll_rig.h"
-#include "life/reach/reach.h"
+#include "core/base/trig_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/reach_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -9,7 +9,7 @@
 #include "noh/low_life.h"
 #include "noh/low_motion.h"
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/reach/rig_internal.h"
 
 #define REACH_SECONDS 0.35f

@@ -3,8 +3,8 @@
 #ifndef NOH_SIM_RIG_INTERNAL_H
 #define NOH_SIM_RIG_INTERNAL_H
 
-#include "core/base/compiler.h"
-#include "life/physics/ragdoll_rig.h"
+#include "core/base/compiler_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"

@@ -4,10 +4,10 @@
  * alone and can be evaluated at the end of a step. A speed cannot: it moves tracks by its integral. So speeds are
  * constant over slices of whole ticks, NOH_CHANGE_SLICES per change, and noh_changes_speeds returns the tick up to
  * which they hold. The integral is then a product of integers, however time is split into steps. */
-#include "core/base/assert.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/time.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/time_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

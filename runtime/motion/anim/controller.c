@@ -2,12 +2,12 @@
  *
  * A controller is one block: header, tracks, table of changes, then the inertial offsets if there is room for them.
  * Arrays are found by offset and clips by index in the set, so the block has no pointers and can be copied. */
-#include "core/base/assert.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/controller.h"
-#include "motion/anim/events.h"
-#include "motion/anim/time.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/events_internal.h"
+#include "motion/anim/time_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -2,9 +2,9 @@
  *
  * Per track: the farthest it can travel, and the number of stretches of one direction, since each change of direction
  * can pass the keys around it again. noh_events_max turns both into a number of keys. */
-#include "core/base/assert.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/events.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/events_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "motion/anim/sync_internal.h"

@@ -1,10 +1,10 @@
 /* Checking a controller's block: clip.h, noh_controller_check. */
 #include <string.h>
 
-#include "core/base/arena.h"
-#include "core/base/assert.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/controller.h"
+#include "core/base/arena_internal.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/controller_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

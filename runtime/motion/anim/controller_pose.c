@@ -4,11 +4,11 @@
  * high group's result covers the low one; additive tracks are added in index order; the remaining offset of an inertial
  * transition is added last, since it is the difference between two such results. A single track with full weight skips
  * the blend, which would not change it. */
-#include "core/base/assert.h"
-#include "motion/anim/controller.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/root_motion.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

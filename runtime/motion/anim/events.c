@@ -1,6 +1,6 @@
-#include "core/base/assert.h"
-#include "motion/anim/events.h"
-#include "motion/anim/time.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/events_internal.h"
+#include "motion/anim/time_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 

@@ -1,4 +1,4 @@
-#include "motion/anim/time.h"
+#include "motion/anim/time_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 

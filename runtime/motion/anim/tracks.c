@@ -3,10 +3,10 @@
  * A track's position is in 1/65,536 ticks and grows beyond the clip's end. It is folded into the clip only when it is
  * read, so that passes can be counted, and reduced by whole cycles after each move, so that it never overflows. A track
  * that was just placed has not passed the keys at its position yet: `placed` is 1 until it moves. */
-#include "core/base/assert.h"
-#include "motion/anim/events.h"
-#include "motion/anim/time.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/events_internal.h"
+#include "motion/anim/time_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

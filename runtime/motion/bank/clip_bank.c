@@ -1,8 +1,8 @@
-#include "core/base/assert.h"
-#include "motion/anim/root_motion.h"
-#include "motion/bank/clip_bank.h"
-#include "motion/clip/clip_cache.h"
-#include "motion/clip/clip_codec.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/bank/clip_bank_internal.h"
+#include "motion/clip/clip_cache_internal.h"
+#include "motion/clip/clip_codec_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"
@@ -13,7 +13,6 @@
 #include <string.h>
 
 #include "motion/bank/clip_bank_bind_internal.h"
-#include "motion/bank/clip_bank_internal.h"
 
 typedef struct noh_bank_clip bank_clip;
 

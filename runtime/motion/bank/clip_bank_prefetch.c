@@ -5,10 +5,10 @@
  * run of frames, and all segments with those frames are requested. Three pieces are enough: the rest of this leg and
  * one whole leg cover the whole clip, and anything later needs no other segment. */
 #include "motion/clip/clip_internal.h"
-#include "core/base/assert.h"
-#include "motion/anim/time.h"
-#include "motion/clip/clip_cache.h"
-#include "motion/clip/clip_codec.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/time_internal.h"
+#include "motion/clip/clip_cache_internal.h"
+#include "motion/clip/clip_codec_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 

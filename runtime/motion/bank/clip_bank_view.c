@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "motion/bank/clip_bank_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -1,5 +1,5 @@
 #include "motion/clip/clip_coefs_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "noh/low_motion.h"
 
 /* Most coefficients of a track are 0, 1 or -1, and the larger ones are at low frequencies; the neighbours just above in

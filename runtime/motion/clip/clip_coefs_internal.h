@@ -14,7 +14,7 @@
 
 #include "motion/clip/clip_bits_internal.h"
 #include "noh/low_motion.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 #define NOH_CLIP_BUSY 2u         /* where noh_clip_shift is not 0 */
 #define NOH_CLIP_TRIPLE_FIRST 8u /* context of the first triple */

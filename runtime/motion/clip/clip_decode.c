@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "motion/clip/clip_coefs_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/low_motion.h"
 
 #define ROTATION_NARROW 8u

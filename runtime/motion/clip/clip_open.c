@@ -6,8 +6,8 @@
  * of segments need no check, because any bits decode to some frames, in bounds (clip_decode_internal.h). */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/clip/clip_codec.h"
+#include "core/base/assert_internal.h"
+#include "motion/clip/clip_codec_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

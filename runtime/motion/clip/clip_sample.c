@@ -3,8 +3,8 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
-#include "core/base/assert.h"
-#include "core/base/compiler.h"
+#include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 

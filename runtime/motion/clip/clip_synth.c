@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "core/base/simd_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "noh/low_motion.h"
 
 #define QUAT_ONE 32767.0f

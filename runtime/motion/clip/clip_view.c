@@ -1,6 +1,6 @@
-#include "core/base/assert.h"
-#include "motion/clip/clip_cache.h"
-#include "motion/clip/clip_view.h"
+#include "core/base/assert_internal.h"
+#include "motion/clip/clip_cache_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-#include "motion/clip/clip_cache_internal.h"
 
 /* A segment of the view's own. It is kept from sample to sample, so a clip that plays without being requested is
  * decoded once per segment, not once per sample. */

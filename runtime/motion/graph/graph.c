@@ -1,9 +1,9 @@
 /* graph.c: the state of a graph: a controller with one track per clip, parameters, and the state of each machine. The
  * graph itself is constant and shared. A state holds no pointers, so it can be copied. */
-#include "core/base/assert.h"
-#include "motion/anim/controller.h"
-#include "motion/anim/tracks.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

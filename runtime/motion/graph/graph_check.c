@@ -3,9 +3,9 @@
 
 #include "core/base/math_internal.h"
 #include "motion/anim/clip_set_internal.h"
-#include "core/base/assert.h"
-#include "motion/anim/tracks.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,10 +1,10 @@
 /* The pose of a graph: low_motion.h, noh_graph_scratch_* and noh_graph_pose. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/root_motion.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,9 +1,9 @@
 /* graph_root.c: the root displacement of a graph. */
 #include "motion/graph/graph_weights_internal.h"
 
-#include "core/base/assert.h"
-#include "motion/anim/root_motion.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,10 +1,10 @@
 /* graph_state_check.c: checks that a block of bytes is an instance of a graph. */
 #include "motion/graph/graph_state_internal.h"
 
-#include "core/base/arena.h"
-#include "core/base/assert.h"
-#include "motion/anim/controller.h"
-#include "motion/graph/graph.h"
+#include "core/base/arena_internal.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

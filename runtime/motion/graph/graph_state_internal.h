@@ -3,7 +3,7 @@
 #define NOH_GRAPH_GRAPH_STATE_INTERNAL_H
 
 #include "motion/graph/graph_weights_internal.h"
-#include "motion/graph/graph.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,7 +1,7 @@
 /* graph_step.c: changes over time: the states of machines, selects and one-shots, their fades, and the step. */
 #include "motion/graph/graph_state_internal.h"
-#include "core/base/assert.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,6 +1,6 @@
 #include "motion/graph/graph_weights_internal.h"
-#include "motion/anim/changes.h"
-#include "motion/graph/graph.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

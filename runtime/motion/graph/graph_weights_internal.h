@@ -2,7 +2,7 @@
 #ifndef NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
 #define NOH_GRAPH_GRAPH_WEIGHTS_INTERNAL_H
 
-#include "motion/graph/graph.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/clip.h"
 #include "noh/graph.h"
 

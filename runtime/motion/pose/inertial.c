@@ -1,7 +1,7 @@
 #include "motion/pose/inertial_internal.h"
 
 #include "core/base/math_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 

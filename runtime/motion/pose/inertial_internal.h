@@ -14,7 +14,7 @@
 #include <stdint.h>
 
 #include "noh/clip.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 
 /* The offsets of one joint at the switch: 48 bytes. Speeds are along the vectors, per second, never positive. */
 typedef struct noh_inertia_joint {

@@ -1,8 +1,8 @@
 /* actor_hair.c: hair as a modifier of the stage, and hair of the largest heads outside of it. It moves in metres of the
  * model, whatever the scale of the actor. */
-#include "life/hair/hair.h"
-#include "life/hair/haircut.h"
-#include "stage/actors/actor_hair.h"
+#include "life/hair/hair_internal.h"
+#include "life/hair/haircut_internal.h"
+#include "stage/actors/actor_hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -17,9 +17,8 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
-#include "life/hair/hair_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 

@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "stage/actors/decal.h"
+#include "core/base/assert_internal.h"
+#include "stage/actors/decal_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/marks.h"

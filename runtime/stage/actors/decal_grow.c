@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "stage/actors/decal_grow.h"
+#include "core/base/assert_internal.h"
+#include "stage/actors/decal_grow_internal.h"
 #include "noh/base.h"
 #include "noh/marks.h"
 #include "noh/pack.h"

@@ -1,7 +1,7 @@
 /* walkers.c: measures the clips of walkers, and ties actors to agents. */
-#include "core/base/assert.h"
-#include "motion/anim/root_motion.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/crowd.h"

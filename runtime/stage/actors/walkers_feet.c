@@ -1,8 +1,8 @@
 /* walkers_feet.c: feet on the ground for the nearest walkers. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "life/reach/feet.h"
+#include "core/base/assert_internal.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

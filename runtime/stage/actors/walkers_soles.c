@@ -1,7 +1,7 @@
 /* walkers_soles.c: the soles in a walker's clips, and the foot it stands on. */
 #include <string.h>
 
-#include "motion/anim/root_motion.h"
+#include "motion/anim/root_motion_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

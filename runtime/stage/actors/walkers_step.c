@@ -3,8 +3,8 @@
 
 #include "motion/anim/root_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/assert.h"
-#include "core/base/trig.h"
+#include "core/base/assert_internal.h"
+#include "core/base/trig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_ragdoll_internal.h"

@@ -14,7 +14,7 @@
 #ifndef NOH_STAGE_MODULE_INTERNAL_H
 #define NOH_STAGE_MODULE_INTERNAL_H
 
-#include "motion/anim/controller_pose.h"
+#include "motion/anim/controller_pose_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"

@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
-#include "core/base/assert.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/lod_pools_internal.h"
+#include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/clip.h"

@@ -3,7 +3,7 @@
 
 #include "motion/anim/root_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

@@ -3,8 +3,8 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "core/base/assert.h"
-#include "stage/character/time_lod.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

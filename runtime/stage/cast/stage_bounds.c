@@ -7,9 +7,9 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "deform/pick/bounds.h"
-#include "motion/anim/root_motion.h"
-#include "stage/character/bounds.h"
+#include "deform/pick/bounds_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "stage/character/bounds_internal.h"
 #include "noh/clip.h"
 #include "noh/deform.h"
 #include "noh/low_motion.h"

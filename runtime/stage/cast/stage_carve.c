@@ -1,9 +1,9 @@
 /* stage_carve.c: how a stage lies in its block. The code that lays it out also measures it. */
 #include <string.h>
 
-#include "core/base/compiler.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
+#include "core/base/compiler_internal.h"
+#include "stage/character/lod_pools_internal.h"
+#include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -3,8 +3,8 @@
 
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "motion/anim/controller.h"
-#include "stage/character/lod.h"
+#include "motion/anim/controller_internal.h"
+#include "stage/character/lod_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "noh/clip.h"

@@ -4,7 +4,7 @@
 
 #include "core/base/math_internal.h"
 #include "deform/morph/morph_kernel_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

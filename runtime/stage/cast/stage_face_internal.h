@@ -2,8 +2,7 @@
 #ifndef NOH_STAGE_STAGE_FACE_INTERNAL_H
 #define NOH_STAGE_STAGE_FACE_INTERNAL_H
 
-#include "core/base/assert.h"
-#include "stage/cast/stage_face.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/modules.h"
@@ -13,6 +12,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+#define NOH_ACTOR_FACE_BYTES 336u
 
 #define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
 

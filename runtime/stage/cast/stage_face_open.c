@@ -1,8 +1,8 @@
 /* stage_face_open.c: the joints and targets of a kind's faces, and the calls that tell a face what to do. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "life/face/recipe.h"
+#include "core/base/assert_internal.h"
+#include "life/face/recipe_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/face.h"

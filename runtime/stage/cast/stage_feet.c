@@ -1,5 +1,5 @@
 /* stage_feet.c: feet on the ground as a modifier of a kind. */
-#include "life/reach/feet.h"
+#include "life/reach/feet_internal.h"
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
@@ -7,7 +7,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */

@@ -1,6 +1,6 @@
 /* stage_gaze.c: gazes and hands as modifiers of a kind. */
-#include "life/reach/gaze.h"
-#include "life/reach/reach.h"
+#include "life/reach/gaze_internal.h"
+#include "life/reach/reach_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -10,7 +10,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 

@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "life/physics/ragdoll_pose.h"
+#include "life/physics/ragdoll_pose_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -15,7 +15,7 @@
 #include "noh/low_stage.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "stage/cast/stage_ragdoll_internal.h"

@@ -1,8 +1,8 @@
 /* stage_graph.c: the graphs of a kind: which, how many bytes, made, and their names. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/graph/graph_pack.h"
+#include "core/base/assert_internal.h"
+#include "motion/graph/graph_pack_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -2,7 +2,7 @@
 #ifndef NOH_STAGE_STAGE_GRAPH_INTERNAL_H
 #define NOH_STAGE_STAGE_GRAPH_INTERNAL_H
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -1,10 +1,10 @@
 /* stage_graph_play.c: the graph of an actor: playing it next to clips, its parameters and states. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/tracks.h"
-#include "motion/graph/graph.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

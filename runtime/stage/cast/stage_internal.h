@@ -32,9 +32,9 @@
 #ifndef NOH_STAGE_STAGE_INTERNAL_H
 #define NOH_STAGE_STAGE_INTERNAL_H
 
-#include "core/base/assert.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/lod_pools_internal.h"
+#include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

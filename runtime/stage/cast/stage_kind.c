@@ -3,8 +3,8 @@
 
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "motion/bank/clip_bank.h"
-#include "stage/character/lod_pack.h"
+#include "motion/bank/clip_bank_internal.h"
+#include "stage/character/lod_pack_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "noh/clip.h"

@@ -4,7 +4,7 @@
  * bends. Drawing all of them at the same level number spends triangles where they show least. So the errors of all
  * levels of all meshes are sorted, and for each of them every mesh takes its coarsest level within that error. */
 #include "stage/cast/stage_internal.h"
-#include "stage/character/lod_pack.h"
+#include "stage/character/lod_pack_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "noh/noh.h"

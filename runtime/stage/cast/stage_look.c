@@ -4,9 +4,8 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "stage/cast/modifier.h"
-#include "stage/character/character.h"
-#include "stage/character/time_lod.h"
+#include "stage/cast/modifier_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

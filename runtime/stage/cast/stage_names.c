@@ -1,6 +1,6 @@
 /* stage_names.c: clips, layers, floats and joints of a kind, by name. */
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -1,7 +1,7 @@
 /* stage_person.c: an actor as a person: held floats, and lids that shut. */
 #include "stage/cast/stage_face_internal.h"
-#include "core/base/assert.h"
-#include "life/face/identity.h"
+#include "core/base/assert_internal.h"
+#include "life/face/identity_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "noh/face.h"

@@ -1,7 +1,7 @@
 /* stage_plan.c: every byte of a stage before there is one, and what is given up to keep a bound. */
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"

@@ -2,10 +2,10 @@
  * the others of the layer fade out. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/tracks.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
-#include "motion/clip/clip_view.h"
-#include "stage/character/character.h"
-#include "stage/character/lod.h"
+#include "motion/clip/clip_view_internal.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/lod_internal.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
 #include "noh/noh.h"

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"

@@ -2,8 +2,7 @@
 #ifndef NOH_STAGE_STAGE_RAGDOLL_INTERNAL_H
 #define NOH_STAGE_STAGE_RAGDOLL_INTERNAL_H
 
-#include "core/base/assert.h"
-#include "stage/cast/stage_ragdoll.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_life.h"
@@ -14,6 +13,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+#define NOH_ACTOR_RAGDOLL_BYTES 1488u
 
 typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_ON } noh_stage_rise;
 

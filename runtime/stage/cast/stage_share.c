@@ -3,11 +3,11 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
-#include "motion/clip/clip_cache.h"
-#include "stage/character/character.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
-#include "stage/character/time_lod.h"
+#include "motion/clip/clip_cache_internal.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/lod_pools_internal.h"
+#include "stage/character/scheduler_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

@@ -3,9 +3,9 @@
 
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "core/base/assert.h"
-#include "stage/character/character.h"
-#include "stage/character/lod_pools.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/lod_pools_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/noh.h"

@@ -1,8 +1,8 @@
 /* stage_step.c: time moves on for all actors: clocks, fades, callback keys, root motion. */
 #include <string.h>
 
-#include "core/base/assert.h"
-#include "motion/anim/controller_pose.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_pose_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"

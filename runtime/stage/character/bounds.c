@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "stage/character/bounds.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/bounds_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 #include "noh/pack.h"

@@ -3,11 +3,11 @@
  * A distant character is not posed in every frame. It is posed ahead of time, for the tick of its next update. Until
  * then the character shows a mix of this pose and the previous one, linear in the matrices and far cheaper than a pose.
  * The two palettes, weights and spheres take turns as source and target of the mix. */
-#include "core/base/assert.h"
-#include "motion/anim/controller.h"
-#include "stage/character/bounds.h"
-#include "stage/character/character.h"
-#include "stage/character/time_lod.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "stage/character/bounds_internal.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
@@ -18,7 +18,6 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "stage/character/character_internal.h"
 
 /* ---- memory ---- */
 

@@ -1,8 +1,8 @@
 /* character_check.c: whether a block of bytes is a character. */
-#include "core/base/arena.h"
-#include "core/base/assert.h"
-#include "motion/anim/controller.h"
-#include "stage/character/character.h"
+#include "core/base/arena_internal.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"

@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "stage/character/joint_lod.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/joint_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -1,5 +1,5 @@
-#include "core/base/assert.h"
-#include "stage/character/lod_pools.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/lod_pools_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 

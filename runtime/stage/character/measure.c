@@ -1,6 +1,6 @@
 /* Shared by the measurements of LOD errors: measure_internal.h. */
-#include "motion/anim/root_motion.h"
-#include "motion/anim/time.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/anim/time_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"

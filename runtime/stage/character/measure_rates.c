@@ -1,5 +1,5 @@
 /* The loop over update periods and ticks within them, for any error: measure_internal.h. */
-#include "stage/character/time_lod.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"

@@ -1,6 +1,6 @@
-#include "core/base/assert.h"
-#include "motion/anim/tracks.h"
-#include "stage/character/time_lod.h"
+#include "core/base/assert_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"
 

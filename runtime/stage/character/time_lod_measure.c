@@ -1,7 +1,7 @@
 /* The error of interpolation between updates: low_stage.h, noh_time_lod_measure. */
 #include "motion/anim/clip_set_internal.h"
-#include "core/base/assert.h"
-#include "stage/character/time_lod.h"
+#include "core/base/assert_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"

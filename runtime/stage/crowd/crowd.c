@@ -1,8 +1,7 @@
 /* crowd.c: a crowd's block, its agents, and the phases of its steps. */
 #include "stage/crowd/crowd_internal.h"
 
-#include "core/base/assert.h"
-#include "stage/crowd/crowd.h"
+#include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/crowd.h"

@@ -5,7 +5,7 @@
  * in which d falls. Lengths only decrease, each time by LEAST or more, so the sweeps end.
  * source   Zhao: A fast sweeping method for Eikonal equations, Mathematics of Computation 2005; Bak, McLaughlin, Renzi:
  *          Some improvements for the fast sweeping method, SIAM Journal on Scientific Computing 2010 */
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 #include "noh/low_core.h"

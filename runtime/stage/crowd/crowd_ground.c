@@ -2,7 +2,7 @@
  *
  * source   Tobler: Three presentations on geographical analysis and modeling, NCGIA report 93-1, 1993 (the speed on a
  *          map is 6 e^(-3.5 |rise / run + 0.05|) km/h; here as a share of that on level ground) */
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/body.h"
 #include "noh/crowd.h"
 #include "stage/crowd/crowd_internal.h"

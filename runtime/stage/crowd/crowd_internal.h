@@ -2,11 +2,26 @@
 #ifndef NOH_CROWD_CROWD_INTERNAL_H
 #define NOH_CROWD_CROWD_INTERNAL_H
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/crowd.h"
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The agent steers only by the rules of low_stage.h: neighbours and obstacles repel it. FLOCK: it also moves along with its
+ * neighbours. */
+#define NOH_CROWD_FORCES 2u
+#define NOH_CROWD_FLOCK 6u
+
+#ifdef __cplusplus
+}
+#endif
 
 #define CROWD_STEP_S (1.0f / 30.0f)
 #define CROWD_STEPS_PER_S 30.0f

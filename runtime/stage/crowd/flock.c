@@ -1,6 +1,6 @@
 /* flock.c: rules of a flock. */
-#include "core/base/assert.h"
-#include "stage/crowd/flock.h"
+#include "core/base/assert_internal.h"
+#include "stage/crowd/flock_internal.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"
 

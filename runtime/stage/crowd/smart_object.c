@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-#include "core/base/assert.h"
+#include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 
 #define TICKS_PER_S 48000.0f

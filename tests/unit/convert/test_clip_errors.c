@@ -13,8 +13,8 @@
 #include "convert/skin/joint_radius.h"
 #include "convert/skin/skins.h"
 #include "support/clip_bank_fixture.h"
-#include "stage/character/joint_lod.h"
-#include "stage/character/time_lod.h"
+#include "stage/character/joint_lod_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 

@@ -12,7 +12,7 @@
 
 #include "convert/clips/model_clips.h"
 #include "support/gltf_oracle.h"
-#include "motion/bank/clip_bank.h"
+#include "motion/bank/clip_bank_internal.h"
 
 #define TIMES 24
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
 #define POINTS 2500u /* random ones on each surface, besides all corners */

@@ -9,7 +9,7 @@
 #include "convert/convert.h"
 #include "support/clip_bank_fixture.h"
 #include "support/pack_walk.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
 static const lod_settings four_levels = { 4, 0, LOD_FAST, 0.0f, 0.0f, NULL };

@@ -7,8 +7,8 @@
 #include <string.h>
 
 #include "convert/pack/pack_strip.h"
-#include "stage/character/lod.h"
-#include "stage/character/lod_pack.h"
+#include "stage/character/lod_internal.h"
+#include "stage/character/lod_pack_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

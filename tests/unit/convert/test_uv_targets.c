@@ -10,7 +10,7 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
 #include "support/pack_walk.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
 #define TARGETS 4u

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/character/joint_lod.h"
-#include "stage/character/lod.h"
-#include "stage/character/lod_pools.h"
-#include "stage/character/scheduler.h"
-#include "stage/character/time_lod.h"
+#include "stage/character/joint_lod_internal.h"
+#include "stage/character/lod_internal.h"
+#include "stage/character/lod_pools_internal.h"
+#include "stage/character/scheduler_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

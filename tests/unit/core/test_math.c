@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 #include "core/base/math_internal.h"
 #include "noh/low_core.h"
 

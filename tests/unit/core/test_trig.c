@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "core/base/trig.h"
+#include "core/base/trig_internal.h"
 #include "noh/low_core.h"
 
 #define PI 3.14159265358979323846

@@ -1,8 +1,8 @@
 /* Boxes of deformed meshes contain every vertex, and rays hit what a search through all triangles hits: real assets
  * over all their clips with random weights, and rigid meshes. */
 #include "support/skin_asset.h"
-#include "deform/morph/morph.h"
-#include "deform/pick/bounds.h"
+#include "deform/morph/morph_internal.h"
+#include "deform/pick/bounds_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Accumulation on the CPU: every instruction set gives the scalar bits; half floats follow their definition; vertices
  * agree with an evaluation in double precision. */
 #include "support/support.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* Finished vertices: every instruction set gives the scalar bits, whatever the mesh, the range and the deltas; they are
  * noh_morph_vertex's as closely as their formats allow; what nothing moves has the pack's own words. */
 #include "support/support.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,7 +8,7 @@
 #include "core/base/math_internal.h"
 #include "convert/clips/model_clips.h"
 #include "convert/pack/pack_clips.h"
-#include "deform/skin/skin.h"
+#include "deform/skin/skin_internal.h"
 #include "noh/low_core.h"
 
 typedef struct made {

@@ -12,7 +12,7 @@
 #include "convert/model/model_build.h"
 #include "convert/model/two_stream.h"
 #include "support/pack_walk.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
 /* A tube with its pack, posed by bending each joint about z. */

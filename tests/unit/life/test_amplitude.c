@@ -1,5 +1,5 @@
 /* Tests of amplitude.c against the formulas of its source, whose errors are shown. */
-#include "life/face/amplitude.h"
+#include "life/face/amplitude_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 

@@ -1,5 +1,5 @@
 /* Tests of runtime/face/face*.c: rates, distributions and aims of a simulated hour against the literature's. */
-#include "life/face/face.h"
+#include "life/face/face_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/low_core.h"

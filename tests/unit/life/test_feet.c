@@ -1,7 +1,7 @@
 /* Tests of feet.c, feet_rig.c and feet_ground.c: the ground below a point, legs and soles of real
  * characters, and poses that are put on the ground. Walks are in test_stage_feet. */
-#include "life/physics/ragdoll_rig.h"
-#include "life/reach/feet.h"
+#include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

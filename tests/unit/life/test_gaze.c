@@ -2,9 +2,9 @@
 #include <math.h>
 #include <string.h>
 
-#include "life/physics/ragdoll_rig.h"
-#include "life/reach/gaze.h"
-#include "life/reach/reach.h"
+#include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/gaze_internal.h"
+#include "life/reach/reach_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -1,6 +1,6 @@
 /* Tests of hair.c: a wig of forty hairs on a head of four spheres. Errata tests have the source's formulas
  * beside ours. */
-#include "life/hair/hair.h"
+#include "life/hair/hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "life/hair/hair.h"
-#include "life/hair/haircut.h"
+#include "life/hair/hair_internal.h"
+#include "life/hair/haircut_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/format.h"

@@ -1,6 +1,6 @@
 /* Tests of runtime/face/identity*.c: what belongs together is found, people are whole, and their lids shut. */
-#include "deform/morph/morph.h"
-#include "life/face/identity.h"
+#include "deform/morph/morph_internal.h"
+#include "life/face/identity_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/face.h"

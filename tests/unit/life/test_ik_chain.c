@@ -1,5 +1,5 @@
 /* Tests of ik_chain.c: each solver on the same thousand targets, limits, lines, and what is refused. */
-#include "life/reach/ik_chain.h"
+#include "life/reach/ik_chain_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

@@ -1,7 +1,7 @@
 /* Lips of real heads, measured on vertices as the library deforms them: they meet for every p, b and m, and the lower
  * one is at the upper teeth for f and v, for long enough that every phase of 30 Hz shows it, between any two sounds,
  * whatever the emotion and whatever the face. */
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/face.h"

@@ -1,8 +1,8 @@
 /* Tests of ragdoll.c and ragdoll_lanes.c: closed forms, energy, torture, and the same bits at every width.
  * cross: slow, minutes of falls */
-#include "life/physics/motion.h"
-#include "life/physics/ragdoll.h"
-#include "life/physics/world.h"
+#include "life/physics/motion_internal.h"
+#include "life/physics/ragdoll_internal.h"
+#include "life/physics/world_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
@@ -12,7 +12,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "life/physics/ragdoll_internal.h"
 #include "support/support.h"
 
 #define PI 3.14159265358979

@@ -1,5 +1,5 @@
 /* Tests of recipe.c: channels find their targets by name, and speech owns the mouth. */
-#include "life/face/recipe.h"
+#include "life/face/recipe_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 

@@ -1,8 +1,8 @@
 /* Tests of rigid.c and contact.c: closed forms of flight, spin, impulses, bounces and friction; rest on
  * every kind of obstacle; overlaps; the same far away and in any pieces of time; point masses.
  * cross: slow, minutes of flight */
-#include "life/physics/rigid.h"
-#include "life/physics/world.h"
+#include "life/physics/rigid_internal.h"
+#include "life/physics/world_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

@@ -1,5 +1,5 @@
 /* Tests of spring.c against the reference of VRMC_springBone, written here in double as its text has it. */
-#include "life/physics/spring.h"
+#include "life/physics/spring_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"

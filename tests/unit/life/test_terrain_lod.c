@@ -1,6 +1,6 @@
 /* Tests of terrain_lod.c: how far levels are off, that no crack is between two of them, and which a picture
  * gets. */
-#include "life/physics/terrain_lod.h"
+#include "life/physics/terrain_lod_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/noh.h"

@@ -6,8 +6,8 @@
 #include <cmocka.h>
 
 #include "support/clip_set_fixture.h"
-#include "motion/anim/changes.h"
-#include "motion/anim/tracks.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 

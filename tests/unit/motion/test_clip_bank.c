@@ -9,8 +9,8 @@
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "support/clip_bank_fixture.h"
-#include "motion/bank/clip_bank.h"
-#include "motion/clip/clip_cache.h"
+#include "motion/bank/clip_bank_internal.h"
+#include "motion/clip/clip_cache_internal.h"
 #include "noh/low_core.h"
 
 #define NAMES "abcdefghij"

@@ -1,13 +1,12 @@
 /* Tests of clip_cache.c: which segments it holds, at what cost, and what is decoded late.
  * cross: long, encodes clips */
-#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_cache_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 #include "support/set_fixture.h"
 
-#include "motion/clip/clip_cache_internal.h"
 
 #define JOINTS 12u
 #define CLIPS 8u

@@ -10,7 +10,7 @@
 
 #include <stdio.h>
 
-#include "motion/clip/clip_codec.h"
+#include "motion/clip/clip_codec_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

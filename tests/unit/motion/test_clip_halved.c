@@ -5,11 +5,10 @@
 
 #include <math.h>
 
-#include "motion/clip/clip_cache.h"
+#include "motion/clip/clip_cache_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
-#include "motion/clip/clip_cache_internal.h"
 #include "motion/clip/clip_decode_internal.h"
 #include "convert/codec/clip_space.h"
 #include "support/clip_fixture.h"

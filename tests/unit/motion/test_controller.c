@@ -5,11 +5,11 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "motion/anim/changes.h"
-#include "motion/anim/controller.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/time.h"
-#include "motion/anim/tracks.h"
+#include "motion/anim/changes_internal.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/time_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "motion/anim/controller.h"
-#include "motion/anim/events.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/events_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

@@ -6,7 +6,7 @@
 #include <cmocka.h>
 
 #include "support/clip_set_fixture.h"
-#include "motion/graph/graph.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -3,8 +3,8 @@
 #include "support/graph_fixture.h"
 
 #include "support/pack_walk.h"
-#include "motion/anim/tracks.h"
-#include "motion/graph/graph.h"
+#include "motion/anim/tracks_internal.h"
+#include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

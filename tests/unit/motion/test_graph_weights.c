@@ -7,7 +7,7 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/graph/graph_weights_internal.h"
-#include "motion/graph/graph.h"
+#include "motion/graph/graph_internal.h"
 
 static noh_graph_node node_of(noh_node_kind kind, uint32_t first_child, uint32_t child_count, float value)
 {

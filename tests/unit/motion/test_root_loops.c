@@ -2,7 +2,7 @@
  * close do not drift, others move by the source's displacement, and no position is off by more than the bound. */
 #include "support/set_fixture.h"
 
-#include "motion/anim/root_motion.h"
+#include "motion/anim/root_motion_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 #include "noh/pack.h"

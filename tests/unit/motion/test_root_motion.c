@@ -8,9 +8,9 @@
 #include <stdio.h>
 
 #include "support/clip_set_fixture.h"
-#include "core/base/trig.h"
-#include "motion/anim/root_motion.h"
-#include "motion/anim/tracks.h"
+#include "core/base/trig_internal.h"
+#include "motion/anim/root_motion_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

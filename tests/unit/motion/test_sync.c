@@ -7,7 +7,7 @@
 
 #include "support/clip_set_fixture.h"
 #include "motion/anim/sync_internal.h"
-#include "motion/anim/time.h"
+#include "motion/anim/time_internal.h"
 
 #define GROUP 3u
 

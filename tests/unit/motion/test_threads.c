@@ -3,10 +3,10 @@
  * cross: long, poses a crowd four times */
 #define _POSIX_C_SOURCE 200112L
 #include "support/set_fixture.h"
-#include "motion/anim/controller.h"
-#include "motion/anim/controller_pose.h"
-#include "motion/anim/tracks.h"
-#include "motion/clip/clip_view.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/controller_pose_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "motion/clip/clip_view_internal.h"
 
 #include <pthread.h>
 

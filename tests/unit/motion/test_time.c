@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "motion/anim/time.h"
+#include "motion/anim/time_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 

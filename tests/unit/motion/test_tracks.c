@@ -6,8 +6,8 @@
 #include <cmocka.h>
 
 #include "support/clip_set_fixture.h"
-#include "motion/anim/time.h"
-#include "motion/anim/tracks.h"
+#include "motion/anim/time_internal.h"
+#include "motion/anim/tracks_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

@@ -3,7 +3,7 @@
 
 #include "support/clip_set_fixture.h"
 #include "core/base/math_internal.h"
-#include "stage/character/bounds.h"
+#include "stage/character/bounds_internal.h"
 
 /* Random poses, random points within each joint's radius in the bind pose, skinned by random weights: all are inside.
  * Where only a prefix of the joints is posed, the vertices of the others move with their nearest posed ancestor. */

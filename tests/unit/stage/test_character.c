@@ -1,11 +1,11 @@
 /* Tests of character.c: one block that steps, chooses, poses and shows; and a crowd of them.
  * cross: long, minutes of a crowd */
-#include "motion/anim/controller.h"
-#include "motion/anim/tracks.h"
-#include "stage/character/character.h"
-#include "stage/character/scheduler.h"
-#include "stage/character/skin_palette.h"
-#include "stage/character/time_lod.h"
+#include "motion/anim/controller_internal.h"
+#include "motion/anim/tracks_internal.h"
+#include "stage/character/character_internal.h"
+#include "stage/character/scheduler_internal.h"
+#include "stage/character/skin_palette_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

@@ -1,7 +1,7 @@
 /* Ten minutes of a crowd, or with NOH_LONG not set the first twenty seconds: the same bits on every processor, with one
  * job and with four, whatever the agents' order. With everything: walls, flow fields with new goals, slopes, agents
  * of each sort that hold their place, leave and enter. */
-#include "stage/crowd/crowd.h"
+#include "stage/crowd/crowd_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/crowd.h"

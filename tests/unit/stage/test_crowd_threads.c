@@ -1,6 +1,6 @@
 /* The jobs of a crowd run by four threads at once: the bits of one thread, and (tests/tsan.sh) no race. */
 #define _POSIX_C_SOURCE 200112L
-#include "stage/crowd/crowd.h"
+#include "stage/crowd/crowd_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 

@@ -1,8 +1,8 @@
 /* Marks on actors: the ring, where they lie, what fades, what is refused. */
 #include "support/stage_fixture.h"
 
-#include "deform/morph/morph.h"
-#include "stage/actors/decal.h"
+#include "deform/morph/morph_internal.h"
+#include "stage/actors/decal_internal.h"
 #include "noh/base.h"
 #include "noh/marks.h"
 #include "noh/noh.h"

@@ -1,7 +1,7 @@
 /* Marks as triangles: which ones, coordinates, folds, levels, room. */
 #include "support/stage_fixture.h"
 
-#include "stage/actors/decal_grow.h"
+#include "stage/actors/decal_grow_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/marks.h"

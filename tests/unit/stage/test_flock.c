@@ -1,5 +1,5 @@
 /* Tests of flock.c: what the source writes, and what is right; and flocks in a crowd. */
-#include "stage/crowd/crowd.h"
+#include "stage/crowd/crowd_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 #include "noh/low_stage.h"

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/base/trig.h"
-#include "stage/character/lod.h"
+#include "core/base/trig_internal.h"
+#include "stage/character/lod_internal.h"
 #include "noh/base.h"
 #include "noh/low_stage.h"
 #include "noh/noh.h"

@@ -11,8 +11,8 @@
 #include "support/clip_bank_fixture.h"
 #include "support/pack_walk.h"
 #include "support/skin_asset.h"
-#include "stage/character/bounds.h"
-#include "stage/character/lod.h"
+#include "stage/character/bounds_internal.h"
+#include "stage/character/lod_internal.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 

@@ -1,6 +1,6 @@
 /* Tests of lod_pools.c: slots of several sizes, shared out by priority. */
 #include "support/support.h"
-#include "stage/character/lod_pools.h"
+#include "stage/character/lod_pools_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

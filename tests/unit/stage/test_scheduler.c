@@ -1,5 +1,5 @@
 /* Tests of scheduler.c: budgets are kept, and no instance waits for ever. */
-#include "stage/character/scheduler.h"
+#include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "support/support.h"

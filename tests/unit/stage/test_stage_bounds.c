@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "convert/model/model_build.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/noh.h"

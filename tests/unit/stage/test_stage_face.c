@@ -1,8 +1,8 @@
 /* Faces of actors: eyes that meet what is looked at, whatever clips do to head and body; nothing that stands still but
  * what is calm; bytes, states and jobs. */
 #include "support/stage_fixture.h"
-#include "life/face/identity.h"
-#include "stage/cast/stage_face.h"
+#include "life/face/identity_internal.h"
+#include "stage/cast/stage_face_internal.h"
 
 #include <math.h>
 

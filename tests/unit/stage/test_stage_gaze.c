@@ -1,7 +1,7 @@
 /* Gazes and hands on a stage: a walking puppet looks at a point of the world and holds on to another; its state is the
  * stage's; where there is a face, head and eyes are the face's. */
 #include "support/stage_fixture.h"
-#include "life/physics/ragdoll_rig.h"
+#include "life/physics/ragdoll_rig_internal.h"
 
 #include <math.h>
 #include "noh/low_core.h"

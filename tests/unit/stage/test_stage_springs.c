@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "support/stage_fixture.h"
-#include "stage/cast/springs.h"
+#include "stage/cast/springs_internal.h"
 
 #define SLEEVES 2u
 #define CAST 6u

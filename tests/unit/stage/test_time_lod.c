@@ -8,9 +8,9 @@
 #include "support/clip_set_fixture.h"
 #include "core/base/math_internal.h"
 #include "support/raw_play.h"
-#include "motion/anim/tracks.h"
-#include "stage/character/time_lod.h"
-#include "stage/character/time_lod_points.h"
+#include "motion/anim/tracks_internal.h"
+#include "stage/character/time_lod_internal.h"
+#include "stage/character/time_lod_points_internal.h"
 
 /* ---- evenness ---- */
 

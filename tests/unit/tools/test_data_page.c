@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "support/support.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
 typedef struct scene {

@@ -1,4 +1,4 @@
-/* low_core.h: quaternions xyzw in double precision. */
+/* quat.h: quaternions xyzw in double precision. */
 #ifndef NOH_CONVERT_BASE_QUAT_H
 #define NOH_CONVERT_BASE_QUAT_H
 

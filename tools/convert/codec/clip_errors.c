@@ -4,9 +4,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/character/joint_lod.h"
-#include "stage/character/time_lod.h"
-#include "stage/character/time_lod_points.h"
+#include "stage/character/joint_lod_internal.h"
+#include "stage/character/time_lod_internal.h"
+#include "stage/character/time_lod_points_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

@@ -1,4 +1,4 @@
-/* low_stage.h: coarser levels of a mesh that can still morph: every target, mixes of targets and frames of clips are poses
+/* lod.h: coarser levels of a mesh that can still morph: every target, mixes of targets and frames of clips are poses
  * that the levels have to follow.
  *
  *   lod_build, lod_free     an ordered list of half-edge collapses, and the levels cut from it

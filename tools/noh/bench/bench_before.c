@@ -9,7 +9,7 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "deform/morph/morph_accumulate_internal.h"
-#include "core/base/compiler.h"
+#include "core/base/compiler_internal.h"
 
 typedef struct before {
     bench_stage *stage;

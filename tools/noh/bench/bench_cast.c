@@ -16,7 +16,7 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "gl/draw/gl_skin_internal.h"
-#include "stage/character/lod.h"
+#include "stage/character/lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

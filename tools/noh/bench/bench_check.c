@@ -6,7 +6,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 typedef struct check {
     bench_stage *stage;

@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 #define SAMPLE_NS 5e6
 #define ATTRIBUTES 9u /* position, normal, tangent */

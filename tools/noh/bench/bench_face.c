@@ -5,7 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "life/face/recipe.h"
+#include "life/face/recipe_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/face.h"

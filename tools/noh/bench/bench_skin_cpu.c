@@ -7,7 +7,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/skin/skin.h"
+#include "deform/skin/skin_internal.h"
 #include "noh/low_core.h"
 
 #define SAMPLE_NS 5e6

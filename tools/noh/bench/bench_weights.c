@@ -4,7 +4,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 /* Target t is active in a frame when it is one of `active` evenly spread ones; the pattern
  * shifts by one each frame, so that large and small targets are all used. */

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "gl/device/gl_api.h"
+#include "gl/device/gl_api_internal.h"
 
 #define SAMPLES 4
 

@@ -7,7 +7,7 @@
 
 typedef struct hearing {
     int live;      /* in one pass, as from a microphone; otherwise a second pass knows the voice from the start */
-    int amplitude; /* by loudness alone (face.h), not by the ear (face.h) */
+    int amplitude; /* by loudness alone, not by the ear (face.h) */
 } hearing;
 
 /* Fills `said` with runs of one shape, each as a phone of that shape, and `track` with frames. Prints an

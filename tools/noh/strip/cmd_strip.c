@@ -10,7 +10,7 @@
 #include "cli/verbs.h"
 #include "convert/pack/pack_strip.h"
 #include "file/pack_file.h"
-#include "stage/character/lod_pack.h"
+#include "stage/character/lod_pack_internal.h"
 
 typedef struct strip_args {
     const char *pack, *output;

@@ -1,5 +1,5 @@
 #include "half_bound.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

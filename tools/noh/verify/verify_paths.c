@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "deform/morph/morph.h"
+#include "deform/morph/morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

@@ -1,0 +1,23 @@
+/* arena_internal.h: the private part of low_core.h. */
+#ifndef NOH_BASE_ARENA_INTERNAL_H
+#define NOH_BASE_ARENA_INTERNAL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "noh/base.h"
+#include "noh/low_core.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Check the address of a block whose bytes are checked later, such as one from a saved game.
+ * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN (where: the misalignment in bytes); need: as given */
+noh_result noh_arena_check(const void *memory, size_t need, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,23 @@
+/* pack_internal.h: the private part of pack.h. */
+#ifndef NOH_PACK_PACK_INTERNAL_H
+#define NOH_PACK_PACK_INTERNAL_H
+
+#include "noh/base.h"
+#include "noh/low_core.h"
+#include "noh/pack.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Check the chunk of the n-th graph: counts, arrays, names, nodes. noh_pack_open checks only its checksum;
+ * noh_pack_graph_at (graph.h) calls this function.
+ * ranges  index below the pack's count of graphs
+ * errors  DATA the chunk is damaged (where: the byte in the pack) */
+noh_result noh_pack_check_graph(const noh_pack *pack, uint32_t index, noh_error *error);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,20 @@
+/* ik_chain_internal.h: the private part of body.h. */
+#ifndef NOH_SIM_IK_CHAIN_INTERNAL_H
+#define NOH_SIM_IK_CHAIN_INTERNAL_H
+
+#include <stdint.h>
+
+#include "noh/body.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define NOH_IK_LIMIT_SWING 1u
+#define NOH_IK_LIMIT_TWIST 2u
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,54 @@
+/* lod_internal.h: the private part of low_stage.h. */
+#ifndef NOH_CHARACTER_LOD_INTERNAL_H
+#define NOH_CHARACTER_LOD_INTERNAL_H
+
+#include "noh/base.h"
+#include "noh/low_stage.h"
+#include "noh/noh.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+NOH_STATIC_ASSERT(sizeof(noh_lod) == 32, lod);
+
+/* The depth of a box's nearest corner, in world units; below 0: behind the camera.
+ * shapes  view_projection[16] column-major, of a perspective camera (clip w is the depth); world[12] rows of 3 x 4;
+ *         box[6]: smallest x, y, z, largest x, y, z (noh_mesh_box, noh_skin_box) */
+float noh_lod_depth(const float view_projection[16], const float world[12], const float box[6]);
+
+/* Check a table once before using it.
+ * errors  DATA a count is 0, or an error is negative, not finite, or below the previous level's (where: the level); ARG
+ *         a level count is over the limit, or an array is NULL */
+noh_result noh_lod_table_check(const noh_lod_table *table, noh_error *error);
+
+/* Check settings.
+ * errors  ARG `what` names the field */
+noh_result noh_lod_settings_check(const noh_lod_settings *settings, noh_error *error);
+
+/* One draw of a dithered fade: a level and its share of the pixels, as in noh_gl_lod. */
+typedef struct noh_lod_part {
+    uint32_t level;
+    float from, to;
+} noh_lod_part;
+
+/* Get the draws of a frame: one part with all pixels or, during a fade, the new level and the old one. Returns their
+ * number. */
+uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2]);
+
+/* The finest level drawn from now to the end of the fade: for noh_gl_morph_set_lod. */
+uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock);
+
+/* Drop morph targets with effects too small to see: the smallest |weight| * radius first, while the sum is within the
+ * share of targets. Sets d->skipped_m to the sum. Takes two passes over the weights if all can be dropped, at most 33.
+ * shapes   weights[count]; radius_m[count]: the largest displacement by each target at weight 1; kept[count]: the
+ *          weights, 0 if dropped; may be `weights`
+ * returns  the number of nonzero weights kept; NaN is kept */
+uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m,
+                         uint32_t count, float *kept);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
