@@ -2,7 +2,7 @@
 # check_rooms.sh: the rooms of runtime/, the public headers in runtime/noh, and the order in which they include and call.
 #   - a room includes and calls only itself and the rooms in front of it (tools/docs/rooms.sh order); each public header
 #     belongs to a room (tools/docs/rooms.sh headers)
-#   - public headers include nothing private
+#   - public headers include nothing private; private ones end in _internal.h or _template.h, and name themselves
 #   - the folders of all rooms have an order, too: no two include each other, however indirectly
 #   - GL headers are included in gl/ alone; nothing else from outside but the compiler's own headers
 #   - a folder has at most fifty files
@@ -54,6 +54,13 @@ echo "# folders, each including only from those before it: $(tr '\n' ' ' <"$work
 grep -Hn '^ *# *include *<' runtime/*/*.[ch] runtime/*/*/*.[ch] 2>/dev/null |
     grep -v '<\(stddef\|stdint\|float\|string\|emmintrin\|immintrin\|arm_neon\)\.h>' >"$work/system"
 check 'only gl/ includes GL headers, nothing else is included' sh -c '! grep -v "^runtime/gl/.*<GLES[23]*/" "$1"' - "$work/system"
+
+find runtime -name '*.h' ! -path 'runtime/noh/*' | grep -v '_internal\.h$\|_template\.h$' >"$work/public_looking"
+check 'private headers end in _internal.h or _template.h' sh -c '! grep . "$1"' - "$work/public_looking"
+find runtime tools tests platform -name '*.h' | while read -r header; do
+    sed -n "1s|^/\* \([a-z0-9_]*\.h\):.*|\1|p" "$header" | grep -vx "$(basename "$header")" | sed "s|^|$header says |"
+done >"$work/misnamed"
+check 'a header that begins with a name begins with its own' sh -c '! grep . "$1"' - "$work/misnamed"
 
 for folder in runtime/*/*/; do
     [ "$(find "$folder" -type f | wc -l)" -le 50 ] || echo "$folder: $(find "$folder" -type f | wc -l) files"

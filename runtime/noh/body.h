@@ -38,6 +38,8 @@ typedef struct noh_ray {
  * source   Amanatides, Woo: A fast voxel traversal algorithm, 1987 (the ray's walk through cells)
  * Threads: read-only; any number of threads. */
 
+#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
+
 /* Solid below: points with normal . x < distance are inside. */
 typedef struct noh_plane {
     float normal[3]; /* unit */
@@ -188,15 +190,15 @@ typedef struct noh_haircut {
 /* ======== levels of a terrain ========
  * A height field in square blocks, each drawn at the coarsest level that its screen error allows.
  *
- *   noh_terrain_lod_size, noh_terrain_lod_init   compute the error of each level of each block
- *   noh_terrain_lod_choose                       choose a level for each block, by its error in pixels
- *   noh_terrain_lod_block                        how to draw a block
  *
  * A block has NOH_TERRAIN_BLOCK cells per side; level k uses every 2^k-th height. Along an edge to a coarser block the
  * finer one uses only the coarser one's heights, so that there is no crack between any two levels. Cells are split from
  * the corner of the next row to the corner of the next column.
  * source   de Boer: Fast Terrain Rendering Using Geometrical MipMapping, 2000 (levels by the error of blocks)
  * Threads: pure functions of their arguments; a block of memory belongs to one thread at a time. */
+
+#define NOH_TERRAIN_BLOCK 32u
+#define NOH_TERRAIN_LEVELS 6u /* the last has one cell per block */
 
 typedef struct noh_terrain_lod {
     noh_field field;       /* a view: heights are used in place */
@@ -208,6 +210,8 @@ typedef struct noh_terrain_lod {
 } noh_terrain_lod;
 
 /* ======== fixed steps ======== */
+
+#define NOH_GRAVITY 9.82f /* metres per second squared */
 
 /* ---- time ---- */
 
@@ -248,6 +252,8 @@ typedef struct noh_steps {
  *          Dullweber, Leimkuhler, McLachlan: Symplectic splitting methods for rigid body molecular dynamics, 1997;
  *          Catto: Iterative Dynamics with Temporal Coherence, 2005 (impulses of contacts)
  * Threads: a body belongs to one thread at a time. */
+
+#define NOH_RIGID_STEP_TICKS 80u /* 1/600 s */
 
 typedef struct noh_rigid_desc {
     float half[3];     /* half the box's sides, 0..: all 0 a ball; 0, 0, z a capsule */
@@ -306,6 +312,15 @@ int noh_rigid_sleeps(const noh_rigid *body);
 /* Move the origin: each point p of its space becomes p + by, metres. Precise to what floats at the new place can
  * hold. */
 void noh_rigid_shift(noh_rigid *body, const float by[3]);
+
+/* Collide a point mass, moved by noh_point_move, with a world. It leaves an overlap by the depth that its velocity
+ * caused, and any further depth at NOH_PUSH_OUT_SPEED. Its velocity towards an obstacle is reversed by the world's
+ * restitution; its velocity along it is reduced by friction. For noh_verlet_move: velocity = (position - before) /
+ * seconds, and afterwards before = position - seconds * velocity. Use it for the ends of springs and rods
+ * (noh_distance_keep).
+ * ranges   radius 0.., seconds above 0: of the preceding move
+ * returns  whether it touched something */
+int noh_point_touch(const noh_world *world, float radius, float position[3], float velocity[3], float seconds);
 
 /* ======== the height field of a pack ========
  * The height field in a pack, used in place.
@@ -431,6 +446,9 @@ typedef struct noh_gaze_rig {
  *          manipulators, 1991 (CCD); Aristidou, Lasenby: FABRIK, Graphical Models 73, 2011; Buss: Introduction to
  *          inverse kinematics with Jacobian transpose, pseudoinverse and damped least squares methods, 2004
  * Threads: no state; any thread. */
+
+#define NOH_IK_LIMIT_SWING 1u
+#define NOH_IK_LIMIT_TWIST 2u
 
 typedef enum noh_ik_solver { NOH_IK_CCD = 0, NOH_IK_FABRIK, NOH_IK_DLS } noh_ik_solver;
 

@@ -33,7 +33,7 @@ typedef struct noh_transform {
 #define NOH_SPEED_ONE 65536 /* speeds are 16.16 fixed point: clip ticks per tick */
 #define NOH_SPEED_MAX (256 * 65536)
 #define NOH_DURATION_MAX 0x7fffffffu        /* ticks: 12.4 hours */
-#define NOH_POSITION_MAX ((int64_t)1 << 60) /* 11 years at speed one; larger positions are rebased: noh_time_rebase */
+#define NOH_POSITION_MAX ((int64_t)1 << 60) /* 11 years at speed one; larger positions are rebased */
 
 typedef enum noh_loop {
     NOH_LOOP_OF_CLIP = 0, /* in descs only: the clip's own mode */
@@ -93,7 +93,7 @@ typedef struct noh_clip_entry {
  * these by the clip's compression error. */
 typedef float noh_root_ends[2][7];
 
-/* Root displacement of one clip; made by noh_root_track_measure (low_motion.h). */
+/* Root displacement of one clip; measured when a clip bank is opened. */
 struct noh_root_track;
 
 /* Sample a clip: fill pose[joint_count] with its first joints, and floats[float_count].
@@ -143,6 +143,15 @@ typedef enum noh_track_mode {
  * is `lod_levels`.) */
 typedef enum noh_track_group { NOH_GROUP_LOW = 0, NOH_GROUP_HIGH } noh_track_group;
 
+#define NOH_TRACK_SILENT 1u          /* starts at weight 0, to be faded in */
+#define NOH_TRACK_PAUSED 2u          /* starts at speed 0 */
+#define NOH_TRACK_ADDITIVE 4u        /* its difference from a reference pose is added after the blend */
+#define NOH_TRACK_REFERENCE_START 8u /* the reference is the clip's own pose at tick 0, not the bind pose */
+#define NOH_TRACK_TURNS 16u          /* in noh_track only: plays ping-pong although its clip does not */
+/* in noh_track only: covers part of the bind pose that the other tracks leave visible */
+#define NOH_TRACK_RISES 32u
+#define NOH_TRACK_FLAGS (NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)
+
 /* How a track starts. All zeros play clip 0 from its start. */
 typedef struct noh_track_desc {
     uint32_t clip;          /* index in the set; default 0 */
@@ -172,7 +181,7 @@ typedef struct noh_track {
     uint8_t loop, mode, group, sync_group, lod_levels, flags;
     uint8_t placed;     /* 1: not moved since it was started or sought */
     uint16_t reference; /* ADDITIVE: 1 + index of the clip whose first frame is the reference; 0: as its flags say */
-    /* how much a track of the low group covers the bind pose (noh_track_cover), -1..NOH_WEIGHT_MAX. 0 (default): fully,
+    /* how much a track of the low group covers the bind pose, -1..NOH_WEIGHT_MAX. 0 (default): fully,
      * at any weight. Above 0: fully at this weight and proportionally below it, so a track that plays alone can fade.
      * Below 0: by -full, at any weight. May be set */
     float full;
@@ -191,6 +200,10 @@ typedef struct noh_track {
  *   MODE               switches at the start tick; its duration must be 0
  *
  * Threads: a table belongs to the thread of its controller. */
+
+#define NOH_CURVE_JUMP 2u /* a seek that fires the keys it passes: linear, one tick long, no root motion */
+
+#define NOH_CHANGE_SLICES 64
 
 typedef enum noh_change_kind {
     NOH_CHANGE_SPEED = 0,
@@ -235,6 +248,14 @@ typedef struct noh_change_desc {
  *
  * Threads: a controller belongs to one thread at a time. The set is only read, so several threads may step controllers
  * of one set. */
+
+#define NOH_CONTROLLER_INERTIAL 1u /* reserve memory for inertial transitions: 48 bytes per joint, 8 per float */
+/* the last step passed more than NOH_STEP_EVENTS_MAX keys; the rest were not delivered */
+#define NOH_CONTROLLER_EVENTS_CUT 2u
+/* Weights with a sum below 1 cover only partly: the high group covers the pose of the low group, and floats cover their
+ * defaults. So a group fades in and out with the weights of its tracks. Without this flag weights are relative. Weights
+ * of joints in the low group are always relative. */
+#define NOH_CONTROLLER_COVERS 4u
 
 /* Memory: 80 bytes, 48 per track and 32 per change; with NOH_CONTROLLER_INERTIAL 48 more per joint and 8 per float. */
 typedef struct noh_controller_desc {
@@ -342,6 +363,9 @@ uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_
  * NOH_STEP_EVENTS_MAX. */
 uint32_t noh_controller_events_max(const noh_controller *c, const noh_clip_set *set, uint32_t ticks);
 
+/* Bytes to copy to clone or save a controller. Align the copy to NOH_MEMORY_ALIGN too. */
+size_t noh_controller_bytes(const noh_controller *c);
+
 /* ======== root motion ======== */
 
 #define NOH_ROOT_X 1u
@@ -417,7 +441,7 @@ typedef struct noh_mask_view {
  *. */
 
 /* Working memory for posing. It holds no state between calls, so instances of a set that are posed one after another
- * share it. The exception: between noh_controller_inertia_capture and _begin it holds the captured poses. */
+ * share it. The exception: while an inertial transition begins it holds the captured poses. */
 typedef struct noh_pose_scratch {
     noh_blend blend;
     noh_transform *sample;             /* [joint_count] */
@@ -645,7 +669,7 @@ uint32_t noh_clip_bank_find(const noh_clip_bank *bank, const char *name);
 /* Get the morph weights of a mesh in the floats of a pose, as of the first node that draws it, for noh_morph_accumulate
  * and noh_gl_morph_set_weights.
  * shapes   floats[clips.float_count] of a pose; the result [the mesh's target_count] points into floats
- * returns  NULL if noh_clip_bank_mesh_group is NOH_NONE: the mesh keeps its defaults */
+ * returns  NULL if no clip of the bank has weights for the mesh: it keeps its defaults */
 const float *noh_clip_bank_mesh_weights(const noh_clip_bank *bank, const float *floats, uint32_t mesh);
 
 /* Request the segments that a controller's tracks need now and within the next ahead_ticks, assuming that position,

@@ -57,6 +57,11 @@ extern "C" {
  *          and modeling, 1993 (speed by slope)
  * Threads: a crowd belongs to one thread at a time; only noh_crowd_job may be called from several at once. */
 
+/* The agent steers only by the rules of low_stage.h: neighbours and obstacles repel it. FLOCK: it also moves along with its
+ * neighbours. */
+#define NOH_CROWD_FORCES 2u
+#define NOH_CROWD_FLOCK 6u
+
 #define NOH_CROWD_STEP_TICKS 1600u /* 1/30 s */
 
 /* An obstacle: a wall with rounded ends, or a post if `from` and `to` are equal. */

@@ -21,7 +21,7 @@ extern "C" {
  * that any target moves. For each target, in index order, and each of its delta texels:
  *   layer += weight * delta
  * with one product and one sum per value, never fused. noh_morph_accumulate uses the instructions that the library was
- * compiled for (AVX2, SSE2, NEON, else scalar); noh_morph_kernel_find queries the processor for more. All give the
+ * compiled for (AVX2, SSE2, NEON, else scalar); with gcc and clang on x86 the processor is queried for AVX2. All give the
  * scalar bits.
  *
  * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
@@ -30,6 +30,8 @@ extern "C" {
  *         Granberg, Character Animation with Direct3D, 2009, chapter 8 (whose listing indexes the weights by vertex)
  *
  * Threads: no state; any thread, each with its own layers. */
+
+#define NOH_MORPH_GROUP 16u /* size of an aligned group of consecutive accumulation texels */
 
 /* Accumulated differences of one instance, in model units. The layers are adjacent in memory, each [morph_height <<
  * morph_width_log2][3]. */
@@ -152,6 +154,15 @@ void noh_skin_box(const noh_mesh *mesh, const float *matrices, const float *weig
 /* Compute for each joint the box of the vertices that it moves, as if it alone moved them; empty if it moves none.
  * shapes  boxes[skin's joint_count][6] */
 void noh_skin_joint_boxes(const noh_mesh *mesh, const float *matrices, const float *weights, float *boxes);
+
+/* Increase joint radii to contain a mesh: each becomes at least the distance of the farthest corner of the joint's box
+ * (noh_mesh.joint_boxes), extended by the targets' boxes, in the joint's space. Start with -1 for every joint and add
+ * each drawn mesh. A rigid mesh adds nothing. The radii hold for linear blend skinning; dual quaternions may exceed
+ * them slightly.
+ * shapes  weights[target_count]: the expected weight farthest from 0 of each target, all at once; NULL: 1 each;
+ *         joint_radius_m[joint_count of the skin's skeleton]
+ * units   the units of the joints' matrices */
+void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float *joint_radius_m);
 
 /* ======== skins by dual quaternions ========
  * Skinning that keeps volume where joints twist.

@@ -63,7 +63,7 @@ typedef enum noh_activity {
 #define NOH_FACE_NO_BREATH 8u
 #define NOH_FACE_NO_IDLE 16u
 /* Granberg's controller of four channels: one blink at even intervals, spontaneous emotions one at a time, two mouth
- * shapes (noh_face_four); gaze, breath and head are unchanged */
+ * shapes; gaze, breath and head are unchanged */
 #define NOH_FACE_FOUR 32u
 #define NOH_FACE_FLAGS 63u
 
@@ -162,11 +162,14 @@ void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
 
 void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose);
 
+/* Advance time while the face is not visible, at constant cost. It ends at rest, with the same gaze target and
+ * emotions; blinks, breaths and glances come at other times than with noh_face_step. */
+void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
+
 /* ======== recipes ========
  * Maps what a face shows to the morph targets of its mesh.
  *
  *   noh_face_channels       a pose and speech as one number per channel
- *   noh_face_share          resolve conflicts over mouth, lids and eyes
  *   noh_face_recipe_bind    bind a recipe's rows to a mesh's targets by name; noh_face_recipe_bind_by: by a function
  *   noh_face_recipe_in_pack an artist's recipe in a pack; noh_face_recipe_of_pack: the same as a table
  *   noh_face_apply          channels to weights
@@ -218,6 +221,13 @@ typedef enum noh_mouth_rule {
     NOH_MOUTH_BLOCK,     /* removes it while speech moves the mouth at all */
     NOH_MOUTH_NONE       /* both add up, except for lips that must close */
 } noh_mouth_rule;
+
+/* How an expression affects another user of the face, like VRM's overrideBlink, overrideLookAt and overrideMouth. */
+typedef enum noh_override {
+    NOH_OVERRIDE_NONE = 0, /* both add up */
+    NOH_OVERRIDE_BLOCK,    /* removes the other as soon as the expression shows */
+    NOH_OVERRIDE_BLEND     /* reduces the other by as much as the expression shows */
+} noh_override;
 
 /* Conflict rules for mouth, lids and eyes. Zeros: speech reduces an emotion's mouth by as much as it moves the mouth,
  * and an emotion leaves blinks, looks and speech unchanged. Whatever the rules, lips closed by p, b, m, f or v stay
@@ -436,6 +446,8 @@ int noh_ear_next(noh_ear *ear, noh_ear_frame *frame);
  * Threads  read-only after init: any number of threads
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 9, where every person has a copy of every target,
  *          with weights that are independent and uniformly distributed */
+
+#define NOH_IDENTITY_NONE 0xffffu
 
 #define NOH_IDENTITY_CLOSINGS 4u /* most targets whose closing is tracked */
 

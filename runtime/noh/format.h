@@ -28,7 +28,7 @@ extern "C" {
 
 /* All types of chunks, in their order in a pack: no chunk refers to a later one. The reader, the checkers and the
  * converter use this list; the guide explains how to add a type.
- * X(NAME, name, tag, many): many is 1 if a pack may have several; the checker is noh_check_ and the name */
+ * X(NAME, name, tag, many): many is 1 if a pack may have several */
 #define NOH_CHUNKS(X)                                            \
     X(STRINGS, strings, NOH_FOURCC('S', 'T', 'R', 'S'), 0)       \
     X(TEXTURE, texture, NOH_FOURCC('T', 'X', 'T', 'R'), 1)       \
@@ -458,10 +458,10 @@ typedef struct noh_clip_header {
      * counted. */
     float update_rate_error[NOH_CLIP_UPDATE_RATES];
     /* 0: the errors are for the meshes that the clip was built with. joint_errors bound all points no farther from a
-     * joint than the farthest vertex that it moves with a weight of 0.05 or more (noh_joint_lod_measure).
+     * joint than the farthest vertex that it moves with a weight of 0.05 or more.
      * update_rate_error is exact for a few hundred vertices, including the farthest of each joint, and does not bound
      * points between them (noh_time_lod_points_measure). Above 0: built without meshes; both bound points at this
-     * distance from each joint (--shell-cm), in the skeleton's unit (noh_joint_lod_measure, noh_time_lod_measure). */
+     * distance from each joint (--shell-cm), in the skeleton's unit. */
     float error_shell;
     /* The root joint in the source's first and last frame: rotation x, y, z, w, then translation. Root motion uses
      * these because the compression error would add up with each loop. 0 without joints. */

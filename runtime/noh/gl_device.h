@@ -19,7 +19,6 @@ extern "C" {
  *   noh_gl_api_load       fill the table through the caller's lookup function
  *   noh_gl_has_extension  whether the context lists an extension
  *   noh_gl_error_take     return the oldest GL error and clear all
- *   noh_gl_error_check    return pending GL errors as a noh_result
  *
  * The library links no GL: the application makes a context current and passes a lookup function. The table is a plain
  * struct in the caller's memory and belongs to the context. Call through it: `gl->DrawArrays(GL_TRIANGLES, 0, 3)`.
@@ -267,6 +266,13 @@ typedef noh_gl_proc (*noh_gl_get_proc)(void *user, const char *name);
  *         (named by `what`); GL no context is current */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error);
 
+/* Return the oldest pending GL error, or GL_NO_ERROR, and clear the rest. Calls glGetError at most 16 times, because a
+ * lost context may report errors forever. */
+unsigned noh_gl_error_take(const noh_gl_api *api);
+
+/* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
+int noh_gl_has_extension(const noh_gl_api *api, const char *name);
+
 /* ======== what a GPU can do ========
  * Capabilities of a context.
  *
@@ -381,6 +387,9 @@ typedef struct noh_gl_device {
     char *log; /* [log_bytes] receives compile errors of shaders, as in noh_gl_program_create; NULL: no log */
     size_t log_bytes;
 } noh_gl_device;
+
+/* The bytes of all existing objects. */
+uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
 
 /* ======== GL for a program ========
  * GL as a program needs it, in one object: functions, capabilities, a ledger of bytes, a log of shaders.

@@ -25,6 +25,20 @@ typedef struct noh_blend_space_2d {
 
 /* ======== graphs ======== */
 
+#define NOH_GRAPH_NONE 0xffffu
+
+typedef enum noh_node_kind {
+    NOH_NODE_CLIP = 0,
+    NOH_NODE_BLEND,
+    NOH_NODE_ADD,
+    NOH_NODE_MASK,
+    NOH_NODE_SPACE_1D,
+    NOH_NODE_SPACE_2D,
+    NOH_NODE_MACHINE,
+    NOH_NODE_SELECT,
+    NOH_NODE_ONE_SHOT
+} noh_node_kind;
+
 typedef struct noh_graph_node {
     uint16_t kind;
     uint16_t first_child, child_count; /* in the graph's children */
@@ -59,7 +73,7 @@ typedef struct noh_graph_transition {
 /* Shared by all instances; borrowed and constant. */
 typedef struct noh_graph {
     uint32_t node_count, child_count, clip_count;
-    uint32_t machine_count; /* number of MACHINE, SELECT and ONE_SHOT nodes, each with a noh_machine */
+    uint32_t machine_count; /* number of MACHINE, SELECT and ONE_SHOT nodes */
     uint32_t transition_count, threshold_count, space_count, param_count;
     const noh_graph_node *nodes; /* [node_count] */
     const uint16_t *children;    /* [child_count] indices of nodes */

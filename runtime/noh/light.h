@@ -121,6 +121,8 @@ void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh
  *          refraction through rough surfaces, EGSR 2007 (GGX)
  * Threads: no state; any thread. */
 
+#define NOH_REFLECTION_LEVELS 5u
+
 typedef struct noh_reflection {
     uint32_t side;          /* texels of a face of level 0 */
     const uint32_t *texels; /* [noh_reflection_size(side) / 4] */

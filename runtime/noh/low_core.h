@@ -19,7 +19,6 @@ extern "C" {
  * An arena without a block only measures, so the same code carves an object and computes its size.
  *
  *   noh_arena_open      the block of an init, checked
- *   noh_arena_check     checks an address for a block
  *   noh_arena_over      a block known to be valid
  *   noh_arena_measure   no block: count only
  *   noh_arena_carve     the next bytes
@@ -156,6 +155,8 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
  * heading never drifts.
  * Threads: no state; any thread. */
 
+#define NOH_PI 3.14159265358979f
+
 /* Sine and cosine of an angle.
  * ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
  * errors  at most 1.2e-7 absolute */
@@ -169,6 +170,28 @@ void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine);
  * ranges  finite
  * errors  at most 4e-7 absolute, 3e-7 relative near 0 */
 float noh_atan2(float y, float x);
+
+/* The angle whose cosine is x, 0 to pi.
+ * ranges  x is clamped to -1..1, because rounding can move a dot product of unit vectors outside
+ * errors  at most 4e-7 */
+float noh_acos(float x);
+
+/* 2 to the power x.
+ * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
+ * errors  at most 2e-7 relative */
+float noh_exp2(float x);
+
+/* The logarithm of x to base 2.
+ * ranges  above 0 and finite; -150 for 0 and below
+ * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
+float noh_log2(float x);
+
+/* Radians to a turn.
+ * ranges  |radians| <= 1e6 */
+uint32_t noh_turn_from_radians(float radians);
+
+/* A turn to radians, -pi to pi. */
+float noh_radians_from_turn(uint32_t turn);
 
 /* ======== packs ======== */
 

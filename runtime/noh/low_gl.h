@@ -56,7 +56,6 @@ void noh_gl_group_end(const noh_gl_api *api);
 /* ======== GL objects ========
  * GL objects with counted bytes.
  *
- *   noh_gl_texel_bytes          bytes of one texel of an internal format
  *   noh_gl_texture_bytes        bytes of a texture with its mip levels
  *   noh_gl_renderbuffer_bytes   bytes of a renderbuffer with its samples
  *   noh_gl_ledger_bytes         bytes of all existing objects
@@ -97,9 +96,6 @@ uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc);
 /* The bytes of a renderbuffer; 0 for invalid arguments. samples 0 and 1 are equal. */
 uint64_t noh_gl_renderbuffer_bytes(unsigned format, uint32_t width, uint32_t height, uint32_t samples);
 
-/* The bytes of all existing objects. */
-uint64_t noh_gl_ledger_bytes(const noh_gl_ledger *ledger);
-
 /* Make a buffer of `bytes` bytes, filled from `data` (NULL: contents undefined). A GL_ELEMENT_ARRAY_BUFFER becomes part
  * of the bound vertex array: bind vertex array 0 first.
  * errors  ARG bytes is 0; LIMIT bytes does not fit a GLsizeiptr; MEMORY GL_OUT_OF_MEMORY (need: `bytes`); GL the driver
@@ -126,6 +122,9 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
  * errors  MEMORY, GL as noh_gl_buffer_create */
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *out, noh_error *error);
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *framebuffer);
+
+/* The bytes of one texel of an internal format; 0 for a block format, or one that noh does not use. */
+uint32_t noh_gl_texel_bytes(unsigned format);
 
 /* ======== GL programs ========
  * Compiling and linking shaders.
@@ -190,7 +189,6 @@ void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigne
  * Workarounds chosen by the renderer's name.
  *
  *   noh_gl_quirk_find   the entry for a renderer, with its reason and source
- *   noh_gl_quirk_table  all entries
  *
  * Capabilities are tested (gl_device.h). Only what cannot be tested is decided by the renderer's name, with this table.
  * To force or disable a quirk, change caps.renderer.
@@ -275,8 +273,6 @@ void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, f
 /* ======== morph targets on the GPU ========
  * Morph targets accumulated on the GPU, for many instances at once.
  *
- *   noh_gl_morph_blocks       blocks of 4 x 4 accumulation texels touched by the targets of a mesh
- *   noh_gl_morph_strips       rows of such blocks
  *   noh_gl_morph_plan_make    choose the path and compute its exact bytes, without GL calls
  *   noh_gl_morph_calibrate    choose the path by measuring at start-up
  *   noh_gl_morph_calibrate_size
@@ -458,6 +454,20 @@ uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint3
  * u_streams  the location of noh_streams in that program: find it once, when the program is linked */
 void noh_gl_morph_bind_streams(const noh_gl_api *api, int u_streams, const noh_gl_morph_binding *binding);
 
+/* Blocks of 4 x 4 accumulation texels touched by each target's rectangles, summed over targets; the unit of work of the
+ * GPU paths. */
+uint32_t noh_gl_morph_blocks(const noh_mesh *mesh);
+
+/* Rows of such blocks, summed over rectangles; each is a quad on the blended paths. */
+uint32_t noh_gl_morph_strips(const noh_mesh *mesh);
+
+/* With desc.coarse: upload the next piece of the delta data of the finest of `meshes`, which is not used yet.
+ * ranges   from: the whole mesh, at the finest level of `meshes` or a finer one; *at: initially 0, then as left by the
+ *          previous call; *bytes: most bytes to send, at least 256 for progress; the bytes sent are subtracted
+ * state    texture 0 of unit 0, the active one
+ * returns  1 once everything is uploaded */
+int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
+
 /* ======== palettes on the GPU ========
  * The joints of skinned meshes on the GPU, for many instances at once.
  *
@@ -466,14 +476,12 @@ void noh_gl_morph_bind_streams(const noh_gl_api *api, int u_streams, const noh_g
  *   noh_gl_skin_delete        delete the GL object
  *   noh_gl_skin_restore       make the GL object again after a lost context
  *   noh_gl_skin_set_matrices  set one instance's joint matrices
- *   noh_gl_skin_write_matrices, noh_gl_skin_touch  set matrices from several threads at once
  *   noh_gl_skin_set_place     set one instance's place in the world and its morph tile, for crowds
  *   noh_gl_skin_set_tint      set one instance's tint, for crowds
  *   noh_gl_skin_set_user      set four floats of one instance, for crowds and your own shaders
  *   noh_gl_skin_update        upload what changed
  *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
  *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
- *   noh_gl_palette_row, noh_gl_joint_rows, noh_gl_normal_rows
  *
  * A palette holds the joints of one draw in rows of four floats: three rows per joint, a 3 x 4 matrix; or, for a mesh
  * with NOH_MESH_DUAL_QUATERNION, four rows: the rotation, the dual part, and two for the stretch. The converter splits
@@ -576,12 +584,13 @@ void noh_gl_skin_update(noh_gl_skin *skin);
 /* The binding of an instance, with `influences` 0; set `influences` to draw with fewer joints per vertex. */
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance);
 
+/* The names "auto", "uniform", "texture". */
+const char *noh_palette_mode_name(noh_palette_mode mode);
+
 /* ======== programs of the plain renderer ========
  * The programs of the plain renderer, one for each type of mesh.
  *
  *   noh_gl_variant_key_of   the key of a mesh with given bindings
- *   noh_gl_variant_key_depth  the key that draws the same depth without colour
- *   noh_gl_variant_defines  the #defines of a key as text
  *   noh_gl_shader_prefix    the text between #version and a shader's own text, for a key
  *   noh_gl_shader_desc      your own shaders instead of mesh.vert and mesh.frag
  *   noh_gl_variant_create   compile a program for a key
@@ -593,6 +602,21 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
  *
  * Threads: the context's own thread; any thread for keys, noh_gl_variant_defines and noh_gl_shader_prefix. */
 
+/* Features of a material; a variant has no cost for others. */
+#define NOH_FEATURE_NORMAL_MAP 1u
+#define NOH_FEATURE_SURFACE_MAP 2u /* occlusion, roughness, metallic */
+#define NOH_FEATURE_EMISSIVE 4u
+#define NOH_FEATURE_SKIN 8u
+#define NOH_FEATURE_EYE 16u
+#define NOH_FEATURE_WRINKLES 32u /* a wrinkle normal map and its three weight maps, read by vertices */
+#define NOH_FEATURE_TEETH 64u
+#define NOH_FEATURE_TOON 128u
+#define NOH_FEATURE_WRINKLE_PIXEL 256u /* with wrinkles: pixels read a mask of regions instead of the weight maps */
+#define NOH_FEATURE_SPECULAR_MAP 512u
+#define NOH_FEATURE_SPECULAR_ROUGHNESS 1024u /* with a specular map: its alpha is roughness */
+
+#define NOH_GL_DEFINES_BYTES 768u
+
 typedef struct noh_gl_variant {
     noh_gl_variant_key key;
     uint8_t has_camera; /* 1: its program has the camera of this pass */
@@ -601,20 +625,6 @@ typedef struct noh_gl_variant {
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
         u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
 } noh_gl_variant;
-
-/* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
-#define NOH_UNIT_LAYERS 0u
-#define NOH_UNIT_BASE_COLOR 1u
-#define NOH_UNIT_PALETTES 2u
-#define NOH_UNIT_NORMAL 3u
-#define NOH_UNIT_SURFACE 4u
-#define NOH_UNIT_EMISSIVE 5u
-#define NOH_UNIT_WRINKLE 6u
-#define NOH_UNIT_WRINKLE_WEIGHTS 7u /* and the next two */
-#define NOH_UNIT_SHADOW 10u
-#define NOH_UNIT_ENVIRONMENT 11u
-#define NOH_UNIT_SPECULAR 12u
-#define NOH_UNIT_USER 13u /* the first unit for a game's own shaders */
 
 /* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have no features. */
 uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
@@ -651,6 +661,9 @@ void noh_gl_variant_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_
 void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, const noh_mesh *mesh,
                          const noh_gl_skin_binding *skin, uint32_t palette);
 
+/* Write the key as lines of #define, zero-terminated. */
+void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYTES]);
+
 /* ======== meshes and a plain renderer ========
  * Meshes on the GPU, and a plain renderer for them.
  *
@@ -665,7 +678,7 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *   noh_gl_draw_tint         the tint of the next meshes; noh_gl_draw_wrinkles, their wrinkles; noh_gl_draw_user,
- *                            values for your own shaders; noh_gl_draw_triangles, a part of their triangles;
+ *                            values for your own shaders;
  *                            noh_gl_draw_priority, a part of their blended submeshes; noh_gl_next_priority
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the textures of glTF materials. A
@@ -673,6 +686,8 @@ void noh_gl_variant_skin(const noh_gl_api *api, const noh_gl_variant *variant, c
  * with its own renderer needs only noh_gl_mesh, a noh_gl_morph_binding, a noh_gl_skin_binding and noh_gl_shader_prefix.
  *
  * Threads: the context's own thread; any thread for noh_gl_mesh_bytes, noh_gl_mesh_lod and noh_gl_picture_bytes. */
+
+#define NOH_PRIORITY_ANY 1000
 
 /* Attribute locations of a noh_gl_mesh's vertex array. */
 #define NOH_ATTRIBUTE_POSITION 0u   /* vec3 */
@@ -793,8 +808,6 @@ typedef struct noh_gl_renderer {
     noh_gl_variant *variants; /* [variant_count] in the memory passed to create */
 } noh_gl_renderer;
 
-#define NOH_GL_RENDERER_BYTES 4u /* the white texel */
-
 /* The bytes of memory for the variants of a desc: a type of mesh needs 2 to 8 variants for each type of material on it,
  * and twice as many with fades or depth. 0: more than NOH_GL_VARIANTS_MAX variants, or the desc is invalid. */
 size_t noh_gl_renderer_size(const noh_gl_renderer_desc *desc);
@@ -892,6 +905,21 @@ void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const
 
 /* End drawing: unbind program, vertex array, textures and uniform buffer, and restore render state (gl_device.h). */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
+
+/* Make a mesh without contents, for levels loaded later. Only the headers of `room`, the finest level that may be
+ * loaded, are read, and they must stay. Before drawing, fill it from `mesh`, a coarser level of the same mesh; draws
+ * show no finer level. After filling a finer level, set out->mesh to it, or back again.
+ * errors  as noh_gl_mesh_create */
+noh_result noh_gl_mesh_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room,
+                                    const noh_mesh *mesh, noh_gl_mesh *out, noh_error *error);
+
+/* Upload the next piece of a mesh and all its coarser levels, possibly from another pack than `room`. Data shared by
+ * levels is overwritten with equal bytes, so the mesh may be drawn meanwhile. Leaves vertex array 0 bound.
+ * ranges   *at: initially 0, then as left by the previous call; *bytes: most bytes to send, at least 64 for progress;
+ *          the bytes sent are subtracted
+ * returns  1 once everything is uploaded */
+int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_mesh *from, uint64_t *at,
+                     uint32_t *bytes);
 
 #ifdef __cplusplus
 }

@@ -89,6 +89,10 @@ void noh_segments_closest(const float a_from[3], const float a_to[3], const floa
  *          Dynamics, 2020; Macklin et al.: Small Steps in Physics Simulation, 2019
  * Threads: a set belongs to one thread at a time. */
 
+#define NOH_RAGDOLL_HINGE 1u  /* rotates about z of its frame only: twist is the angle, there is no swing */
+#define NOH_RAGDOLL_SLIDES 2u /* slides within linear_min..linear_max; else the anchors coincide */
+#define NOH_RAGDOLL_LOOSE 4u  /* no limits of swing and twist: a ball joint */
+
 #define NOH_RAGDOLL_STEP_TICKS 800u /* 1/60 s, each divided into desc.substeps */
 
 /* ---- sets ---- */
@@ -184,6 +188,13 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
  * their volumes and the height. Angles count from the bind pose.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 7, whose boxes are sized by hand
  * Threads: no state; any thread. */
+
+/* Direction of a bone as it bends. */
+typedef enum noh_ragdoll_toward {
+    NOH_RAGDOLL_FORWARD = 0,
+    NOH_RAGDOLL_BACKWARD,
+    NOH_RAGDOLL_UPWARD
+} noh_ragdoll_toward;
 
 /* A body: it begins at a joint and includes all joints below it that have no row of their own. */
 typedef struct noh_ragdoll_row {
@@ -301,8 +312,6 @@ void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *
  *   noh_hair_reset                 back to rest, after the head was teleported
  *   noh_hair_step                  advance time
  *   noh_hair_points                positions of the points
- *   noh_hair_check                 check hair from outside
- *   noh_hair_curve                 a point between the points of a control hair
  *
  * Everything is in the head's space, in metres: rest positions, the spheres that represent the head, and results. So
  * hair turns with the head through any angle; motion of the head acts as inertia. Each hair follows its root: every
@@ -355,9 +364,6 @@ void noh_hair_points(const noh_hair *hair, const noh_hair_desc *desc, float *poi
  * The hair in a pack: control hairs, and the strips drawn between them.
  *
  *   noh_haircut_open     the haircut of a pack
- *   noh_haircut_strips   the number of strips to draw at a screen size
- *   noh_haircut_fade     opacity of strips over painted hair
- *   noh_haircut_vertex   a vertex of a strip, as in the vertex shader
  *
  * A strip lies in a patch of four control hairs, at some point between their curves. Its place, length and curl follow
  * from its number alone: the GPU receives the control hairs, and no data per strip.
@@ -544,6 +550,17 @@ void noh_ragdoll_motions_of(const noh_ragdoll_pose *before, const noh_ragdoll_po
 void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleton, const noh_ragdoll_frame *frame,
                          const noh_ragdoll_pose *bodies, const float *weights, noh_transform *local);
 
+/* Compare how the first bodies of two dolls lie (on the front, back or side, or upright), whatever their place and
+ * heading. Returns the cosine of the angle between their up directions: 1 equal, -1 opposite. */
+float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b);
+
+/* Place and turn a character so that its pose lies where a doll does: the first bodies above each other, the others on
+ * the same side. Turns about +Y only, and keeps the frame's height.
+ * shapes  pose[count] the character's bodies, from noh_ragdoll_from_pose with *frame; doll[count]; frame: read and
+ *         changed */
+void noh_ragdoll_place_under(const noh_ragdoll_pose *pose, const noh_ragdoll_pose *doll, uint32_t count,
+                             noh_ragdoll_frame *frame);
+
 /* ======== springs ========
  * A swinging chain of joints: hair, sleeves, skirts, tails.
  *
@@ -552,7 +569,6 @@ void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleto
  *   noh_spring_step                    advance time, for any number of chains
  *   noh_spring_rotations               local rotations of the joints
  *   noh_spring_ends                    ends of the joints
- *   noh_spring_check                   check a spring from outside
  *
  * Each joint's end is a point with inertia, pulled towards its rest direction, at a fixed distance from the joint. At
  * any frame rate it moves like the reference implementation of VRMC_springBone 1.0 at 60 Hz: the chain advances

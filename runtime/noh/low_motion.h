@@ -13,6 +13,12 @@
 extern "C" {
 #endif
 
+/* Upper bound on the events of one step if every track plays the worst clip of a set. Use it for budgets and queues
+ * before anything plays. Allows for one change of direction per step. Saturates at NOH_STEP_EVENTS_MAX.
+ * ranges  |speed| of every track at most speed_max (1/65,536), a step at most step_ticks_max */
+uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
+                                 uint32_t step_ticks_max);
+
 /* ======== time ========
  * Integer time that does not drift.
  *
@@ -23,14 +29,12 @@ extern "C" {
  *
  *   noh_ticks_from_seconds   seconds to ticks
  *   noh_frame_clock_advance  ticks of a frame, without drift
- *   noh_time_advance         position after a number of ticks
- *   noh_time_clip            position inside the clip, folded by the loop mode
- *   noh_time_legs            number of durations passed
- *   noh_time_rebase          an equivalent position of small magnitude
  *
  * All functions accept every argument; results that would overflow are clamped to their range.
  *
  * Threads: pure functions of their arguments; any thread. */
+
+#define NOH_FRAME_SECONDS_MAX 3600.0
 
 /* Convert a frame's seconds to ticks, for noh_stage_step and similar calls. Summed over frames, the ticks are the
  * nearest to the sum of the seconds. Long pauses, such as in a debugger, are not caught up.
@@ -73,6 +77,8 @@ uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip,
  * source  Granberg 2009, chapter 16, names root motion; adding its displacements in floats drifts
  *
  * Threads: pure functions; those that call the set's `sample` may run where it may (clip.h). */
+
+#define NOH_ROOT_SEAM_TICKS 200u /* 1/240 s: less than a frame, so no position is off by more than its clip's error */
 
 /* Split the root joint's transform: extract returns E, with the heading relative to the model's axes; remove leaves the
  * transform without E. */
@@ -294,8 +300,6 @@ void noh_event_queue_clear(noh_event_queue *queue);
  *   noh_clip_size      the bytes that noh_clip_init needs
  *   noh_clip_init      check a clip and expand its header
  *   noh_clip_info_of   counts, duration and certificate
- *   noh_clip_group_at  a group of its floats
- *   noh_clip_frame_at  frame and fraction of a time
  *
  * Threads: an open clip is read-only; any number of threads may share it. */
 
@@ -362,7 +366,6 @@ void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
  * decodes all of it.
  *
  *   noh_clip_cache_size, _init                    for clips that are open
- *   noh_clip_cache_needs_add, _needs_size         the size for clips that are not open yet
  *   noh_clip_cache_begin_frame, _want, _want_frames, _work   decode ahead
  *   noh_clip_sample                               a pose
  *   noh_clip_cache_stats_of, _capacity, _holds_all, _clip   statistics and contents
@@ -374,6 +377,10 @@ void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
  * its clips: segments are sorted into size classes (four per doubling), and each class has as many entries as it has
  * segments among those n, each entry as large as the largest segment of the class. A segment is stored in its own
  * class, or in the next larger class with a free entry. */
+
+/* Most segments that a playing track needs when it looks ahead by up to one segment: its current segment, the next one,
+ * and the previous one, used for root motion across their border. */
+#define NOH_CLIP_CACHE_SEGMENTS_PER_TRACK 3u
 
 typedef struct noh_clip_cache_desc {
     const noh_clip *const *clips; /* [clip_count], copied; the clips must outlive the cache */
@@ -460,6 +467,9 @@ noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *
 /* Sample a pose; bit-identical to noh_clip_sample. */
 void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
                           float *floats);
+
+/* Get the view's own statistics (evictions stays 0). */
+noh_clip_cache_stats noh_clip_view_stats_of(const noh_clip_view *view);
 
 /* ======== blend spaces ========
  * Weights of clips placed along one or two parameters.

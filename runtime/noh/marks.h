@@ -117,6 +117,9 @@ noh_result noh_decals_strike(noh_decals *decals, const noh_stage *stage, const n
 
 void noh_decals_step(noh_decals *decals, uint32_t ticks);
 
+/* 0..1, from the age of the decal. */
+float noh_decal_alpha(const noh_decals *decals, uint32_t index);
+
 #ifdef __cplusplus
 }
 #endif

@@ -45,6 +45,8 @@ extern "C" {
  *
  * Threads: as above; noh_actor_modifier on the stage's thread, outside of steps and frames. */
 
+#define NOH_MODIFIER_FULL_DETAIL 1e9f
+
 /* Input and output of a modifier. */
 typedef struct noh_modifier_work {
     noh_actor actor;
@@ -220,6 +222,8 @@ noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
  * errors   of all: NOT_FOUND the actor is gone; ARG its kind has no ragdolls, or a value is out of range
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 7; it leaves hand-over and getting up open */
 
+#define NOH_ACTOR_RAGDOLL_BYTES 1488u
+
 typedef struct noh_kind_ragdoll {
     uint32_t count;         /* actors that may be down at once, 1..NOH_RAGDOLLS_MAX */
     uint32_t substeps;      /* of 1/60 s, 5..NOH_RAGDOLL_SUBSTEPS_MAX; default (0) 10 */
@@ -359,6 +363,8 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
  * rest and costs nothing. Larger again, it starts from rest and fades in. All chains are at rest after a cut.
  * Threads: noh_springs_init as any init; afterwards it is read only. */
 
+#define NOH_SPRINGS_FADE_PIXELS 16.0f
+
 /* Rows, chains and capsules: see format.h. All are read at init. */
 typedef struct noh_springs_desc {
     noh_skeleton skeleton; /* of the kinds that use it */
@@ -390,6 +396,15 @@ void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size
  * memory  in each actor: 4 bytes for each chain, rounded up to 16, and a noh_spring for each */
 noh_modifier noh_springs_modifier(const noh_springs *springs);
 
+/* The exact bytes; 0 for counts that are impossible. */
+size_t noh_springs_size(const noh_springs_desc *desc);
+
+/* errors  ARG memory is NULL or misaligned, a chain's rows are not there or not parent and child, a joint swings twice,
+ *         or a number is out of its range (where: the chain, row or collider); LIMIT a count, or the state of
+ *         one actor would have more than NOH_MODIFIER_BYTES_MAX; MEMORY it is too small */
+noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
+                            noh_error *error);
+
 /* ======== faces of actors ========
  * Faces of actors: blinking, gaze, emotions, breathing, and small idle motion.
  *
@@ -413,6 +428,8 @@ noh_modifier noh_springs_modifier(const noh_springs *springs);
  * Memory: 336 bytes for each actor (NOH_ACTOR_FACE_BYTES), part of the stage's state: saved, restored, forked and
  * hashed. A face out of view pauses until it is visible again.
  * errors  of all: NOT_FOUND the actor is gone; ARG its kind has no face, or a value is out of range */
+
+#define NOH_ACTOR_FACE_BYTES 336u
 
 /* Zero is a good value for all fields if the kind has eye joints. Strings and recipes are read at init. */
 typedef struct noh_kind_face {

@@ -215,7 +215,7 @@ typedef struct noh_stage_desc {
     uint32_t event_count; /* most callback keys of one step in noh_stage_events; default (0) 64 plus one per actor */
     uint32_t load_bytes;  /* most bytes uploaded per frame by noh_stage_load_level; below 256 counts as 256; default (0)
                            * 65,536 */
-    uint64_t update_budget_ns; /* bound on posing per frame, by noh_cost_ns; default (0) none */
+    uint64_t update_budget_ns; /* bound on posing per frame, estimated from counts, not measured; default (0) none */
     uint32_t slot_moves;       /* most slots reassigned per frame; each is accumulated again. Waiting actors are drawn
                                 * coarser, or without targets until they have a slot. 1 counts as 2; default (0) no
                                 * bound. A frame with a cut has no bound */

@@ -128,6 +128,9 @@ void noh_gl_light_end_shadow(const noh_gl_light *light);
 
 /* ======== morph targets on the GPU ======== */
 
+#define NOH_LAYERS_STREAMS 2 /* values of is_uint */
+#define NOH_LAYERS_VERTICES 3
+
 typedef enum noh_morph_path {
     NOH_MORPH_AUTO = 0,
     NOH_MORPH_LAYERED,
@@ -323,6 +326,22 @@ typedef struct noh_gl_mesh {
  *
  * Threads: the context's own thread. */
 
+/* Texture units of mesh.vert and mesh.frag; the uniform block binding is 0. */
+#define NOH_UNIT_LAYERS 0u
+#define NOH_UNIT_BASE_COLOR 1u
+#define NOH_UNIT_PALETTES 2u
+#define NOH_UNIT_NORMAL 3u
+#define NOH_UNIT_SURFACE 4u
+#define NOH_UNIT_EMISSIVE 5u
+#define NOH_UNIT_WRINKLE 6u
+#define NOH_UNIT_WRINKLE_WEIGHTS 7u /* and the next two */
+#define NOH_UNIT_SHADOW 10u
+#define NOH_UNIT_ENVIRONMENT 11u
+#define NOH_UNIT_SPECULAR 12u
+#define NOH_UNIT_USER 13u /* the first unit for a game's own shaders */
+
+#define NOH_GL_RENDERER_BYTES 4u /* the white texel */
+
 extern const noh_stage_gpu noh_stage_on_gl;
 
 typedef enum noh_pass {
@@ -445,6 +464,8 @@ void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, con
  *
  * Threads: the context's own thread. */
 
+#define NOH_BLOBS_DRAWN 32 /* blobs in one draw call */
+
 typedef struct noh_stage_blob {
     noh_gl_drawable drawable;
     uint32_t draws; /* draw calls so far */
@@ -477,6 +498,8 @@ void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const
  * the others are blended over the surface, with its light, normal map and wrinkles. LOD levels may fade meanwhile.
  *
  * GPU memory: NOH_STAGE_DECALS_BYTES. Threads: the context's own thread. */
+
+#define NOH_STAGE_DECALS_BYTES 4096u /* on the GPU, without the picture */
 
 /* An image of tiles, counted from its upper left corner. */
 typedef struct noh_decal_picture {
@@ -655,6 +678,10 @@ void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, ui
  * Two triangles near a decal that share only one vertex cannot be told apart.
  * Threads: the context's own thread. */
 
+/* The exact bytes on the GPU: indices and a texture of corners, for two levels. Neither argument may be 0. */
+#define NOH_STAGE_PATCHES_BYTES(capacity, triangles) \
+    (24u * (uint64_t)(triangles) + 8u * NOH_PATCH_WIDTH * NOH_PATCH_ROWS(capacity, triangles))
+
 typedef struct noh_stage_patch noh_stage_patch;
 
 /* The triangles of one LOD level, of all meshes. */
@@ -730,7 +757,7 @@ typedef struct noh_stage_terrain {
     uint32_t draws, triangles; /* of the last draw */
 } noh_stage_terrain;
 
-/* The first is noh_terrain_lod_size; the second is 2 bytes per height. */
+/* The first is on the CPU, for choosing levels; the second on the GPU, 2 bytes per height. */
 size_t noh_stage_terrain_size(const noh_field *field);
 uint64_t noh_stage_terrain_bytes(const noh_field *field);
 

@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "gpu/canvas.h"
-#include "gl/stage/stage_blob_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/marks.h"

@@ -1,7 +1,7 @@
 /* Marks drawn: on each pixel by where it is at rest, in any pose and at any level; all of a mesh in one draw; nothing
  * is left behind. */
 #include "support/decal_fixture.h"
-#include "gl/stage/stage_decal_internal.h"
+#include "noh/noh_gl.h"
 
 #include <math.h>
 

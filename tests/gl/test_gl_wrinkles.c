@@ -4,7 +4,6 @@
 
 #include "convert/model/model.h"
 #include "convert/wrinkle/region_mask.h"
-#include "core/mesh/wrinkles_internal.h"
 #include "gl/draw/gl_variants_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"

@@ -9,12 +9,13 @@
 #include "motion/anim/controller_internal.h"
 #include "motion/clip/clip_cache_internal.h"
 #include "motion/graph/graph_internal.h"
-#include "stage/cast/springs_internal.h"
+#include "noh/base.h"
+#include "noh/modules.h"
 #include "stage/character/joint_lod_internal.h"
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "stage/character/time_lod_internal.h"
-#include "stage/character/time_lod_points_internal.h"
+#include "noh/low_stage.h"
 
 #include <dirent.h>
 #include <stdio.h>

@@ -4,7 +4,6 @@
 #include <string.h>
 
 #include "deform/morph/morph_internal.h"
-#include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -21,8 +21,12 @@ headers='base core  format core  pack core  low_core core
     noh stage  modules stage  marks stage  crowd stage  low_stage stage
     light gl  gl_device gl  noh_gl gl  low_gl gl  noh_low gl'
 
-# "FOLDER FOLDER": the first calls a function, or reads a table, that the second defines.
+# "FOLDER FOLDER": the first calls a function, or reads a table, that the second defines. Found once.
 calls() {
+    [ -s "$called" ] || find_calls >"$called"
+    cat "$called"
+}
+find_calls() {
     awk '
         function folder(file,    part) { split(file, part, "/"); return part[2] "/" part[3] }
         FNR == 1 { pass = FILENAME in seen ? 2 : 1; seen[FILENAME] = 1; comment = 0 }
@@ -114,8 +118,8 @@ with_picture() { # README [ROOM]
         { print }' "$1"
 }
 
-picture=$(mktemp)
-trap 'rm -f "$picture" "$picture.new"' EXIT
+picture=$(mktemp) called=$(mktemp)
+trap 'rm -f "$picture" "$picture.new" "$called"' EXIT
 case ${1:-} in
 order) echo "$order" ;;
 headers) echo "$headers" | tr -s ' ' '\n' | sed '/^$/d' | paste -d ' ' - - ;;

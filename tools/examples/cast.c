@@ -12,7 +12,7 @@
 #include "start.h"
 #include "target.h"
 #include "toon.h"
-#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 #define ACTORS 20u
 #define HEROES 4u

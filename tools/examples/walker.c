@@ -7,7 +7,7 @@
 
 #include "start.h"
 #include "target.h"
-#include "noh/low_gl.h"
+#include "noh/noh_gl.h"
 
 static noh_gl gl;
 

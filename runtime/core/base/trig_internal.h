@@ -10,30 +10,6 @@
 extern "C" {
 #endif
 
-#define NOH_PI 3.14159265358979f
-
-/* The angle whose cosine is x, 0 to pi.
- * ranges  x is clamped to -1..1, because rounding can move a dot product of unit vectors outside
- * errors  at most 4e-7 */
-float noh_acos(float x);
-
-/* 2 to the power x.
- * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
- * errors  at most 2e-7 relative */
-float noh_exp2(float x);
-
-/* The logarithm of x to base 2.
- * ranges  above 0 and finite; -150 for 0 and below
- * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
-float noh_log2(float x);
-
-/* Radians to a turn.
- * ranges  |radians| <= 1e6 */
-uint32_t noh_turn_from_radians(float radians);
-
-/* A turn to radians, -pi to pi. */
-float noh_radians_from_turn(uint32_t turn);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,4 +1,3 @@
-#include "core/mesh/wrinkles_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

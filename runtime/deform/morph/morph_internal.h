@@ -13,8 +13,6 @@ extern "C" {
 /* Accumulate in plain C: the reference for the SIMD paths. */
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 
-#define NOH_MORPH_GROUP 16u /* size of an aligned group of consecutive accumulation texels */
-
 /* Find the fastest kernel of this processor, or a kernel by name, for tests and benches. Queries the processor for AVX2
  * even if the library was compiled without it. Call once and keep the result: on a virtual machine the query takes
  * microseconds.

@@ -14,13 +14,6 @@ extern "C" {
 /* Desktop OpenGL: vertex shaders set the point size, as they always do in OpenGL ES. */
 #define NOH_GL_PROGRAM_POINT_SIZE 0x8642u
 
-/* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
-int noh_gl_has_extension(const noh_gl_api *api, const char *name);
-
-/* Return the oldest pending GL error, or GL_NO_ERROR, and clear the rest. Calls glGetError at most 16 times, because a
- * lost context may report errors forever. */
-unsigned noh_gl_error_take(const noh_gl_api *api);
-
 /* Return pending GL errors as a noh_result and clear them. Every create function clears pending errors first and calls
  * this last, so it never returns NOH_OK after the driver refused a call.
  * errors  MEMORY GL_OUT_OF_MEMORY; GL any other error. `where` is the GL error; `what` and `need` are the arguments */

@@ -5,7 +5,6 @@
  * blocks in place of texels. The bytes of a renderbuffer include its samples. */
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
-#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

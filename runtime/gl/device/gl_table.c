@@ -2,7 +2,6 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_table_internal.h"
 #include "core/base/assert_internal.h"
-#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

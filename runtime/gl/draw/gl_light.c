@@ -1,7 +1,6 @@
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_light_internal.h"
-#include "gl/light/reflection_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/light.h"

@@ -12,9 +12,6 @@
 extern "C" {
 #endif
 
-/* The names "auto", "uniform", "texture". */
-const char *noh_palette_mode_name(noh_palette_mode mode);
-
 /* Set matrices in two halves, so that several threads may write different instances at once, with no other call on the
  * object meanwhile. An update sends written matrices only if noh_gl_skin_touch was called for the instance afterwards.
  * returns  1 if a row changed */

@@ -1,4 +1,3 @@
-#include "gl/light/reflection_internal.h"
 #include "noh/base.h"
 #include "noh/light.h"
 #include "noh/low_core.h"

@@ -1,5 +1,4 @@
 #include "core/base/assert_internal.h"
-#include "gl/stage/stage_blob_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/marks.h"

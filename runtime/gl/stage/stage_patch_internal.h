@@ -18,10 +18,6 @@ extern "C" {
 #define NOH_PATCH_ROWS(capacity, triangles) \
     (((capacity) + 1u + (triangles) + NOH_PATCH_WIDTH - 1u) / NOH_PATCH_WIDTH) /* for a level */
 
-/* The exact bytes on the GPU: indices and a texture of corners, for two levels. Neither argument may be 0. */
-#define NOH_STAGE_PATCHES_BYTES(capacity, triangles) \
-    (24u * (uint64_t)(triangles) + 8u * NOH_PATCH_WIDTH * NOH_PATCH_ROWS(capacity, triangles))
-
 #ifdef __cplusplus
 }
 #endif

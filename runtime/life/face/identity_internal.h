@@ -14,8 +14,6 @@
 extern "C" {
 #endif
 
-#define NOH_IDENTITY_NONE 0xffffu
-
 /* Get the weight at which target closings[i] closes a person's lids: 0.5..2, 1 on the mesh's own face.
  * shapes  weights[target_count] of the person */
 float noh_identity_shut(const noh_identity *identity, const float *weights, uint32_t i);

@@ -8,13 +8,6 @@
 extern "C" {
 #endif
 
-/* How an expression affects another user of the face, like VRM's overrideBlink, overrideLookAt and overrideMouth. */
-typedef enum noh_override {
-    NOH_OVERRIDE_NONE = 0, /* both add up */
-    NOH_OVERRIDE_BLOCK,    /* removes the other as soon as the expression shows */
-    NOH_OVERRIDE_BLEND     /* reduces the other by as much as the expression shows */
-} noh_override;
-
 /* Apply the rules to channels made with NOH_MOUTH_NONE. moves, shut: how much speech from a clip moves and closes the
  * mouth in addition to the channels' own visemes, 0..1. */
 void noh_face_share(const noh_face_rules *rules, float moves, float shut, float *channels);

@@ -15,10 +15,6 @@ extern "C" {
 
 /* ---- rigs ---- */
 
-#define NOH_RAGDOLL_HINGE 1u  /* rotates about z of its frame only: twist is the angle, there is no swing */
-#define NOH_RAGDOLL_SLIDES 2u /* slides within linear_min..linear_max; else the anchors coincide */
-#define NOH_RAGDOLL_LOOSE 4u  /* no limits of swing and twist: a ball joint */
-
 /* Make masses more equal, so that heavy bodies do not pull light joints apart: child over parent within 0.8..1.2, with
  * the same total; a parent's inertia is raised to at most twice its own if its children have more.
  * source  Strunk: Stop my constraints from blowing up, as implemented in Jolt */

@@ -14,7 +14,7 @@
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
-#include "life/physics/motion_internal.h"
+#include "noh/low_life.h"
 #include "noh/base.h"
 #include "noh/body.h"
 

@@ -1,6 +1,5 @@
 /* ragdoll_measure.c: how far a ragdoll violates its joints' limits and the world. */
 #include "core/base/assert_internal.h"
-#include "life/physics/motion_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

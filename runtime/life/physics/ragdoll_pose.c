@@ -1,5 +1,4 @@
 /* ragdoll_pose.c: converts between poses of a skeleton and bodies of a ragdoll. */
-#include "life/physics/ragdoll_pose_internal.h"
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -9,13 +9,6 @@
 extern "C" {
 #endif
 
-/* Direction of a bone as it bends. */
-typedef enum noh_ragdoll_toward {
-    NOH_RAGDOLL_FORWARD = 0,
-    NOH_RAGDOLL_BACKWARD,
-    NOH_RAGDOLL_UPWARD
-} noh_ragdoll_toward;
-
 /* Get a joint's transform in the bind pose, in the skeleton's unit. */
 void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float position[3], float rotation[4]);
 

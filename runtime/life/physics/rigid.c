@@ -1,5 +1,4 @@
 /* rigid.c: a free rigid body: exact flight, rotation by splitting, contacts by impulses. */
-#include "life/physics/motion_internal.h"
 #include "life/physics/rigid_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"

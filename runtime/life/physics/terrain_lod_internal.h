@@ -11,9 +11,6 @@
 extern "C" {
 #endif
 
-#define NOH_TERRAIN_BLOCK 32u
-#define NOH_TERRAIN_LEVELS 6u /* the last has one cell per block */
-
 /* Exact size in bytes: 30 per block, the first three arrays rounded up to 16. */
 size_t noh_terrain_lod_size(const noh_field *field);
 

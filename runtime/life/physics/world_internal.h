@@ -10,8 +10,6 @@
 extern "C" {
 #endif
 
-#define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
-
 #ifdef __cplusplus
 }
 #endif

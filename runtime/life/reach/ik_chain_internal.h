@@ -10,9 +10,6 @@
 extern "C" {
 #endif
 
-#define NOH_IK_LIMIT_SWING 1u
-#define NOH_IK_LIMIT_TWIST 2u
-
 #ifdef __cplusplus
 }
 #endif

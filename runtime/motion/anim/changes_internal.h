@@ -9,8 +9,6 @@
 extern "C" {
 #endif
 
-#define NOH_CHANGE_SLICES 64
-
 typedef struct noh_change {
     int64_t start;    /* tick of the controller's clock */
     int64_t from, to; /* speed, position, mode, or the bits of a float */
@@ -19,8 +17,6 @@ typedef struct noh_change {
     uint8_t kind, track;
     uint8_t curve; /* noh_curve, or NOH_CURVE_JUMP */
 } noh_change;
-
-#define NOH_CURVE_JUMP 2u /* a seek that fires the keys it passes: linear, one tick long, no root motion */
 
 #define NOH_CHANGE_FREE 0u
 #define NOH_CHANGE_WAITING 1u

@@ -50,12 +50,6 @@ uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_pa
  * units   travel: total movement, 1/65,536 ticks; runs: number of stretches of constant direction, at least 1 */
 uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs);
 
-/* Upper bound on the events of one step if every track plays the worst clip of a set. Use it for budgets and queues
- * before anything plays. Allows for one change of direction per step. Saturates at NOH_STEP_EVENTS_MAX.
- * ranges  |speed| of every track at most speed_max (1/65,536), a step at most step_ticks_max */
-uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
-                                 uint32_t step_ticks_max);
-
 #ifdef __cplusplus
 }
 #endif

@@ -10,8 +10,6 @@
 extern "C" {
 #endif
 
-#define NOH_ROOT_SEAM_TICKS 200u /* 1/240 s: less than a frame, so no position is off by more than its clip's error */
-
 /* Sample a clip for its pose: without root motion, if the set extracts it.
  * shapes  pose[joint_count], floats[the set's float_count] */
 void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,

@@ -11,8 +11,6 @@
 extern "C" {
 #endif
 
-#define NOH_FRAME_SECONDS_MAX 3600.0
-
 /* Get the position `ticks` later at a playback speed.
  * units   speed: 16.16 fixed point
  * ranges  any; the result is clamped to 0..duration for ONCE, else to INT64_MIN..INT64_MAX */

@@ -11,15 +11,6 @@
 extern "C" {
 #endif
 
-#define NOH_TRACK_SILENT 1u          /* starts at weight 0, to be faded in */
-#define NOH_TRACK_PAUSED 2u          /* starts at speed 0 */
-#define NOH_TRACK_ADDITIVE 4u        /* its difference from a reference pose is added after the blend */
-#define NOH_TRACK_REFERENCE_START 8u /* the reference is the clip's own pose at tick 0, not the bind pose */
-#define NOH_TRACK_TURNS 16u          /* in noh_track only: plays ping-pong although its clip does not */
-/* in noh_track only: covers part of the bind pose that the other tracks leave visible */
-#define NOH_TRACK_RISES 32u
-#define NOH_TRACK_FLAGS (NOH_TRACK_SILENT | NOH_TRACK_PAUSED | NOH_TRACK_ADDITIVE | NOH_TRACK_REFERENCE_START)
-
 NOH_STATIC_ASSERT(sizeof(noh_track) == 48, track);
 
 /* Start a track from a desc.

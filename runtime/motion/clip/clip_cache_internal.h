@@ -13,10 +13,6 @@
 extern "C" {
 #endif
 
-/* Most segments that a playing track needs when it looks ahead by up to one segment: its current segment, the next one,
- * and the previous one, used for root motion across their border. */
-#define NOH_CLIP_CACHE_SEGMENTS_PER_TRACK 3u
-
 void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info);
 size_t noh_clip_cache_needs_size(const noh_clip_cache_needs *needs, uint32_t cached_segment_count, noh_error *error);
 

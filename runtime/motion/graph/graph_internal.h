@@ -11,20 +11,6 @@
 extern "C" {
 #endif
 
-#define NOH_GRAPH_NONE 0xffffu
-
-typedef enum noh_node_kind {
-    NOH_NODE_CLIP = 0,
-    NOH_NODE_BLEND,
-    NOH_NODE_ADD,
-    NOH_NODE_MASK,
-    NOH_NODE_SPACE_1D,
-    NOH_NODE_SPACE_2D,
-    NOH_NODE_MACHINE,
-    NOH_NODE_SELECT,
-    NOH_NODE_ONE_SHOT
-} noh_node_kind;
-
 /* SELECT reads its parameter at the start of a step, rounded and clamped to 0..child_count - 1; when the node is
  * entered, without a fade. A change back to the child that it fades from reverses the fade; a change to a third child
  * waits for the end of the fade. A child starts from its beginning unless NOH_TRANSITION_KEEP is set.

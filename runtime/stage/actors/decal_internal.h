@@ -11,9 +11,6 @@ extern "C" {
 /* Check a ring from an untrusted source. Returns a constant text that says what is wrong; NULL: nothing. */
 const char *noh_decals_check(const noh_decals *decals);
 
-/* 0..1, from the age of the decal. */
-float noh_decal_alpha(const noh_decals *decals, uint32_t index);
-
 #ifdef __cplusplus
 }
 #endif

@@ -3,7 +3,6 @@
  * They swing in the world, in the model's units and from the model's scale: what a place says is divided by its scale,
  * so an actor of twice the size swings as the small one does, twice as far. */
 #include "life/physics/spring_internal.h"
-#include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

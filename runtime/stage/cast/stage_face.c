@@ -137,17 +137,18 @@ static void turn_neck(const noh_stage_kind *k, noh_modifier_work *w, const neck_
 static void turn_head(const noh_stage_kind *k, noh_modifier_work *w, const neck_space *n, const float head[4],
                       float moved[3])
 {
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     static const float none[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     float share[4], rest[4];
     memset(moved, 0, 3 * sizeof *moved);
     memcpy(rest, head, sizeof rest);
-    if (turns(w, &noh_stage_face_kind_of(k)->neck)) {
+    if (turns(w, &shared->neck)) {
         noh_quat_nlerp(none, head, NECK_SHARE, share);
         turn_neck(k, w, n, share, moved);
         noh_quat_conjugate(share, rest);
         noh_quat_mul(rest, head, rest);
     }
-    turn(w, &noh_stage_face_kind_of(k)->head, rest);
+    turn(w, &shared->head, rest);
 }
 
 /* Eyes are the face's: what clips do to them is not kept. */
@@ -190,6 +191,7 @@ static void shut_lids(const noh_stage_face_kind *k, const noh_stage_face *f, con
 static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_modifier_work *w,
                          const noh_face_pose *pose)
 {
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
     const float *says = f->says ? f->visemes : NULL;
     if (says && f->face.flags & NOH_FACE_FOUR) {
@@ -198,34 +200,35 @@ static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_m
         noh_face_four_visemes(&four, two);
         says = two;
     }
-    noh_face_channels(pose, &noh_stage_face_kind_of(k)->desc, says, NOH_MOUTH_NONE, channels);
-    if (turns(w, &noh_stage_face_kind_of(k)->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
-    noh_face_share(&noh_stage_face_kind_of(k)->rules, float_of(w, noh_stage_face_kind_of(k)->speech),
-                   float_of(w, noh_stage_face_kind_of(k)->lips_shut), channels);
-    noh_face_apply(noh_stage_face_kind_of(k)->links, noh_stage_face_kind_of(k)->link_count, channels, w->floats);
-    shut_lids(noh_stage_face_kind_of(k), f, channels, w->floats);
+    noh_face_channels(pose, &shared->desc, says, NOH_MOUTH_NONE, channels);
+    if (turns(w, &shared->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    noh_face_share(&shared->rules, float_of(w, shared->speech), float_of(w, shared->lips_shut), channels);
+    noh_face_apply(shared->links, shared->link_count, channels, w->floats);
+    shut_lids(shared, f, channels, w->floats);
 }
 
 /* ---- all of it ---- */
 
 static void live(const noh_stage_kind *k, noh_stage_face *f, int64_t clock)
 {
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     const int64_t ticks = clock - f->clock;
     if (ticks <= 0) return;
     f->clock = clock;
     if (ticks > SKIP_TICKS) {
-        noh_face_skip(&f->face, &noh_stage_face_kind_of(k)->desc, ticks);
+        noh_face_skip(&f->face, &shared->desc, ticks);
     } else {
-        noh_face_step(&f->face, &noh_stage_face_kind_of(k)->desc, (uint32_t)ticks);
+        noh_face_step(&f->face, &shared->desc, (uint32_t)ticks);
     }
 }
 
 static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f, const noh_modifier_work *w,
                  const neck_space *n)
 {
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     float point[3], back[4];
     if (!target_of(s, f, w->home, point)) {
-        if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &noh_stage_face_kind_of(k)->desc, NULL, NULL);
+        if (f->fresh || f->looks) (void)noh_face_look_at(&f->face, &shared->desc, NULL, NULL);
         f->looks = NOH_LOOKS_AHEAD; /* the other actor may be gone */
         f->fresh = 0;
         return;
@@ -234,11 +237,11 @@ static void look(const noh_stage *s, const noh_stage_kind *k, noh_stage_face *f,
     for (int i = 0; i < 3; i++) point[i] -= n->origin[i];
     noh_quat_conjugate(n->rotation, back);
     noh_quat_rotate(back, point, point);
-    hold_point(&noh_stage_face_kind_of(k)->desc, point);
+    hold_point(&shared->desc, point);
     if (f->fresh) {
-        (void)noh_face_look_at(&f->face, &noh_stage_face_kind_of(k)->desc, point, NULL);
+        (void)noh_face_look_at(&f->face, &shared->desc, point, NULL);
     } else {
-        (void)noh_face_follow(&f->face, &noh_stage_face_kind_of(k)->desc, point, NULL);
+        (void)noh_face_follow(&f->face, &shared->desc, point, NULL);
     }
     f->fresh = 0;
 }

@@ -13,8 +13,6 @@
 extern "C" {
 #endif
 
-#define NOH_ACTOR_FACE_BYTES 336u
-
 #define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
 
 typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;

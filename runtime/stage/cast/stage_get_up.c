@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
-#include "life/physics/ragdoll_pose_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -114,19 +113,19 @@ static int ground_below(const noh_world *w, const float origin[3], const float a
 static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_stage_body *b,
                         const noh_ragdoll_pose *bodies)
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     const noh_ragdoll_pose *first = &b->bodies[0][0];
-    const noh_world *world = noh_stage_ragdoll_kind_of(k)->world;
+    const noh_world *world = shared->world;
     float ground;
-    noh_ragdoll_place_under(bodies, b->bodies[0], noh_stage_ragdoll_kind_of(k)->rig.body_count, &frame);
-    if (!world || !ground_below(world, b->origin, first->position,
-                                first->position[1] + noh_stage_ragdoll_kind_of(k)->rig.bodies[0].radius, &ground)) {
+    noh_ragdoll_place_under(bodies, b->bodies[0], shared->rig.body_count, &frame);
+    if (!world ||
+        !ground_below(world, b->origin, first->position, first->position[1] + shared->rig.bodies[0].radius, &ground)) {
         ground = frame.position[1] + first->position[1] - bodies[0].position[1];
     }
     frame.position[1] = ground;
     for (int i = 0; i < 3; i++) {
-        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) /
-                                       (double)noh_stage_ragdoll_kind_of(k)->metres);
+        a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) / (double)shared->metres);
     }
     memcpy(a->place.rotation, frame.rotation, sizeof frame.rotation);
     a->before = a->place;

@@ -4,7 +4,7 @@
 
 #include "core/base/math_internal.h"
 #include "stage/character/character_internal.h"
-#include "stage/cast/modifier_internal.h"
+#include "noh/modules.h"
 #include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"

@@ -1,6 +1,5 @@
 /* stage_modifier.c: the modifiers of a kind, and what all that change a pose are given. */
 #include "core/base/assert_internal.h"
-#include "stage/cast/modifier_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

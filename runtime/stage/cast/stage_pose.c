@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
-#include "motion/clip/clip_view_internal.h"
+#include "noh/low_motion.h"
 #include "stage/character/character_internal.h"
 #include "stage/character/lod_internal.h"
 #include "noh/clip.h"

@@ -107,13 +107,13 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3])
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     noh_ragdoll_frame f;
     for (int i = 0; i < 3; i++) {
-        f.position[i] = (float)((double)place->position[i] * (double)noh_stage_ragdoll_kind_of(k)->metres -
-                                (double)origin[i]);
+        f.position[i] = (float)((double)place->position[i] * (double)shared->metres - (double)origin[i]);
     }
     memcpy(f.rotation, place->rotation, sizeof f.rotation);
-    f.metres = noh_stage_ragdoll_kind_of(k)->metres * place->scale;
+    f.metres = shared->metres * place->scale;
     return f;
 }
 
@@ -165,13 +165,13 @@ static int has_goals(const noh_stage_kind *k, const noh_stage_body *b)
 
 static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w)
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &w->place, b->origin);
     float weights[NOH_RAGDOLL_BODIES_MAX];
     b->goals = b->doll && has_goals(k, b);
-    if (b->goals)
-        noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, w->local, &frame, b->bodies[1]);
+    if (b->goals) noh_ragdoll_from_pose(&shared->fit, w->skeleton, w->local, &frame, b->bodies[1]);
     noh_stage_ragdoll_weights(k, b, weights);
-    noh_ragdoll_to_pose(&noh_stage_ragdoll_kind_of(k)->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
+    noh_ragdoll_to_pose(&shared->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
 }
 
 static void modify(noh_modifier_work *w)
@@ -205,12 +205,13 @@ static void take_offset(const noh_stage_kind *k, noh_stage_body *b, const noh_pl
 /* The place goes where the first body goes, unless that is held: as far from it as ever, so that small ways add up. */
 static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_actor *a)
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     int moved = 0;
     for (int i = 0; i < 3; i++) moved |= a->place.position[i] != carried_to(k, b, i);
     if (moved) take_offset(k, b, &a->place);
-    noh_ragdoll_bodies_local(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->origin, b->bodies[0]);
+    noh_ragdoll_bodies_local(shared->dolls, b->doll - 1u, b->origin, b->bodies[0]);
     for (int i = 0; i < 3 && noh_stage_falls_free(b); i++) a->place.position[i] = carried_to(k, b, i);
-    if (b->dead && noh_ragdoll_sleeps(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u)) {
+    if (b->dead && noh_ragdoll_sleeps(shared->dolls, b->doll - 1u)) {
         b->state = NOH_BODY_LIES;
         b->doll = 0;
     }
@@ -219,17 +220,18 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
 /* Dolls learn what their clips want; those that are free cost nothing. */
 static void tell_dolls(const noh_stage_kind *k)
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     uint8_t used[NOH_RAGDOLLS_MAX];
     memset(used, 0, sizeof used);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         const noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive || !b->doll) continue;
         used[b->doll - 1u] = 1;
-        (void)noh_ragdoll_follow_about(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->origin,
+        (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, b->origin,
                                        b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
     }
-    for (uint32_t i = 0; i < noh_stage_ragdoll_kind_of(k)->count; i++) {
-        if (!used[i]) noh_ragdoll_dolls(noh_stage_ragdoll_kind_of(k)->dolls)[i].asleep = 1;
+    for (uint32_t i = 0; i < shared->count; i++) {
+        if (!used[i]) noh_ragdoll_dolls(shared->dolls)[i].asleep = 1;
     }
 }
 
@@ -251,9 +253,10 @@ static int carries(const noh_stage_kind *k, uint32_t index)
 
 static void shift(noh_stage_kind *k, const float by[3])
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     float metres[3];
-    for (int i = 0; i < 3; i++) metres[i] = -by[i] * noh_stage_ragdoll_kind_of(k)->metres;
-    noh_ragdolls_shift(noh_stage_ragdoll_kind_of(k)->dolls, metres);
+    for (int i = 0; i < 3; i++) metres[i] = -by[i] * shared->metres;
+    noh_ragdolls_shift(shared->dolls, metres);
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
         noh_stage_body *b = noh_stage_body_of(k, a);
         float lost[3];
@@ -295,28 +298,29 @@ static uint32_t free_doll(const noh_stage_kind *k)
 static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, uint32_t doll,
                              noh_error *error)
 {
-    const uint32_t count = noh_stage_ragdoll_kind_of(k)->rig.body_count;
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
+    const uint32_t count = shared->rig.body_count;
     noh_ragdoll_motion motions[NOH_RAGDOLL_BODIES_MAX];
     const int stands = b->state == NOH_BODY_STANDS;
     if (stands && !b->poses) {
         move_origin(k, b, &a->place);
         const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
-        noh_ragdoll_from_pose(&noh_stage_ragdoll_kind_of(k)->fit, &k->skeleton, k->skeleton.bind_pose, &frame,
-                              b->bodies[0]);
+        noh_ragdoll_from_pose(&shared->fit, &k->skeleton, k->skeleton.bind_pose, &frame, b->bodies[0]);
     }
     memset(motions, 0, sizeof motions);
     if (stands && b->poses == 2u) {
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
-    const noh_result result = noh_ragdoll_place_about(noh_stage_ragdoll_kind_of(k)->dolls, doll - 1u, b->origin,
-                                                      b->bodies[0], motions, error);
+    const noh_result result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, b->bodies[0], motions,
+                                                      error);
     if (result == NOH_OK) take_offset(k, b, &a->place);
     return result;
 }
 
 static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
 {
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     uint32_t doll;
     noh_result result;
     if (b->doll) return NOH_OK;
@@ -326,7 +330,7 @@ static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_bo
     doll = free_doll(k);
     if (!doll) {
         return noh_fail(error, NOH_ERR_LIMIT, "all ragdolls of the kind are in use: raise noh_kind_ragdoll.count",
-                        noh_stage_ragdoll_kind_of(k)->count, noh_stage_ragdoll_kind_of(k)->count + 1u);
+                        shared->count, shared->count + 1u);
     }
     result = place_doll(k, a, b, doll, error);
     if (result != NOH_OK) return result;

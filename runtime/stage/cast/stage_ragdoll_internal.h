@@ -14,8 +14,6 @@
 extern "C" {
 #endif
 
-#define NOH_ACTOR_RAGDOLL_BYTES 1488u
-
 typedef enum noh_stage_rise { NOH_RISE_NOT = 0, NOH_RISE_BEGINS, NOH_RISE_GOES_ON } noh_stage_rise;
 
 /* State of an actor. */

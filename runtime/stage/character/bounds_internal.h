@@ -40,15 +40,6 @@ void noh_joint_bounds(const noh_skeleton *skeleton, const float *model, const fl
  * ranges  poses that keep the bind pose's translations and scales of 1 below the roots */
 float noh_skeleton_radius(const noh_skeleton *skeleton, const float *joint_radius_m);
 
-/* Increase joint radii to contain a mesh: each becomes at least the distance of the farthest corner of the joint's box
- * (noh_mesh.joint_boxes), extended by the targets' boxes, in the joint's space. Start with -1 for every joint and add
- * each drawn mesh. A rigid mesh adds nothing. The radii hold for linear blend skinning; dual quaternions may exceed
- * them slightly.
- * shapes  weights[target_count]: the expected weight farthest from 0 of each target, all at once; NULL: 1 each;
- *         joint_radius_m[joint_count of the skin's skeleton]
- * units   the units of the joints' matrices */
-void noh_mesh_add_joint_radii(const noh_mesh *mesh, const float *weights, float *joint_radius_m);
-
 #ifdef __cplusplus
 }
 #endif

@@ -13,9 +13,6 @@ extern "C" {
 
 /* ---- memory ---- */
 
-/* The bytes to copy to clone or save a character. The copy must also be aligned to NOH_MEMORY_ALIGN. */
-size_t noh_character_bytes(const noh_character *ch);
-
 /* Check a block from outside, such as a saved game, before any other call. If it passes, no call overruns its memory.
  * Its poses are not checked, so until the next update the character may look wrong.
  * shapes  table: the LOD levels that will be used with it
@@ -26,9 +23,6 @@ noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_
 /* Show the next frames this many ticks behind the clock, for frames between two steps of a game. At most the length of
  * the last step; initially 0. */
 void noh_character_set_behind(noh_character *ch, uint32_t ticks);
-
-/* Give a copy its own update phase. */
-void noh_character_set_instance(noh_character *ch, uint32_t instance);
 
 /* ---- a frame ---- */
 

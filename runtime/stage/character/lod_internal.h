@@ -39,14 +39,6 @@ uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2]);
 /* The finest level drawn from now to the end of the fade: for noh_gl_morph_set_lod. */
 uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock);
 
-/* Drop morph targets with effects too small to see: the smallest |weight| * radius first, while the sum is within the
- * share of targets. Sets d->skipped_m to the sum. Takes two passes over the weights if all can be dropped, at most 33.
- * shapes   weights[count]; radius_m[count]: the largest displacement by each target at weight 1; kept[count]: the
- *          weights, 0 if dropped; may be `weights`
- * returns  the number of nonzero weights kept; NaN is kept */
-uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const float *weights, const float *radius_m,
-                         uint32_t count, float *kept);
-
 #ifdef __cplusplus
 }
 #endif

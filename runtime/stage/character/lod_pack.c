@@ -7,6 +7,7 @@
 #include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
+#include "noh/deform.h"
 #include "noh/low_stage.h"
 #include "noh/pack.h"
 

@@ -1,5 +1,4 @@
 #include "core/base/assert_internal.h"
-#include "stage/character/skin_palette_internal.h"
 #include "stage/character/time_lod_internal.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

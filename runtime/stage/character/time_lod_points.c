@@ -1,5 +1,4 @@
 #include "core/base/assert_internal.h"
-#include "stage/character/time_lod_points_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

@@ -14,11 +14,6 @@
 extern "C" {
 #endif
 
-/* The agent steers only by the rules of low_stage.h: neighbours and obstacles repel it. FLOCK: it also moves along with its
- * neighbours. */
-#define NOH_CROWD_FORCES 2u
-#define NOH_CROWD_FLOCK 6u
-
 #ifdef __cplusplus
 }
 #endif

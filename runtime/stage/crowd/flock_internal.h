@@ -10,10 +10,6 @@
 extern "C" {
 #endif
 
-#define NOH_FLOCK_RANGE 3.0f     /* metres within which neighbours repel each other */
-#define NOH_FLOCK_REPULSION 5.0f /* metres per second squared, at contact of centres */
-#define NOH_FLOCK_AVOIDANCE 10.0f
-
 #ifdef __cplusplus
 }
 #endif

@@ -16,11 +16,11 @@ void *windows_calloc(size_t count, size_t bytes);
 char *windows_mkdtemp(char *name);
 
 #define malloc(bytes) windows_realloc(NULL, bytes)
-#define realloc(block, bytes) windows_realloc(block, bytes)
-#define calloc(count, bytes) windows_calloc(count, bytes)
-#define free(block) windows_free(block)
+#define realloc windows_realloc
+#define calloc windows_calloc
+#define free windows_free /* not a macro with arguments: a field of that name is renamed wherever it is named */
 #define posix_memalign(out, alignment, bytes) ((*(out) = windows_realloc(NULL, bytes)) ? 0 : 1)
 #define setenv(name, value, overwrite) _putenv_s(name, value)
-#define mkdtemp(name) windows_mkdtemp(name)
+#define mkdtemp windows_mkdtemp
 
 #endif

@@ -5,7 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "core/mesh/wrinkles_internal.h"
 #include "noh/format.h"
 #include "noh/pack.h"
 

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-#include "gl/light/reflection_internal.h"
 #include "noh/base.h"
 #include "noh/light.h"
 #include "noh/low_core.h"

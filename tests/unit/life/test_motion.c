@@ -1,6 +1,5 @@
 /* Tests of motion.c and shape.c: closed forms, oracles in double, and the errors of the source's chapter.
  */
-#include "life/physics/motion_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"

@@ -1,6 +1,5 @@
 /* Tests of ragdoll.c and ragdoll_lanes.c: closed forms, energy, torture, and the same bits at every width.
  * cross: slow, minutes of falls */
-#include "life/physics/motion_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"

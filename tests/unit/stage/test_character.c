@@ -4,7 +4,6 @@
 #include "motion/anim/tracks_internal.h"
 #include "stage/character/character_internal.h"
 #include "stage/character/scheduler_internal.h"
-#include "stage/character/skin_palette_internal.h"
 #include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"

@@ -7,7 +7,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -3,7 +3,8 @@
 #include <math.h>
 
 #include "support/stage_fixture.h"
-#include "stage/cast/springs_internal.h"
+#include "noh/base.h"
+#include "noh/modules.h"
 
 #define SLEEVES 2u
 #define CAST 6u

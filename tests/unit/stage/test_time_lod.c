@@ -10,7 +10,8 @@
 #include "support/raw_play.h"
 #include "motion/anim/tracks_internal.h"
 #include "stage/character/time_lod_internal.h"
-#include "stage/character/time_lod_points_internal.h"
+#include "noh/base.h"
+#include "noh/low_stage.h"
 
 /* ---- evenness ---- */
 

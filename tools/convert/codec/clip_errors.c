@@ -6,7 +6,6 @@
 
 #include "stage/character/joint_lod_internal.h"
 #include "stage/character/time_lod_internal.h"
-#include "stage/character/time_lod_points_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"
