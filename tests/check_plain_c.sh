@@ -7,8 +7,8 @@
 . "$(dirname "$0")/cli/lib.sh"
 
 grep -rnE '__builtin_|__attribute__|_Pragma|^ *# *pragma|__GNUC__|__clang__|__SSE|__AVX|__ARM|__has_' runtime |
-    grep -v '^runtime/core/base/\(compiler\|math_internal\|processor_internal\)\.h:' >"$work/words"
-check 'what depends on the compiler is in compiler.h, math_internal.h and processor_internal.h' sh -c '! grep . "$1"' - "$work/words"
+    grep -v '^runtime/core/base/\(compiler_internal\|math_internal\|processor_internal\)\.h:' >"$work/words"
+check 'what depends on the compiler is in compiler_internal.h, math_internal.h and processor_internal.h' sh -c '! grep . "$1"' - "$work/words"
 
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'plain C gives the same bits' 'the build without sanitizers says it'

@@ -4,6 +4,7 @@
 #     belongs to a room (tools/docs/rooms.sh headers)
 #   - public headers include nothing private; private ones end in _internal.h or _template.h, and name themselves
 #   - the folders of all rooms have an order, too: no two include each other, however indirectly
+#   - comments and help name headers that exist
 #   - GL headers are included in gl/ alone; nothing else from outside but the compiler's own headers
 #   - a folder has at most fifty files
 #   - each README's picture is what the code calls, and the README is a page
@@ -61,6 +62,11 @@ find runtime tools tests platform -name '*.h' | while read -r header; do
     sed -n "1s|^/\* \([a-z0-9_]*\.h\):.*|\1|p" "$header" | grep -vx "$(basename "$header")" | sed "s|^|$header says |"
 done >"$work/misnamed"
 check 'a header that begins with a name begins with its own' sh -c '! grep . "$1"' - "$work/misnamed"
+find runtime tools platform tests -name '*.[ch]' | sed 's|.*/||' | sort -u >"$work/files"
+find runtime tools platform tests -name '*.[ch]' -o -name '*.cpp' | xargs grep -noE '\(([a-z]+/)*[a-z0-9_]+\.h\)' |
+    awk -F: 'NR == FNR { known[$0]; next } { name = $3; gsub("[()]|.*/", "", name); if (!(name in known)) print }' "$work/files" - |
+    grep -v ':(\(std[a-z]*\|math\|float\|errno\)\.h)' >"$work/unknown"
+check 'a comment that points to a header names one that exists' sh -c '! grep . "$1"' - "$work/unknown"
 
 for folder in runtime/*/*/; do
     [ "$(find "$folder" -type f | wc -l)" -le 50 ] || echo "$folder: $(find "$folder" -type f | wc -l) files"

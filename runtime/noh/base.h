@@ -142,7 +142,6 @@ typedef enum noh_half_mode {
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
 #define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s per call; the rest of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */
-#define NOH_GET_UP_CLIPS_MAX 16u     /* clips to choose from for getting up; later ones are ignored */
 #define NOH_IK_JOINTS_MAX 32u        /* of one chain */
 #define NOH_SPRING_JOINTS_MAX 256u   /* of one spring */
 #define NOH_SPRING_COLLIDERS_MAX 32u /* of one spring */

@@ -612,7 +612,7 @@ typedef struct noh_clip_bank_desc {
     uint32_t clip_pack_count; /* 0 with `clips` */
     /* sample rate, in frames per second, that suffices: clips with at least twice this rate use half the cache and less
      * time (low_motion.h); default (0) the full rate */
-    uint32_t sample_rate_enough;
+    uint32_t sample_rate_needed;
 } noh_clip_bank_desc;
 
 /* Sizes and counts, known before any memory is allocated. */

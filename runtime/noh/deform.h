@@ -221,7 +221,7 @@ void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joi
 /* ======== picking ========
  * Ray intersection with a mesh as it is drawn, morphed and posed.
  *
- * The mesh is not copied. Each joint's box is moved as in deform.h; a triangle is tested only if the ray hits the boxes
+ * The mesh is not copied. Each joint's box is moved by its matrix; a triangle is tested only if the ray hits the boxes
  * of the joints near its corners, and only then are its corners morphed and skinned. Rigid meshes work too. Both sides
  * of a triangle count.
  *

@@ -597,7 +597,7 @@ NOH_STATIC_ASSERT(sizeof(noh_pack_terrain_header) == 48, pack_terrain_header);
 
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph (low_motion.h) whose nodes,
  * parameters, clips and joints have names; graph.h checks it and binds it to clips and a skeleton when it is opened.
- * Kinds, conditions, curves, loops and flags are constants of low_motion.h, clip.h and low_motion.h. ---- */
+ * Kinds, conditions, curves, loops and flags are constants of graph.h, low_motion.h and clip.h. ---- */
 
 #define NOH_PACK_GRAPH_NONE 0xffffu
 

@@ -324,7 +324,6 @@ typedef struct noh_gl_caps {
 } noh_gl_caps;
 
 /* Probe the capabilities of the current context. A missing capability is a 0 in its field, not an error.
- * state   gl_device.h
  * memory  none; about 5 KiB of stack. All GL objects it makes are deleted
  * errors  ARG api or out is NULL; GL the driver cannot run the probe's programs */
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error);

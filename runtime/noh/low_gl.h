@@ -4,7 +4,7 @@
  *     noh_gl_mesh_create      upload a mesh of the pack; noh_gl_picture_create uploads a texture
  *     noh_gl_morph_init       an accumulator for the morph targets of all instances
  *     noh_gl_skin_init        palettes for the skins of all instances
- *     noh_gl_renderer_create  the plain renderer; or use shaders of your own (gl_device.h)
+ *     noh_gl_renderer_create  the plain renderer; or use shaders of your own (noh_gl.h)
  *
  * In a frame, call noh_gl_morph_set_weights and noh_gl_skin_set_matrices for each instance that moved, then
  * noh_gl_morph_update and noh_gl_skin_update once, then draw. */
@@ -422,7 +422,7 @@ noh_result noh_gl_morph_set_weights(noh_gl_morph *morph, uint32_t instance, cons
 void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level);
 
 /* Accumulate the instances with changed weights or levels. stats may be NULL.
- * state   gl_device.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
+ * state   the table in gl_device.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 
@@ -577,7 +577,7 @@ noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const floa
 noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error);
 
 /* Upload the range of rows changed since the last update, in one call.
- * state   gl_device.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
+ * state   the table in gl_device.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
  * errors  none: init checked everything */
 void noh_gl_skin_update(noh_gl_skin *skin);
 

@@ -313,7 +313,7 @@ typedef struct noh_clip_desc {
      * (less 1%) is halved: about every second frame is decoded and cached, and frames between are interpolated. Its
      * certificate does not hold then. Split segments (NOH_CLIP_FLAG_SPLIT) also lose the higher half of their
      * frequencies */
-    uint32_t sample_rate_enough;
+    uint32_t sample_rate_needed;
 } noh_clip_desc;
 
 typedef struct noh_clip noh_clip;
@@ -332,7 +332,7 @@ typedef struct noh_clip_info {
     uint32_t max_error_joint;
     double max_error_time_s;
     uint32_t segment_frames_max;
-    uint32_t halved;          /* 1: half of its frames suffice (noh_clip_desc.sample_rate_enough) */
+    uint32_t halved;          /* 1: half of its frames suffice (noh_clip_desc.sample_rate_needed) */
     size_t segment_bytes_max; /* of the longest segment, decoded in the cache */
 } noh_clip_info;
 
@@ -512,7 +512,7 @@ void noh_blend_space_2d_weights(const noh_blend_space_2d *space, float x, float 
  *   ADD       a + t * (b as a difference): b's clips are differences already (NOH_CLIP_ADDITIVE), or are taken against
  *             the bind pose, or against the first frame of a clip
  *   MASK      b over a where the mask allows, by t
- *   SPACE_1D, SPACE_2D   see low_motion.h
+ *   SPACE_1D, SPACE_2D   blends of several clips by one or two parameters
  *   MACHINE   one of the children at a time; transitions cross-fade, or switch immediately and let the difference decay
  *             (inertialization)
  *   SELECT    the child whose number a parameter holds; a change cross-fades, or switches by inertia

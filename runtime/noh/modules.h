@@ -246,21 +246,24 @@ noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                          noh_error *error);
 
+#define NOH_GET_UP_CLIPS "get_up" /* prefix of the names of clips for getting up */
+
 typedef struct noh_get_up {
     const char *const *clips; /* [clip_count] names of clips that begin on the ground, such as one from the front and
-                               * one from the back; NULL: blend back to the clips that play */
-    uint32_t clip_count;
-    uint32_t layer;       /* layer that plays the clip, once, alone */
-    uint32_t blend_ticks; /* blend from the ragdoll's pose to the clip; default (0) 19,200: 0.4 s */
+                               * one from the back; NULL: all of the kind that begin with NOH_GET_UP_CLIPS */
+    uint32_t clip_count;      /* 0 with `clips` set: none, blend back to the clips that play */
+    uint32_t layer;           /* layer that plays the clip, once, alone */
+    uint32_t blend_ticks;     /* blend from the ragdoll's pose to the clip; default (0) 19,200: 0.4 s */
 } noh_get_up;
 
-/* Make an actor get up and free its ragdoll. No effect if it stands. Joints without a body, such as fingers, blend only
- * with noh_kind_desc.inertia; without it they jump.
+/* Make an actor get up and free its ragdoll. No effect if it stands. If there is no clip for getting up, it blends back
+ * to the clips that play. Joints without a body, such as fingers, blend only with noh_kind_desc.inertia; without it they
+ * jump.
  * how      NULL: zeros
- * chosen   index in `clips`, NOH_NONE without; may be NULL
+ * ticks    until it is up; may be NULL
  * errors   also NOT_FOUND the kind has no such clip (where: which); ARG it is dead, or the layer; LIMIT as
  *          noh_actor_play */
-noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *chosen,
+noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *ticks,
                             noh_error *error);
 
 /* Turn an actor into a ragdoll that cannot get up until noh_actor_revive. Its ragdoll is freed once it lies still; a
@@ -297,7 +300,6 @@ noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor);
  *   noh_kind_can_fall   whether a kind can have ragdolls, or why not
  *   noh_push_away       a level push away from an eye
  *   noh_actor_push      at a point, or at the chest
- *   noh_actor_rise      get up with a clip chosen by its name
  *   noh_fall_step       wait, then get up
  *   noh_fall_lasts      whether a fall is still in progress
  *
@@ -305,7 +307,6 @@ noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor);
  * errors   as the section on ragdolls of actors
  * Threads: as the stage. */
 
-#define NOH_RISE_CLIPS "get_up"                                   /* prefix of the names of clips for getting up */
 #define NOH_FALL_STAY_TICKS (NOH_TICKS_PER_SECOND / 5u)           /* time that it lies still */
 #define NOH_FALL_WAIT_TICKS (4u * (uint32_t)NOH_TICKS_PER_SECOND) /* then it gets up, at rest or not */
 
@@ -329,12 +330,6 @@ void noh_push_away(const float eye[3], const float point[3], float strength, flo
  *         impulse[3] newton seconds */
 noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                           noh_error *error);
-
-/* Call noh_actor_get_up with the kind's clips whose names begin with NOH_RISE_CLIPS. Without such clips, the actor
- * blends back to the clips that play.
- * layer  that plays the clip, once
- * ticks  until the actor is up; may be NULL */
-noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t *ticks, noh_error *error);
 
 /* Call before noh_stage_step, with the same ticks. An actor that has lain still for NOH_FALL_STAY_TICKS, or has been
  * down for NOH_FALL_WAIT_TICKS, gets up. */

@@ -4,10 +4,10 @@
  *   noh_gl.h     drawing it with OpenGL ES 3
  *   base.h       results, errors, limits; pack.h: packs and their meshes (both are included here)
  *   modules.h    faces, gaze, feet, ragdolls, springs, hair, modifiers of your own
- *   low_motion.h      animation graphs            crowd.h   agents, walkers, objects that they use
- *   marks.h      decals and blob shadows     light.h   environments and how meshes receive light
- *   face.h       emotions, speech, identity  body.h    the ground, rigid bodies, inverse kinematics
- *   clip.h       clips without a stage       deform.h  targets, skins and picking on the CPU
+ *   graph.h      animation graphs            crowd.h  agents, walkers, objects that they use
+ *   marks.h      decals and blob shadows     light.h  environments and how meshes receive light
+ *   face.h       emotions, speech, identity  body.h   the ground, rigid bodies, inverse kinematics
+ *   clip.h       clips without a stage       deform.h targets, skins and picking on the CPU
  *   noh_low.h    parts for engines that use no stage; less stable
  *
  * noh opens a pack of meshes, skeletons and compressed clips (made by `noh build`), plays the clips, morphs faces and
@@ -163,7 +163,7 @@ typedef struct noh_kind_desc {
     uint32_t skeleton;    /* in `mesh`; default 0; NOH_NONE: only rigid meshes. Meshes skinned to another skeleton are
                            * ignored */
     uint32_t actor_count; /* most actors of this kind at one time; required */
-    uint32_t seen_max;    /* most actors drawn per frame; the farthest are culled (noh_stage_stats.left_out). Sizes
+    uint32_t visible_max; /* most actors drawn per frame; the farthest are culled (noh_stage_stats.left_out). Sizes
                            * slots and palettes. Default (0) actor_count */
     uint32_t near_count;  /* most actors at the finest level at once */
     uint32_t
@@ -190,9 +190,9 @@ typedef struct noh_kind_desc {
                                 * 0 */
     uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
     uint32_t root_up;          /* axis of the heading: 0 x, 1 y, 2 z; ignored without root_axes */
-    uint32_t sample_rate_enough; /* frames per second needed: of a clip with twice as many, half are decoded, into half
+    uint32_t sample_rate_needed; /* frames per second needed: of a clip with twice as many, half are decoded, into half
                                   * the bytes (low_motion.h); default (0) all frames */
-    int root_told;               /* 1: root motion does not move the actor; noh_actor_root returns it */
+    int root_by_game;            /* 1: root motion does not move the actor; noh_actor_root returns it */
     int inertia;                 /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
     int unpickable;              /* 1: noh_stage_pick passes through */
     const noh_texture_set *texture_sets; /* [texture_set_count] for noh_appearance.texture_set; borrowed */
@@ -209,7 +209,7 @@ typedef struct noh_stage_desc {
     uint64_t cpu_bytes_max;     /* bounds for the plan; default (0) none */
     uint64_t gpu_bytes_max;
     uint64_t bytes_max;   /* bound for the sum, where CPU and GPU share memory */
-    noh_lod_settings lod; /* `pixels` is the largest error on screen; zeros: the defaults of low_stage.h */
+    noh_lod_settings lod; /* `pixels` is the largest error on screen; zeros: the defaults above */
     uint32_t height_px;   /* view height that slots are planned for; default (0) 1,080 */
     uint32_t job_count;   /* jobs that may run at once (noh_stage_job); default (0) 1 */
     uint32_t event_count; /* most callback keys of one step in noh_stage_events; default (0) 64 plus one per actor */
@@ -232,7 +232,7 @@ typedef struct noh_stage_desc {
     int without_shader;   /* 1: every noh_stage_draw names a shader, and the library's programs are not compiled */
     int without_transfer; /* 1: meshes with a transfer (light.h) are lit like those without one, and transfer records
                            * are not uploaded; without `light` they never are */
-    uint32_t morph_path;  /* noh_morph_path (low_gl.h); default (0) the cheapest */
+    uint32_t morph_path;  /* noh_morph_path (noh_gl.h); default (0) the cheapest */
     /* 1: the path cpu keeps sums in a texture, for your own renderers that read it, or shaders that use noh_a_position
      * as the bind pose. Default (0): it writes finished vertices (noh_gl_morph_desc.vertices) unless halves, a
      * transfer, levels loaded later, or a kind of several actors need sums */
@@ -329,7 +329,7 @@ typedef struct noh_stage noh_stage;
 /* Build a stage in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan->cpu_bytes long.
  * desc    the desc that the plan was made from; its packs and names must outlive the stage, the rest is copied
  * plan    must outlive the stage
- * device  a noh_gl_device (low_gl.h) with all fields set but the log; its table, caps and ledger must outlive the
+ * device  a noh_gl_device (gl_device.h) with all fields set but the log; its table, caps and ledger must outlive the
  *         stage. NULL with desc->gpu NULL
  * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer does not exist (where: the kind); ARG memory is
  *         NULL or misaligned; MEMORY memory is too small (need: the bytes), or the driver is out of memory; GL, DATA
@@ -353,7 +353,7 @@ typedef struct noh_stage_stats {
     uint32_t coarser;                      /* actors drawn coarser than chosen: too few slots */
     uint32_t moved, waiting;               /* slots reassigned; actors waiting for one (slot_moves) */
     uint32_t resting;                      /* actors without a slot yet: drawn without targets */
-    uint32_t left_out;                     /* actors in view but not drawn: seen_max is too small */
+    uint32_t left_out;                     /* actors in view but not drawn: visible_max is too small */
     uint32_t loading;                      /* kinds whose finer levels are loading (noh_stage_load_level) */
     uint32_t load_bytes;                   /* bytes of them uploaded */
     uint64_t decoded;                      /* track-frames */
@@ -521,7 +521,7 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
  *        rest. An actor plays one of them at a time. Read by plans and by init. NULL: none */
 noh_module noh_graph_module(const char *names);
 
-/* Play an animation graph (low_motion.h) on a base or over layer, from its beginning: all its parameters as the pack
+/* Play an animation graph (graph.h) on a base or over layer, from its beginning: all its parameters as the pack
  * has them. It fades in as a clip does, and what played on the layer fades out; noh_actor_play and noh_actor_stop fade
  * it out again. An actor plays one graph at a time: another one, or the same again, ends it at once, so give it
  * NOH_PLAY_INERTIA there. What the layer's mask lets through is the graph's; faces and additive layers play over it.
@@ -695,7 +695,7 @@ noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, 
  * interpolates the places and poses of the two steps: with `left` ticks until the next step of `ticks`, use alpha = 1 -
  * left / ticks; the frame is then up to a step behind callback keys. Places, joint matrices and floats are
  * interpolated, so skinned vertices move in straight lines between steps; at 30 steps a second this has the same error
- * as poses at 30 Hz (low_stage.h). An actor in full detail is posed once per step. Actors posed less often are not
+ * as poses at 30 Hz. An actor in full detail is posed once per step. Actors posed less often are not
  * interpolated between steps. Held floats and appearances show at once, as does the place of an actor that was spawned,
  * attached or cut. noh_actor_joint, noh_actor_sphere and noh_stage_pick agree with the frame.
  * ranges  alpha 0..1: 0 the step before the last, 1 the last; rounded to a tick

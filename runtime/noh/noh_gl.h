@@ -371,7 +371,7 @@ typedef struct noh_gl_drawable {
 /* Draw one view of the last frame into the current framebuffer and viewport. A view without height_px leaves out actors
  * with no_shadow.
  * shader  NULL: the library's
- * state   gl_device.h: depth function, front face and blending are yours
+ * state   the table in gl_device.h: depth function, front face and blending are yours
  * errors  ARG the stage is lit and no lighting was set; the last frame had no such view, or a frame has begun and not
  *         ended; or noh_stage_desc.without_shader or without_depth excludes this draw */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
@@ -384,7 +384,7 @@ void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting);
 const noh_gl_light *noh_stage_light_of(const noh_stage *stage);
 
 /* Draw a view into the shadow map of the stage. The view has no height_px: noh_view_shadow makes one.
- * state   gl_device.h
+ * state   the table in gl_device.h
  * errors  ARG as noh_stage_draw of NOH_PASS_DEPTH, or the stage has no light with a shadow map */
 noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error);
 
@@ -449,7 +449,7 @@ noh_result noh_backdrop_restore(noh_backdrop *backdrop, char *log, size_t log_by
 
 /* Fill the current framebuffer and viewport with the background of `view`. Depth is not written.
  * light  noh_stage_light_of the stage
- * state  gl_device.h */
+ * state  the table in gl_device.h */
 void noh_backdrop_draw(const noh_backdrop *backdrop, noh_backdrop_kind kind, const noh_gl_light *light,
                        const noh_lighting *lighting, const noh_stage_view *view);
 
@@ -481,7 +481,7 @@ noh_result noh_stage_blob_restore(noh_stage_blob *blob, char *log, size_t log_by
 
 /* Draw into the current framebuffer and viewport, NOH_BLOBS_DRAWN blobs per draw call.
  * shapes  blobs[count]
- * state   gl_device.h */
+ * state   the table in gl_device.h */
 void noh_stage_blob_draw(noh_stage_blob *blob, const noh_stage_view *view, const noh_blob *blobs, uint32_t count);
 
 /* ======== decals ========
@@ -518,7 +518,7 @@ typedef struct noh_stage_decals {
     noh_decal_picture picture;
     /* of the current draw: */
     uint32_t count;
-    unsigned corners; /* texture of noh_gl.h; 0: decals are projected */
+    unsigned corners; /* GL texture of the corners of patches; 0: decals are projected */
     uint32_t corner_row;
     int reversed; /* depth falls with distance */
 
@@ -580,7 +580,7 @@ noh_result noh_stage_floor_restore(noh_stage_floor *shadow, char *log, size_t lo
  * light   noh_stage_light_of the stage
  * shapes  disc[4]: world position of the centre, radius. The shadow fades over the outer half. A light at 45 degrees or
  *         higher keeps its shadow within twice the radius given to noh_lighting_shadow
- * state   gl_device.h */
+ * state   the table in gl_device.h */
 void noh_stage_floor_draw(const noh_stage_floor *shadow, const noh_gl_light *light, const noh_lighting *lighting,
                           const noh_stage_view *view, const float disc[4]);
 
@@ -782,7 +782,7 @@ void noh_stage_terrain_choose(noh_stage_terrain *terrain, const noh_stage_view *
 
 /* Draw into the current framebuffer and viewport, before or after the opaque pass of the stage.
  * stage    provides the light; NULL: none
- * state    gl_device.h */
+ * state    the table in gl_device.h */
 void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view);
 
 /* Add the whole field to the shadow map of the stage, after noh_stage_draw_shadow. */

@@ -142,7 +142,7 @@ check 'and nothing is given up' sh -c '! grep -q "^gave up" "$1"' - "$work/out"
 printf 'kind hero\nmesh puppet.noh\nactor_count 20\n' >"$work/cast/whole.txt"
 noh budget --desc "$work/cast/whole.txt" --nominal
 whole=$(sum_of 2 "$work/out")
-echo 'sample_rate_enough 15' | cat "$work/cast/whole.txt" - >"$work/cast/half.txt"
+echo 'sample_rate_needed 15' | cat "$work/cast/whole.txt" - >"$work/cast/half.txt"
 noh budget --desc "$work/cast/half.txt" --nominal
 expect 0 'half of the frames of clips are enough'
 check 'which takes fewer bytes' test "$(sum_of 2 "$work/out")" -lt "$whole"

@@ -140,7 +140,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
     accepted = 0;
     desc.joint_count = joints_of(&desc);
     open_clip(&desc);
-    desc.sample_rate_enough = 1; /* most are halved */
+    desc.sample_rate_needed = 1; /* most are halved */
     open_clip(&desc);
     free(copy);
     return 0;

@@ -252,7 +252,7 @@ static uint8_t *picture(crowd *c)
 typedef struct watch {
     uint32_t waits[BODIES]; /* frames in which a body has wanted a finer level than it shows, for want of its frame of
                                notice */
-    uint32_t coarser, finer, fades, seen_max, seen_min, by_level[LEVELS];
+    uint32_t coarser, finer, fades, visible_max, seen_min, by_level[LEVELS];
     uint64_t aside; /* the most that a frame after the first had to pose whatever the budget */
 } watch;
 
@@ -336,7 +336,7 @@ static void watch_frame(const crowd *c, uint32_t frame, watch *w)
         aside += c->stage->shown[i].due == NOH_DUE_AT_ONCE ? update_cost(c, i) : 0;
     }
     w->aside = frame && aside > w->aside ? aside : w->aside;
-    w->seen_max = seen > w->seen_max ? seen : w->seen_max;
+    w->visible_max = seen > w->visible_max ? seen : w->visible_max;
     w->seen_min = frame && seen >= w->seen_min ? w->seen_min : seen;
 }
 
@@ -400,11 +400,11 @@ static void a_crowd_with_lod_keeps_its_word(void **state)
     print_message(
         "%u to %u seen; levels %u %u %u, %u fading, %u times none finer was left; %llu events; at most %u ticks late of %llu; "
         "pictures differ by %.2f\n",
-        w.seen_min, w.seen_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
+        w.seen_min, w.visible_max, w.by_level[0], w.by_level[1], w.by_level[2], w.fades, w.coarser,
         (unsigned long long)with.events.count, schedule->late_high_water, (unsigned long long)wait * FRAME, worst);
     assert_true(wait < FRAMES && schedule->late_high_water > 0 && schedule->late_high_water <= wait * FRAME);
     assert_int_equal(schedule->lost, 0);
-    assert_true(with.events.count > 100 && w.seen_min < w.seen_max);
+    assert_true(with.events.count > 100 && w.seen_min < w.visible_max);
     assert_true(w.by_level[0] && w.by_level[1] && w.by_level[2] && w.fades && w.coarser);
     assert_true(worst < 12.0);
     crowd_close(&with);

@@ -47,8 +47,8 @@ static void play_frames(cast *c, uint32_t first, uint32_t count)
 /* Fewer slots than actors; few slots change hands in a frame. */
 static void few_are_seen(cast *c)
 {
-    c->kinds[PUPPETS].seen_max = 3;
-    c->kinds[MASKS].seen_max = 4;
+    c->kinds[PUPPETS].visible_max = 3;
+    c->kinds[MASKS].visible_max = 4;
     c->desc.slot_moves = 2;
 }
 
@@ -444,13 +444,13 @@ static void frames_make_nothing(void **state)
 #define CROWD_MOVES 4u
 
 /* Masks in a square; few are seen at once. */
-static void open_crowd(cast *c, gpu *g, uint32_t seen_max)
+static void open_crowd(cast *c, gpu *g, uint32_t visible_max)
 {
     cast_open(c);
     c->kinds[0] = c->kinds[MASKS];
     c->desc.kind_count = 1;
     c->kinds[0].actor_count = CROWD;
-    c->kinds[0].seen_max = seen_max;
+    c->kinds[0].visible_max = visible_max;
     c->kinds[0].near_count = 2;
     c->kinds[0].middle_count = 4;
     c->desc.slot_moves = CROWD_MOVES;
@@ -554,7 +554,7 @@ static void random_casts_use_what_is_planned(void **state)
         for (uint32_t k = 0; k < c.desc.kind_count; k++) {
             kinds[k].mesh = &c.packs[test_random_below(&r, CAST_KINDS)];
             kinds[k].actor_count = 1u + test_random_below(&r, 20);
-            kinds[k].seen_max = test_random_below(&r, 2) ? 1u + test_random_below(&r, kinds[k].actor_count) : 0;
+            kinds[k].visible_max = test_random_below(&r, 2) ? 1u + test_random_below(&r, kinds[k].actor_count) : 0;
             kinds[k].near_count = test_random_below(&r, 2) ? test_random_below(&r, 5) : 0;
             kinds[k].middle_count = test_random_below(&r, 2) ? test_random_below(&r, 9) : 0;
             kinds[k].finest_level = test_random_below(&r, 3) ? 0 : test_random_below(&r, 5);

@@ -337,7 +337,7 @@ static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int lose
     cast_open(&g->c);
     g->c.kinds[PUPPETS].graphs = noh_graph_module("*");
     g->c.kinds[PUPPETS].inertia = 1;
-    g->c.kinds[MASKS].seen_max = alone ? 1 : 4;
+    g->c.kinds[MASKS].visible_max = alone ? 1 : 4;
     for (uint32_t i = 0; i < CAST_KINDS; i++) {
         if (alone) g->c.kinds[i].actor_count = 1;
         g->actor_count += g->c.kinds[i].actor_count;

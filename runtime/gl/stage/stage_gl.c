@@ -123,7 +123,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
 /* Palettes and transform rows for one mesh of all actors of a kind. */
 static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, noh_error *error)
 {
-    const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).seen_max;
+    const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).visible_max;
     noh_mesh mesh;
     const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE, m->desc->user_values };
     const size_t from = m->arena.used;

@@ -20,7 +20,7 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
 /* Move a track to a position without firing callbacks; keys exactly there fire when play moves on. */
 void noh_track_place(noh_track *track, const noh_clip_entry *clip, int64_t position);
 
-/* Get the passage of the next `ticks` (events.h). */
+/* Get the passage of the next `ticks` (clip.h). */
 noh_passage noh_track_passage(const noh_track *track, const noh_clip_entry *clip, int64_t ticks);
 
 /* Get the ticks until the next key is passed, 1..ticks; 0 if there is none within `ticks`. */

@@ -47,7 +47,7 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
     b->packs = desc->clips ? &desc->clips : desc->clip_packs;
     b->pack_count = desc->clips ? 1u : desc->clip_pack_count;
     b->mesh = desc->mesh ? desc->mesh : b->packs[0];
-    b->sample_rate_enough = desc->sample_rate_enough;
+    b->sample_rate_needed = desc->sample_rate_needed;
     r = bind_skeleton(desc->skeleton, b, error);
     for (uint32_t i = 0; !r && i < b->pack_count; i++) {
         r = check_units(b, i, error);
@@ -69,7 +69,7 @@ static int fits(const noh_bank_binding *b, noh_bank_found *found)
     clip->bytes = found->packed.bytes;
     clip->byte_count = h->clip_bytes;
     clip->joint_count = h->joint_count;
-    clip->sample_rate_enough = b->sample_rate_enough;
+    clip->sample_rate_needed = b->sample_rate_needed;
     clip->bind = NULL;
     if (h->joint_count == 0) {
         return 1;

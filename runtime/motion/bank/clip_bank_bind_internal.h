@@ -17,7 +17,7 @@ typedef struct noh_bank_binding {
     noh_skeleton skeleton;             /* joint_count 0: none */
     const noh_skeleton_header *header; /* NULL: none */
     uint32_t skeleton_index;
-    uint32_t sample_rate_enough;
+    uint32_t sample_rate_needed;
 } noh_bank_binding;
 
 /* A clip: its pack, and its index there. */

@@ -338,8 +338,8 @@ static uint32_t weight_one(uint32_t sample_rate_uhz)
 /* A rate of 119.88 counts as twice 60. */
 static uint32_t is_halved(const noh_clip_desc *desc, uint32_t sample_rate_uhz)
 {
-    return desc->sample_rate_enough &&
-           (uint64_t)sample_rate_uhz * 100u >= 2u * 99u * (uint64_t)desc->sample_rate_enough * NOH_CLIP_MICRO;
+    return desc->sample_rate_needed &&
+           (uint64_t)sample_rate_uhz * 100u >= 2u * 99u * (uint64_t)desc->sample_rate_needed * NOH_CLIP_MICRO;
 }
 
 static noh_result parse(parser *p)

@@ -1,4 +1,4 @@
-/* fall.c: pushes, and when and how who lies gets up. */
+/* fall.c: pushes, and when an actor that lies gets up. */
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/modules.h"
@@ -8,7 +8,6 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
-#include "core/base/name_internal.h"
 #include "stage/cast/stage_ragdoll_internal.h"
 
 #define CHEST 0.75f /* of the way up */
@@ -56,33 +55,6 @@ noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3
     return noh_actor_hit(stage, actor, at, impulse, error);
 }
 
-noh_result noh_actor_rise(noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t *ticks, noh_error *error)
-{
-    const char *clips[NOH_GET_UP_CLIPS_MAX], *name;
-    noh_get_up how = { .clips = clips, .layer = layer };
-    noh_stage_actor *a;
-    noh_stage_kind *k;
-    noh_stage_body *b = NULL;
-    const noh_clip_set *set;
-    uint32_t chosen;
-    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
-    if (!b) return result;
-    const uint32_t kind = (uint32_t)(k - stage->kinds);
-    for (uint32_t i = 0; how.clip_count < NOH_GET_UP_CLIPS_MAX; i++) {
-        name = noh_stage_name(stage, kind, NOH_NAME_CLIP, i);
-        if (!name) break;
-        if (noh_name_begins(name, NOH_RISE_CLIPS)) clips[how.clip_count++] = name;
-    }
-    result = noh_actor_get_up(stage, actor, &how, &chosen, error);
-    if (result != NOH_OK || !ticks) return result;
-    *ticks = noh_actor_body(stage, actor) == NOH_BODY_GETS_UP ? b->rise_ticks : 0;
-    if (chosen != NOH_NONE && noh_actor_controller(stage, actor, &set)) {
-        const uint32_t clip = noh_stage_find(stage, kind, NOH_NAME_CLIP, clips[chosen]);
-        if (set->clips[clip].duration_ticks > *ticks) *ticks = set->clips[clip].duration_ticks;
-    }
-    return NOH_OK;
-}
-
 noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t ticks,
                          noh_error *error)
 {
@@ -97,7 +69,7 @@ noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint
     fall->still_ticks = body == NOH_BODY_LIES ? fall->still_ticks + ticks : 0;
     if (fall->still_ticks < NOH_FALL_STAY_TICKS && fall->down_ticks < NOH_FALL_WAIT_TICKS) return NOH_OK;
     fall->down_ticks = fall->still_ticks = 0;
-    return noh_actor_rise(stage, actor, layer, &fall->rise_ticks, error);
+    return noh_actor_get_up(stage, actor, &(noh_get_up){ .layer = layer }, &fall->rise_ticks, error);
 }
 
 int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor)

@@ -29,7 +29,7 @@ static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_erro
 {
     noh_stage_kind *k = &s->kinds[kind];
     uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
-    noh_lod_pools_desc desc = { k->desc->actor_count, 0, levels, slots, k->desc->seen_max };
+    noh_lod_pools_desc desc = { k->desc->actor_count, 0, levels, slots, k->desc->visible_max };
     desc.pool_count = noh_stage_pools(k->plan, levels, slots);
     return noh_lod_pools_init(memory, noh_lod_pools_size(&desc), &desc, &k->pools, error);
 }

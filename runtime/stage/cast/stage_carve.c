@@ -142,7 +142,7 @@ static void measure_actors(const noh_kind_desc *d, noh_stage_needs *n)
 static size_t pools_bytes(const noh_stage_plan *plan, const noh_kind_desc *d, uint32_t kind)
 {
     uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
-    noh_lod_pools_desc desc = { d->actor_count, 0, levels, slots, d->seen_max };
+    noh_lod_pools_desc desc = { d->actor_count, 0, levels, slots, d->visible_max };
     desc.pool_count = noh_stage_pools(&plan->kinds[kind], levels, slots);
     return noh_lod_pools_size(&desc);
 }
@@ -272,7 +272,7 @@ static void carve_frame(noh_arena *arena, const noh_kind_desc *d, const noh_stag
 {
     k->floats = CARVE(arena, (size_t)d->actor_count * n->float_count, float);
     k->weights = CARVE(arena, (size_t)d->actor_count * n->weight_count, float);
-    k->order = CARVE(arena, d->seen_max, uint32_t);
+    k->order = CARVE(arena, d->visible_max, uint32_t);
 }
 
 /* Once for the stage, after the state. */

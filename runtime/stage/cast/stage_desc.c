@@ -39,7 +39,7 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
 {
     noh_kind_desc d = desc->kinds[kind];
     if (!d.name) d.name = "";
-    if (!d.seen_max) d.seen_max = d.actor_count;
+    if (!d.visible_max) d.visible_max = d.actor_count;
     if (!d.layers) {
         d.layers = noh_stage_default_layers;
         d.layer_count = 3;
@@ -191,7 +191,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (!d->mesh) return "mesh of a kind is NULL";
     if (d->actor_count == 0 || d->actor_count > NOH_STAGE_ACTORS_MAX)
         return "actor_count of a kind is not in 1..NOH_STAGE_ACTORS_MAX";
-    if (d->seen_max > d->actor_count) return "seen_max of a kind is above its actor_count";
+    if (d->visible_max > d->actor_count) return "visible_max of a kind is above its actor_count";
     if (d->layer_count > NOH_LAYERS_MAX) return "layer_count of a kind is above NOH_LAYERS_MAX";
     if (!d->layers && d->layer_count) return "layers of a kind is NULL, and layer_count is not 0";
     for (uint32_t i = 0; i < d->layer_count; i++) {
@@ -268,7 +268,7 @@ static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
 static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 {
     return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
-           a->sample_rate_enough == b->sample_rate_enough;
+           a->sample_rate_needed == b->sample_rate_needed;
 }
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
@@ -296,7 +296,7 @@ noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_sta
     bank.skeleton = d.skeleton;
     bank.root_axes = d.root_axes;
     bank.root_up = d.root_up;
-    bank.sample_rate_enough = d.sample_rate_enough;
+    bank.sample_rate_needed = d.sample_rate_needed;
     bank.cached_segment_count = plan->kinds[kind].cached_segment_count;
     if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
         bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;

@@ -214,7 +214,7 @@ typedef struct noh_stage_kind {
     /* a frame's own */
     float *floats;   /* [actor_count][float_count] as shown, or as they would be */
     float *weights;  /* [actor_count][weight_count] the same, without targets too small to see */
-    uint32_t *order; /* [seen_max] seen actors by run; fading ones last */
+    uint32_t *order; /* [visible_max] seen actors by run; fading ones last */
     /* where each run begins in `order`. A run has one level and one number of influences; the last one fades */
     uint32_t runs[NOH_LOD_LEVELS_MAX * 4u + 2u];
 } noh_stage_kind;

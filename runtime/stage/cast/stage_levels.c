@@ -215,7 +215,7 @@ void noh_stage_share_slots(const noh_stage_desc *desc, uint32_t kind, noh_kind_p
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
     const int promised = d.near_count || d.middle_count;
-    uint32_t left = d.seen_max, taken = 0;
+    uint32_t left = d.visible_max, taken = 0;
     for (uint32_t l = 0; l < plan->level_count; l++) {
         noh_actor_level *level = &plan->levels[l];
         uint32_t wanted = 0;

@@ -487,7 +487,7 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         const noh_kind_plan *k = &plan->kinds[i];
         const noh_kind_desc d = noh_stage_kind_desc(desc, i);
-        hash = mix(mix(mix(mix(hash, d.actor_count), d.seen_max), d.held_float_count), d.mesh->byte_count);
+        hash = mix(mix(mix(mix(hash, d.actor_count), d.visible_max), d.held_float_count), d.mesh->byte_count);
         hash = mix(hash, d.texture_set_count);
         hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
         hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);

@@ -88,7 +88,7 @@ static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
     noh_given_root given;
     const int is_given = type && type->source->root(k, index, &given);
     a->moved = noh_controller_root_motion_given(c, &k->set, is_given ? &given : NULL);
-    if (!k->desc->root_told && !a->parent && !noh_stage_is_carried(k, index)) drive(a, &a->moved, k->desc->root_up);
+    if (!k->desc->root_by_game && !a->parent && !noh_stage_is_carried(k, index)) drive(a, &a->moved, k->desc->root_up);
 }
 
 /* ---- a step ---- */

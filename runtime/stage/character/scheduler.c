@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-
 /* ---- memory ---- */
 
 size_t noh_schedule_size(uint32_t capacity)
@@ -149,7 +148,7 @@ int noh_schedule_next(noh_schedule *s, uint32_t *instance)
     return 1;
 }
 
-/* The bound that scheduler.h derives, in frames: W / D. A frame serves until its budget is spent, so at least
+/* The bound that scheduler_internal.h derives, in frames: W / D. A frame serves until its budget is spent, so at least
  * budget / cost_max, rounded up, and never fewer than one. */
 uint64_t noh_schedule_wait_max(uint32_t instances, uint64_t budget, uint32_t cost_max)
 {

@@ -1,4 +1,4 @@
-/* Tests of halved clips (noh_clip_desc.sample_rate_enough): which frames are decoded, that these have the bits that they
+/* Tests of halved clips (noh_clip_desc.sample_rate_needed): which frames are decoded, that these have the bits that they
  * have in the whole clip, and what lies between them.
  * cross: slow, encodes clips */
 #include "support/support.h"
@@ -33,7 +33,7 @@ static noh_clip_desc desc_of(const fixture *x, uint32_t enough)
     desc.byte_count = x->blob.count;
     desc.bind = x->bind;
     desc.joint_count = JOINTS;
-    desc.sample_rate_enough = enough;
+    desc.sample_rate_needed = enough;
     return desc;
 }
 

@@ -102,7 +102,7 @@ static void random_set(rng *r, fixture *f, uint32_t duration_max)
     f->set.sample = no_sample;
 }
 
-/* ---- the oracle: the definition in events.h, tick by tick and key by key ---- */
+/* ---- the oracle: the definition in clip.h, tick by tick and key by key ---- */
 
 static int64_t modulo(int64_t a, int64_t b)
 {

@@ -360,8 +360,8 @@ static void a_walk_takes_the_actor_along(void **state)
 
 static uint64_t bytes_of_puppets(cast *c, uint32_t first_enough, uint32_t second_enough)
 {
-    c->kinds[0].sample_rate_enough = first_enough;
-    c->kinds[1].sample_rate_enough = second_enough;
+    c->kinds[0].sample_rate_needed = first_enough;
+    c->kinds[1].sample_rate_needed = second_enough;
     assert_int_equal(noh_stage_plan_make(&c->desc, NULL, &c->plan, &said), NOH_OK);
     return c->plan.cpu_bytes;
 }

@@ -181,7 +181,7 @@ static void an_actor_shows_the_graphs_own_pose(void **state)
     cast c;
     (void)state;
     open_cast(&c, 1);
-    c.kinds[0].root_told = 1;
+    c.kinds[0].root_by_game = 1;
     cast_make(&c, NULL);
     open_alone(&c.packs[0], a);
     b = names_of(c.stage);

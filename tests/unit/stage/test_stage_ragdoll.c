@@ -167,7 +167,7 @@ static void it_falls_far_away(void **state)
                 assert_true(distance(now, shown[f][i]) < step);
             }
         }
-        assert_int_equal(noh_actor_rise(c.stage, actor, 0, NULL, &said), NOH_OK);
+        assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, NULL, &said), NOH_OK);
         run(&c, 300);
         float head[3];
         joint_at(&c, actor, "head", head);
@@ -267,6 +267,7 @@ static void what_cannot_fall_is_told(void **state)
 
 static const char *const rises[] = { "get_up_back", "get_up_front" };
 static const noh_get_up rise = { .clips = rises, .clip_count = 2 };
+static const noh_get_up blend = { .clips = rises }; /* no clip */
 static const char *const tracked[] = { "head", "hand.L", "hand.R", "foot.L", "foot.R", "hips", "index_tip.L" };
 
 static void track(const cast *c, noh_actor actor, float at[TEST_COUNT(tracked)][3])
@@ -302,7 +303,7 @@ static void who_lies_gets_up(void **state)
     (void)state;
     for (uint32_t front = 0; front < 2; front++) {
         float at[3][TEST_COUNT(tracked)][3], lay[3];
-        uint32_t chosen = 7;
+        uint32_t ticks = 7;
         noh_place place;
         noh_actor actor;
         cast c;
@@ -316,8 +317,10 @@ static void who_lies_gets_up(void **state)
         run(&c, 1);
         track(&c, actor, at[1]);
         memcpy(lay, at[1][5], sizeof lay);
-        assert_int_equal(noh_actor_get_up(c.stage, actor, &rise, &chosen, &said), NOH_OK);
-        assert_int_equal(chosen, front);
+        assert_int_equal(noh_actor_get_up(c.stage, actor, front ? NULL : &rise, &ticks, &said), NOH_OK);
+        assert_string_equal(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, noh_actor_track(c.stage, actor, 0)->clip),
+                            rises[front]);
+        assert_true(ticks > NOH_TICKS_PER_SECOND);
         assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_GETS_UP);
         for (int f = 0; f < 240; f++) {
             run(&c, 1);
@@ -407,7 +410,7 @@ static void a_push_is_over_when_it_stands_again(void **state)
     assert_in_range(rising, 60, 240); /* longer than what the ragdoll leaves takes to decay: the whole clip */
     assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_STANDS);
     assert_int_equal(strncmp(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, noh_actor_track(c.stage, actor, 0)->clip),
-                             NOH_RISE_CLIPS, strlen(NOH_RISE_CLIPS)),
+                             NOH_GET_UP_CLIPS, strlen(NOH_GET_UP_CLIPS)),
                      0);
     close_cast(&c);
 }
@@ -416,7 +419,7 @@ static void a_push_is_over_when_it_stands_again(void **state)
 static void without_a_clip_it_goes_on(void **state)
 {
     const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
-    uint32_t chosen = 0;
+    uint32_t ticks = 7;
     float hips[3];
     noh_actor actor;
     cast c;
@@ -424,12 +427,13 @@ static void without_a_clip_it_goes_on(void **state)
     open_cast(&c, 1, &ragdoll, 1);
     cast_make(&c, NULL);
     actor = enter(&c, 0.0f);
-    assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, &chosen, NULL), NOH_OK); /* it stands */
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &blend, &ticks, NULL), NOH_OK); /* it stands */
+    assert_int_equal(ticks, 0);
     run(&c, 10);
     assert_int_equal(noh_actor_fall(c.stage, actor, NULL), NOH_OK);
     run(&c, 60);
-    assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, &chosen, NULL), NOH_OK);
-    assert_int_equal(chosen, NOH_NONE);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &blend, &ticks, NULL), NOH_OK);
+    assert_int_equal(ticks, NOH_TICKS_PER_SECOND * 2 / 5);
     run(&c, 40);
     joint_at(&c, actor, "hips", hips);
     assert_true(hips[1] > 0.8f);
@@ -472,7 +476,7 @@ static void an_arm_falls_alone(void **state)
             assert_true(apart < 1e-4f);
         }
     }
-    assert_int_equal(noh_actor_get_up(c.stage, actors[1], NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_get_up(c.stage, actors[1], &blend, NULL, NULL), NOH_OK);
     run(&c, 60);
     track(&c, actors[0], walks);
     track(&c, actors[1], falls);
@@ -568,7 +572,7 @@ static void what_cannot_get_up_is_told(void **state)
     cast_make(&c, NULL);
     actor = enter(&c, 0.0f);
     hips = noh_stage_find(c.stage, 0, NOH_NAME_JOINT, "hips");
-    assert_int_equal(noh_actor_get_up(c.stage, gone, NULL, NULL, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_get_up(c.stage, gone, &blend, NULL, NULL), NOH_ERR_NOT_FOUND);
     assert_int_equal(noh_actor_hold_body(c.stage, actor, hips, &hold_by, NULL), NOH_ERR_ARG);
     hold_by = (noh_body_hold){ .animated = 1.5f };
     assert_int_equal(noh_actor_hold_body(c.stage, actor, hips, &hold_by, NULL), NOH_ERR_ARG);

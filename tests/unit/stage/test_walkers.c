@@ -103,7 +103,7 @@ static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_
     k->inertia = dolls != 0;
     k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     k->root_up = 1;
-    k->root_told = 1;
+    k->root_by_game = 1;
     k->modifiers = &s->part;
     k->modifier_count = 1;
     s->cast.desc.kinds = s->cast.kinds;

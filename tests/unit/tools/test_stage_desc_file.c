@@ -59,7 +59,7 @@ static void settings_arrive_in_their_fields(void **state)
         "\xef\xbb\xbf# of the whole stage\r\nbytes_max 18446744073709551615\r\n\tcpu_bytes_max 3 # three\n"
         "gpu_bytes_max 4\npixels 0.5\nheight_px 720\njobs 64\nhalves 1\n\n"
         "kind \"the hero\"\n  mesh puppet.noh\n  clips puppet.noh\n  clips \"a mask.noh\"\n"
-        "  actor_count 20\n  seen_max 15\n  near_count 4\n  middle_count 8\n  finest_level 7\n"
+        "  actor_count 20\n  visible_max 15\n  near_count 4\n  middle_count 8\n  finest_level 7\n"
         "  held_float_count 0\n  root_axes x,z,heading\n"
         "  layer body floats=\n"
         "  layer \"right arm\" over joints=\"spine_02 -clavicle_l\" tracks=8 floats=jaw*\n"
@@ -72,7 +72,7 @@ static void settings_arrive_in_their_fields(void **state)
     assert_true(f->desc.halves == 1 && f->desc.kinds == f->kinds && f->desc.kind_count == 2);
     assert_string_equal(k[0].name, "the hero");
     assert_true(k[0].actor_count == 20 && k[0].near_count == 4 && k[0].middle_count == 8 && k[0].finest_level == 7);
-    assert_true(k[0].seen_max == 15 && k[1].seen_max == 0);
+    assert_true(k[0].visible_max == 15 && k[1].visible_max == 0);
     assert_true(k[0].held_float_count == NOH_NONE && k[1].held_float_count == 9);
     assert_true(k[0].root_axes == NOH_ROOT_GROUND && k[0].root_up == 1 && k[1].root_axes == 0);
     assert_true(k[0].clip_pack_count == 2 && k[0].clip_packs[0] == k[0].mesh && k[0].clip_packs[1] == k[1].mesh);

@@ -133,7 +133,7 @@ int bench_clip_set_halve(const bench_clip_set *set, bench_clip_set *halved)
     if (rate < HALVED_RATE_MIN) return 0;
     c->name = set->clips[0].name;
     c->desc = set->clips[0].desc;
-    c->desc.sample_rate_enough = rate / 2u;
+    c->desc.sample_rate_needed = rate / 2u;
     halved->count = 1;
     halved->joints_max = set->clips[0].info.joint_count;
     return open_clip(c, c->name);

@@ -562,7 +562,7 @@ static const option options[] = {
       .value = "N",
       .initial = "8",
       .what =
-          "most joints per vertex, 1 to 32; the heaviest are kept. Drawing uses up to 8; the CPU has a list of all (skin_list.h)",
+          "most joints per vertex, 1 to 32; the heaviest are kept. Drawing uses up to 8; the CPU has a list of all (noh/deform.h)",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--palette",

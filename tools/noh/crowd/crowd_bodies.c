@@ -68,7 +68,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->kind.held_float_count = NOH_NONE;
     c->kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     c->kind.root_up = 1;
-    c->kind.root_told = 1;
+    c->kind.root_by_game = 1;
     c->kind.unpickable = 1;
     c->kind.springs = noh_springs_module();
     c->desc.kinds = &c->kind;

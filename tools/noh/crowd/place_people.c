@@ -61,7 +61,7 @@ static void fill_kind(place_people *p, const pack_file *file, uint32_t agents, u
     k->held_float_count = 2;
     k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
     k->root_up = 1;
-    k->root_told = 1;
+    k->root_by_game = 1;
     k->unpickable = 1;
     k->springs = noh_springs_module();
     k->modifiers = p->parts;

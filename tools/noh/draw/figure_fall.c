@@ -47,7 +47,7 @@ static int can_rise(const figure *f)
 {
     const char *name;
     for (uint32_t i = 0; (name = noh_stage_name(f->stage, 0, NOH_NAME_CLIP, i)) != NULL; i++) {
-        if (strncmp(name, NOH_RISE_CLIPS, sizeof NOH_RISE_CLIPS - 1u) == 0) return 1;
+        if (strncmp(name, NOH_GET_UP_CLIPS, sizeof NOH_GET_UP_CLIPS - 1u) == 0) return 1;
     }
     return 0;
 }

@@ -41,7 +41,7 @@ const char *const help_formats_text[] = {
     "                                      {\"time\": 0.25, \"name\": \"left\", \"marker\": true}]}",
     "# animation graphs (noh build --graph FILE)",
     "One statement per line, words separated by blanks, names with blanks in double quotes; # begins a comment. Options are KEY=VALUE, "
-    "times are seconds. A game sets parameters and reads states by name (graph_pack.h).",
+    "times are seconds. A game sets parameters and reads states by name (noh/graph.h).",
     "   graph NAME                                  a graph; a file may hold several",
     "   number NAME LOW HIGH [initial=V]            a parameter; integer NAME ... : whole numbers",
     "   enum NAME VALUE... [initial=VALUE]          a parameter with one of these values",
@@ -160,7 +160,7 @@ const char *const help_formats_text[] = {
     "--for-masks, so that no joint compensates for another's error.",
     "# stages (noh budget --desc FILE)",
     "One setting per line, words separated by blanks, values with blanks in double quotes; # begins a comment. Paths are relative to the "
-    "file's folder. Settings are the fields of noh_stage_desc and noh_kind_desc (stage.h); only mesh and actor_count are required. "
+    "file's folder. Settings are the fields of noh_stage_desc and noh_kind_desc (noh/noh.h); only mesh and actor_count are required. "
     "For the whole stage, before the first kind:",
     "   bytes_max N                                 memory limit, CPU and GPU together",
     "   cpu_bytes_max N                             memory limit on the CPU",
@@ -173,7 +173,7 @@ const char *const help_formats_text[] = {
     "     mesh PATH                                   its pack",
     "     clips PATH                                  a pack of clips instead of mesh's own clips; may repeat",
     "     actor_count N                               characters of this kind at one time",
-    "     seen_max N                                  most of them drawn in one frame (all)",
+    "     visible_max N                                  most of them drawn in one frame (all)",
     "     near_count N                                most of them at the finest level at once",
     "     middle_count N                              most at the next level",
     "     finest_level K                              the finest level that may be used",
@@ -183,7 +183,7 @@ const char *const help_formats_text[] = {
     "     face joints | face X Y Z X Y Z              live faces: eyes by joints, or the centres of the left and right eye",
     "     ragdolls N                                  ragdolls at one time (none)",
     "     held_float_count N                          floats the game may hold (8; 0: none)",
-    "     sample_rate_enough N                        sufficient frames a second: clips of at least twice the rate are halved (all)",
+    "     sample_rate_needed N                        sufficient frames a second: clips of at least twice the rate are halved (all)",
     "     root_axes ground|x,y,z,heading              axes of root motion; ground: x,z,heading. y is up",
     "     layer NAME [base|over|add] [joints=NAMES] [floats=NAMES] [tracks=N]",
     "Options of noh budget override the file. Without layers, a kind has body, face and add. NAMES are separated by blanks; '-' before a "

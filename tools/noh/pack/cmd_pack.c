@@ -288,7 +288,7 @@ const verb verb_pack = {
     .files = "PACK",
     .what = "make the wire form of a pack: several times smaller to send, unpacked while it arrives",
     .more =
-        "Every verb that reads a pack also reads its wire form. A game unpacks it piece by piece with noh_wire_push (wire.h). A pack with LOD levels is preceded by a pack of its coarsest levels, which can be shown while the rest arrives.",
+        "Every verb that reads a pack also reads its wire form. A game unpacks it piece by piece with noh_wire_push (noh/pack.h). A pack with LOD levels is preceded by a pack of its coarsest levels, which can be shown while the rest arrives.",
     .example = "head.noh -o head.nohz\nhead.noh -o head.nohz --error-um 10",
     .options = options,
     .option_count = sizeof options / sizeof options[0],

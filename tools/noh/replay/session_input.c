@@ -68,7 +68,7 @@ static noh_result apply(session_stage *s, const session_input *in, noh_error *er
     case SESSION_LOOK: return noh_actor_look_at(s->stage, actor, n, error);
     case SESSION_FEEL: return feel(s, in, error);
     case SESSION_HIT: return noh_actor_hit(s->stage, actor, n, n + 3, error);
-    case SESSION_RISE: return noh_actor_rise(s->stage, actor, 0, NULL, error);
+    case SESSION_RISE: return noh_actor_get_up(s->stage, actor, NULL, NULL, error);
     case SESSION_KILL: return noh_actor_kill(s->stage, actor, error);
     case SESSION_REVIVE: return noh_actor_revive(s->stage, actor, error);
     case SESSION_VIEW: memcpy(s->view, n, sizeof s->view); return NOH_OK;
