@@ -600,7 +600,27 @@ static void meshopt_impossible_sizes_are_refused(void **state)
     s = triangle(",\"NORMAL\":1", "");
     add_compressed_view(s, junk, sizeof junk, 3, 12, "ATTRIBUTES", "OCTAHEDRAL");
     add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":1");
-    refused(s, "does not fit 'byteStride'", "buffer view 1");
+    model *m = load(s);
+    assert_true(has_warning(m, "'OCTAHEDRAL' is unknown or does not fit 'byteStride'; normals were computed"));
+    model_free(m);
+}
+
+/* The ratified name, and its newer codec, which is named. */
+static void meshopt_of_khronos(void **state)
+{
+    (void)state;
+    scene *s = compressed_triangle("", "");
+    char *at;
+    for (char *text = s->views; (at = strstr(text, "EXT_meshopt")); text = at) memcpy(at, "KHR", 3);
+    for (char *text = s->buffer_rest; (at = strstr(text, "EXT_meshopt")); text = at) memcpy(at, "KHR", 3);
+    memcpy(strstr(s->rest, "EXT_meshopt"), "KHR", 3);
+    model *m = load(s);
+    assert_floats(m->meshes[0].position, triangle_positions, 9);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+    s = compressed_triangle("", "");
+    s->bytes[0] = 0xa1;
+    refused(s, "codec version 1 is not read: compress the file with version 0", "buffer view 0");
 }
 
 /* --- primitives --- */
@@ -719,7 +739,9 @@ static void unused_vertices_may_hold_anything(void **state)
     model_free(load(s));
     s = shared_vertices();
     memcpy(s->bytes + 14 * sizeof nan, &nan, sizeof nan);
-    refused(s, "NaN", "primitive 1 POSITION (accessor 0), element 4");
+    model *m = load(s);
+    assert_true(has_warning(m, "primitive 1 POSITION (accessor 0), element 4: the value is NaN"));
+    model_free(m);
 }
 
 static void restart_indices_are_refused_by_name(void **state)
@@ -1134,11 +1156,9 @@ static void skinned_mesh_is_as_large_as_its_joints_make_it(void **state)
 static void bad_skins_are_refused(void **state)
 {
     (void)state;
-    static const char *const rests[][2] = {
-        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist" },
-        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "joint node 7 does not exist" },
-        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[0],\"inverseBindMatrices\":0}]", "needs MAT4" }
-    };
+    static const char *const rests[][2] = { { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist" },
+                                            { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]",
+                                              "joint node 7 does not exist" } };
     for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
         scene *s = triangle("", "");
         APPEND(s->rest, "%s", rests[i][0]);
@@ -1146,24 +1166,54 @@ static void bad_skins_are_refused(void **state)
     }
 }
 
-/* Zeros for a bind matrix: the joint is bound where it rests, and named. */
-static void bind_matrices_of_zeros(void **state)
+static model *with_binds(const float *binds, int count, const char *hip)
+{
+    scene *s = skinned_triangle();
+    add_array(s, binds, (size_t)count * 64, F32, count, "MAT4");
+    APPEND(s->rest,
+           ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",%s},{}],"
+           "\"skins\":[{\"joints\":[1,2],\"inverseBindMatrices\":3}]",
+           hip);
+    return load(s);
+}
+
+/* A bind matrix that cannot be one: the joint is bound where it rests, and named. */
+static void bad_bind_matrices_are_replaced(void **state)
 {
     (void)state;
-    const float binds[16] = { 0 };
-    scene *s = skinned_triangle();
-    add_array(s, binds, sizeof binds, F32, 1, "MAT4");
-    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",\"translation\":[0,2,0],\"scale\":[2,2,2]}],"
-                    "\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
-    model *m = load(s);
-    assert_true(m->skins[0].inverse_bind[0] == 0.5f && m->skins[0].inverse_bind[13] == -1.0f);
-    assert_true(has_warning(m, "skin 0: the inverse bind matrix of joint 'hip' is all zeros"));
+    static const char rest[] = "\"translation\":[0,2,0],\"scale\":[2,2,2]";
+    static const struct {
+        float binds[16];
+        const char *fault;
+    } cases[] = {
+        { { 0 }, "is all zeros" },
+        { { 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, "is singular" },
+        { { 1, 0, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, "is singular" },
+        { { 1, 0, 0, 0.5f, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, "is not affine" },
+        { { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, NAN, 0, 0, 1 }, "has a number that is NaN" },
+        { { 1, 0, 0, 0, 0, INFINITY, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 }, "has a number that is NaN" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        char text[128];
+        float binds[32] = { 0 };
+        memcpy(binds, cases[i].binds, sizeof cases[i].binds);
+        for (int k = 0; k < 4; k++) binds[16 + k * 5] = 1.0f;
+        model *m = with_binds(binds, 2, rest);
+        snprintf(text, sizeof text, "skin 0: the inverse bind matrix of joint 'hip' %s", cases[i].fault);
+        assert_true(m->skins[0].inverse_bind[0] == 0.5f && m->skins[0].inverse_bind[13] == -1.0f);
+        assert_true(m->skins[0].inverse_bind[16] == 1.0f && m->warning_count == 1);
+        assert_true(has_warning(m, text));
+        model_free(m);
+    }
+    const float one[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 3, 0, 1 };
+    model *m = with_binds(one, 1, rest);
+    assert_true(m->skins[0].inverse_bind[13] == 3.0f && m->skins[0].inverse_bind[21] == 1.0f);
+    assert_true(has_warning(m, "skin 0: 2 joints but 1 inverse bind matrices"));
     model_free(m);
-    s = skinned_triangle();
-    add_array(s, binds, sizeof binds, F32, 1, "MAT4");
-    APPEND(s->rest, ",\"nodes\":[{\"mesh\":0,\"skin\":0},{\"name\":\"hip\",\"scale\":[2,0,2]}],"
-                    "\"skins\":[{\"joints\":[1],\"inverseBindMatrices\":3}]");
-    refused(s, "joint 'hip' is all zeros, and its rest transform has no inverse", "skin 0");
+    float none[32] = { 0 };
+    m = with_binds(none, 2, "\"translation\":[0,3,0],\"scale\":[2,0,2]"); /* the place alone */
+    assert_true(m->skins[0].inverse_bind[0] == 1.0f && m->skins[0].inverse_bind[13] == -3.0f);
+    model_free(m);
 }
 
 static void matrices_are_decomposed(void **state)
@@ -1339,6 +1389,20 @@ static scene *animated(const float *times, const void *values, size_t value_byte
     return s;
 }
 
+/* The same with any keys. */
+static scene *keyed(const float *times, int count, const float *values, int value_count, const char *sampler_rest,
+                    const char *target)
+{
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    add_array(s, times, (size_t)count * sizeof *times, F32, count, "SCALAR");
+    add_array(s, values, (size_t)value_count * sizeof *values, F32, value_count, "SCALAR");
+    APPEND(s->rest,
+           ",\"nodes\":[{\"mesh\":0},{\"name\":\"bare\"}],\"animations\":[{\"name\":\"a\",\"channels\":"
+           "[{\"sampler\":0,\"target\":{%s}}],\"samplers\":[{\"input\":2,\"output\":3%s}]}]",
+           target, sampler_rest);
+    return s;
+}
+
 static const float two_times[2] = { 0.5f, 2.0f }, two_values[2] = { 0, 1 };
 #define WEIGHTS_OF_N "\"node\":0,\"path\":\"weights\""
 
@@ -1460,29 +1524,105 @@ static void animation_without_meshes(void **state)
     model_free(m);
 }
 
-static void bad_animations_are_refused(void **state)
+/* Keys that a clip cannot have: the others stay. */
+static void bad_keys_are_left_out(void **state)
 {
     (void)state;
-    const float backwards[2] = { 2, 0.5f }, before_zero[2] = { -1, 0 }, endless[2] = { 0, INFINITY };
-    const char *target = WEIGHTS_OF_N;
-    size_t bytes = sizeof two_values;
-    refused(animated(backwards, two_values, bytes, "", F32, 2, "", target), "does not increase",
-            "animation 'a' channel 0 input (accessor 2), element 1");
-    refused(animated(before_zero, two_values, bytes, "", F32, 2, "", target), "is negative", "element 0");
-    refused(animated(endless, two_values, bytes, "", F32, 2, "", target), "infinite", "element 1");
-    refused(animated(two_times, two_values, bytes, "", F32, 1, "", target), "2 keys of width 1 need 2 elements",
-            "animation 'a' channel 0 output (accessor 3)");
-    refused(animated(two_times, two_values, bytes, "", F32, 2, ",\"interpolation\":\"CUBICSPLINE\"", target),
-            "with tangents need 6", "output");
-    refused(animated(two_times, two_values, bytes, "", F32, 2, ",\"interpolation\":\"BEZIER\"", target),
-            "'BEZIER' is unknown", "animation 'a' channel 0");
-    refused(animated(two_times, two_values, bytes, "", F32, 2, "", "\"node\":1,\"path\":\"weights\""),
-            "node 'bare' has no mesh", "animation 'a' channel 0");
-    refused(animated(two_times, two_values, bytes, "", F32, 2, "", "\"node\":9,\"path\":\"weights\""),
-            "node 9 does not exist", "animation 'a' channel 0");
+    static const struct {
+        float times[4], values[4], kept[4], kept_values[4];
+        uint32_t count;
+        float duration;
+        const char *told;
+    } cases[] = {
+        { { 2, 0.5f, 1, 3 }, { 1, 2, 3, 4 }, { 0.5f, 1, 2, 3 }, { 2, 3, 1, 4 }, 4, 3.0f, "they were sorted" },
+        { { 0, 1, 1, 2 }, { 1, 2, 3, 4 }, { 0, 1, 2 }, { 1, 3, 4 }, 3, 2.0f, "key 2 at 1 s has the time of the key" },
+        { { 1, 1, 1, 1 }, { 1, 2, 3, 4 }, { 1 }, { 4 }, 1, 1.0f, "(and 2 more like it)" },
+        { { 0, 0, 1, 1 }, { 1, 2, 3, 4 }, { 0, 1 }, { 2, 4 }, 2, 1.0f, "the later one was kept" },
+        { { 0, INFINITY, 1, 2 }, { 1, 2, 3, 4 }, { 0, 1, 2 }, { 1, 3, 4 }, 3, 2.0f, "key 1: a key with a number" },
+        { { NAN, 0, 1, 2 }, { 1, 2, 3, 4 }, { 0, 1, 2 }, { 2, 3, 4 }, 3, 2.0f, "key 0: a key with a number" },
+        { { 0, 1, 2, 3 }, { 1, 2, 3, -INFINITY }, { 0, 1, 2 }, { 1, 2, 3 }, 3, 2.0f, "key 3: a key with a number" },
+        { { 0, 1, 2, 1e20f }, { 1, 2, 3, 4 }, { 0, 1, 2 }, { 1, 2, 3 }, 3, 2.0f, "key 3: a key with a number" },
+        { { -2, -1, 0, 1 }, { 1, 2, 3, 4 }, { -2, -1, 0, 1 }, { 1, 2, 3, 4 }, 4, 1.0f, NULL },
+        { { -4, -3, -2, -1 }, { 1, 2, 3, 4 }, { -4, -3, -2, -1 }, { 1, 2, 3, 4 }, 4, -1.0f, NULL },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        model *m = load(keyed(cases[i].times, 4, cases[i].values, 4, "", WEIGHTS_OF_N));
+        const model_channel *c = &m->clips[0].channels[0];
+        assert_int_equal(c->key_count, cases[i].count);
+        assert_floats(c->times, cases[i].kept, cases[i].count);
+        assert_floats(c->values, cases[i].kept_values, cases[i].count);
+        assert_true(m->clips[0].duration_s == cases[i].duration);
+        assert_int_equal(m->warning_count, cases[i].told ? 1 : 0);
+        if (cases[i].told) assert_true(has_warning(m, cases[i].told));
+        model_free(m);
+    }
 }
 
-static void weights_of_a_mesh_without_targets_are_refused(void **state)
+/* A channel that cannot be read is left out; the mesh stays. */
+static void bad_channels_are_left_out(void **state)
+{
+    (void)state;
+    const float times[2] = { 0, 1 }, nans[2] = { NAN, NAN }, values[2] = { 0.25f, 1 };
+    static const char bare[] = "\"node\":1,\"path\":\"weights\"", far[] = "\"node\":9,\"path\":\"weights\"";
+    const struct {
+        scene *s;
+        uint32_t keys;
+        const char *told;
+    } cases[] = {
+        { keyed(times, 2, values, 1, "", WEIGHTS_OF_N), 1, "does not fit the number of keys" },
+        { keyed(times, 2, values, 2, ",\"interpolation\":\"CUBICSPLINE\"", WEIGHTS_OF_N), 0,
+          "no key that can be used" },
+        { keyed(times, 2, values, 2, ",\"interpolation\":\"BEZIER\"", WEIGHTS_OF_N), 2, "'BEZIER' is unknown" },
+        { keyed(nans, 2, values, 2, "", WEIGHTS_OF_N), 0, "it has no key that can be used; the channel was left out" },
+        { keyed(times, 0, values, 0, "", WEIGHTS_OF_N), 0, "the accessor has no elements; the channel was left out" },
+        { keyed(times, 2, values, 2, "", bare), 0, "it animates weights of a node without a mesh" },
+        { keyed(times, 2, values, 2, "", far), 0, "its target node does not exist" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        model *m = load(cases[i].s);
+        assert_int_equal(m->mesh_count, 1);
+        assert_int_equal(m->clip_count, cases[i].keys > 0);
+        if (cases[i].keys) assert_int_equal(m->clips[0].channels[0].key_count, cases[i].keys);
+        if (!has_warning(m, cases[i].told)) fail_msg("case %zu: %s", i, m->warnings[0]);
+        model_free(m);
+    }
+}
+
+/* KHR_animation_pointer: what a channel can say without it. */
+static void pointers_to_nodes(void **state)
+{
+    (void)state;
+#define POINTER(to) "\"path\":\"pointer\",\"extensions\":{\"KHR_animation_pointer\":{\"pointer\":\"" to "\"}}"
+    static const struct {
+        const char *target;
+        int kept;
+    } cases[] = { { POINTER("/nodes/0/weights"), 1 },   { POINTER("/meshes/0/weights"), 1 },
+                  { POINTER("/nodes/0/weightsx"), 0 },  { POINTER("/nodes/0/weights/0"), 0 },
+                  { POINTER("/materials/0/alpha"), 0 }, { POINTER("/nodes/99/weights"), 0 },
+                  { "\"path\":\"pointer\"", 0 } };
+    const float times[2] = { 0, 1 }, values[2] = { 0.25f, 1 };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        model *m = load(keyed(times, 2, values, 2, "", cases[i].target));
+        assert_int_equal(m->clip_count, cases[i].kept);
+        if (cases[i].kept) {
+            assert_true(m->clips[0].channels[0].path == MODEL_PATH_WEIGHTS && m->clips[0].channels[0].node == 0);
+            assert_floats(m->clips[0].channels[0].values, values, 2);
+        }
+        assert_true(cases[i].kept ? m->warning_count == 0 : has_warning(m, "animation 'a' channel 0 was skipped: its"));
+        model_free(m);
+    }
+    const float moves[6] = { 0, 0, 0, 1, 2, 3 };
+    scene *s = triangle("", "");
+    add_array(s, times, sizeof times, F32, 2, "SCALAR");
+    add_array(s, moves, sizeof moves, F32, 2, "VEC3");
+    APPEND(s->rest, ",\"nodes\":[{},{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{" POINTER(
+                        "/nodes/1/scale") "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
+    model *m = load(s);
+    assert_true(m->clips[0].channels[0].path == MODEL_PATH_SCALE && m->clips[0].channels[0].node == 1);
+    model_free(m);
+}
+
+static void weights_of_a_mesh_without_targets_are_skipped(void **state)
 {
     (void)state;
     scene *s = triangle("", "");
@@ -1490,7 +1630,9 @@ static void weights_of_a_mesh_without_targets_are_refused(void **state)
     add_array(s, two_values, sizeof two_values, F32, 2, "SCALAR");
     APPEND(s->rest, ",\"nodes\":[{\"mesh\":0}],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N
                     "}}],\"samplers\":[{\"input\":1,\"output\":2}]}]");
-    refused(s, "mesh 'm' has no morph targets", "animation 'test' channel 0");
+    model *m = load(s);
+    assert_true(m->clip_count == 0 && has_warning(m, "it animates weights of a mesh without morph targets"));
+    model_free(m);
 }
 
 /* --- materials --- */
@@ -1810,66 +1952,86 @@ static void every_truncation_of_a_glb_is_refused(void **state)
     }
 }
 
-static void indices_out_of_range_are_refused(void **state)
+static void triangles_of_missing_vertices_are_left_out(void **state)
 {
     (void)state;
-    const uint16_t index[3] = { 0, 1, 3 };
+    const uint16_t index[9] = { 0, 1, 3, 2, 1, 0, 7, 8, 9 };
     scene *s = triangle("", ",\"indices\":1");
-    add_array(s, index, sizeof index, U16, 3, "SCALAR");
-    refused(s, "the index 3 is out of range: the primitive has 3 vertices",
-            "mesh 'm' primitive 0 indices (accessor 1), element 2");
+    add_array(s, index, sizeof index, U16, 9, "SCALAR");
+    model *m = load(s);
+    assert_true(m->meshes[0].index_count == 3 && m->meshes[0].indices[0] == 2);
+    assert_true(has_warning(m, "mesh 'm' primitive 0 triangle 0 was left out: the primitive has no such vertex (and 1 "
+                               "more like it)"));
+    model_free(m);
+    s = triangle("", ",\"indices\":1");
+    add_array(s, index, 6, U16, 3, "SCALAR");
+    refused(s, "nothing to convert; was left out: the primitive has no such vertex", "mesh 'm' primitive 0 triangle 0");
 }
 
-static void half_a_triangle_is_refused(void **state)
+static void half_a_triangle_is_left_out(void **state)
 {
     (void)state;
     const uint16_t index[4] = { 0, 1, 2, 0 };
     scene *s = triangle("", ",\"indices\":1");
     add_array(s, index, sizeof index, U16, 4, "SCALAR");
-    refused(s, "4 corners are not whole triangles", "mesh 'm' primitive 0");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].index_count, 3);
+    assert_true(has_warning(m, "mesh 'm' primitive 0: its last corners are no whole triangle"));
+    model_free(m);
 }
 
-static void wrong_types_are_refused(void **state)
+/* Of an attribute that the surface can do without: what was done instead. */
+static void check_lost(scene *s, const char *what)
+{
+    model *m = load(s);
+    if (!has_warning(m, what)) fail_msg("%s", m->warning_count ? m->warnings[0] : "no warning");
+    assert_true(m->meshes[0].vertex_count == 3 && m->meshes[0].normal[2] == 1.0f);
+    model_free(m);
+}
+
+static void wrong_types_are_left_out(void **state)
 {
     (void)state;
     const float values[12] = { 0 };
     scene *s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 24, F32, 3, "VEC2");
-    refused(s, "type is VEC2, but this needs VEC3", "mesh 'm' primitive 0 NORMAL (accessor 1)");
+    check_lost(s, "NORMAL (accessor 1): the accessor's type is VEC2, but this needs VEC3; normals were computed");
     s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 36, U32, 3, "VEC3");
-    refused(s, "component type UNSIGNED_INT is not allowed", "mesh 'm' primitive 0 NORMAL (accessor 1)");
-    s = triangle("", ",\"indices\":1");
-    add_array(s, values, 12, F32, 3, "SCALAR");
-    refused(s, "component type FLOAT is not allowed", "mesh 'm' primitive 0 indices (accessor 1)");
+    check_lost(s, "component type UNSIGNED_INT is not allowed");
     s = triangle(",\"TEXCOORD_0\":1", "");
     add_array(s, values, 12, U16, 3, "VEC2");
-    refused(s, "KHR_mesh_quantization missing", "mesh 'm' primitive 0 TEXCOORD_0 (accessor 1)");
+    check_lost(s, "KHR_mesh_quantization missing");
+    s = triangle(",\"COLOR_0\":1", "");
+    add_array(s, values, 12, F32, 3, "SCALAR");
+    check_lost(s, "COLOR_0 (accessor 1): the accessor's type is SCALAR, but this needs VEC3; colours are white");
     s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
     add_array(s, values, 48, F32, 3, "VEC4");
     refused(s, "type is VEC4, but this needs VEC3", "mesh 'm' primitive 0 target 0 POSITION (accessor 1)");
+    s = triangle("", ",\"indices\":1");
+    add_array(s, values, 12, F32, 3, "SCALAR");
+    refused(s, "component type FLOAT is not allowed", "mesh 'm' primitive 0 indices (accessor 1)");
 }
 
-static void accessors_outside_their_bytes_are_refused(void **state)
+static void accessors_outside_their_bytes_are_left_out(void **state)
 {
     (void)state;
     const float values[9] = { 0 };
     scene *s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 35, F32, 3, "VEC3");
-    refused(s, "it needs 36 bytes of its buffer view, which has 35", "NORMAL (accessor 1)");
+    check_lost(s, "NORMAL (accessor 1): it needs 36 bytes of its buffer view, which has 35");
     s = triangle(",\"NORMAL\":1", "");
     APPEND(s->views, ",{\"buffer\":0,\"byteOffset\":4,\"byteLength\":36}");
     ++s->view_count;
     add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":1");
-    refused(s, "bytes 4 to 40 are out of range: buffer 0 has 36", "NORMAL (accessor 1), buffer view 1");
+    check_lost(s, "NORMAL (accessor 1), buffer view 1: bytes 4 to 40 are out of range: buffer 0 has 36");
     s = triangle(",\"NORMAL\":1", "");
     add_accessor(s, F32, 3, "VEC3", ",\"bufferView\":7");
-    refused(s, "buffer view 7 does not exist", "NORMAL (accessor 1)");
-    s = triangle(",\"NORMAL\":7", "");
-    refused(s, "accessor 7 does not exist", "mesh 'm' primitive 0 NORMAL");
+    check_lost(s, "buffer view 7 does not exist");
+    check_lost(triangle(",\"NORMAL\":7", ""), "mesh 'm' primitive 0 NORMAL: accessor 7 does not exist");
     s = triangle(",\"NORMAL\":1", "");
     add_array(s, values, 24, F32, 2, "VEC3");
-    refused(s, "has 2 elements, but 3 are needed", "NORMAL (accessor 1)");
+    check_lost(s, "has 2 elements, but 3 are needed");
 }
 
 static void giant_counts_are_refused(void **state)
@@ -1915,35 +2077,54 @@ static void missing_buffers_are_refused(void **state)
     file_refused("not a relative path", "buffer 0");
 }
 
-static void numbers_that_are_not_finite_are_refused(void **state)
+/* Bad numbers of any attribute are read as 0, with the first place and a count. */
+static void check_zeroed(scene *s, const char *place, int others)
 {
-    (void)state;
-    float values[9] = { 0, 0, 0, 0, NAN, 0, 0, 0, 0 };
-    scene *s = scene_new();
-    add_array(s, values, sizeof values, F32, 3, "VEC3");
-    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
-    refused(s, "the value is NaN", "mesh 'm' primitive 0 POSITION (accessor 0), element 1");
-    refused(morphing(values, ONE_TARGET), "the value is NaN",
-            "mesh 'm' primitive 0 target 0 POSITION (accessor 1), element 1");
-    values[4] = INFINITY;
-    s = triangle(",\"NORMAL\":1", "");
-    add_array(s, values, sizeof values, F32, 3, "VEC3");
-    refused(s, "the value is infinite", "mesh 'm' primitive 0 NORMAL (accessor 1), element 1");
-    s = triangle(",\"TEXCOORD_0\":1", "");
-    add_array(s, values, 24, F32, 3, "VEC2");
-    refused(s, "the value is infinite", "mesh 'm' primitive 0 TEXCOORD_0 (accessor 1), element 2");
+    char text[256], more[32] = "";
+    model *m = load(s);
+    if (others) snprintf(more, sizeof more, " (and %d more like it)", others);
+    snprintf(text, sizeof text, "mesh 'm' primitive 0 %s: the value is NaN, infinite or above 1e12; it was read as 0%s",
+             place, more);
+    if (!has_warning(m, text)) fail_msg("%s", m->warning_count ? m->warnings[0] : "no warning");
+    for (size_t i = 0; i < 9; i++) {
+        assert_true(fabsf(m->meshes[0].position[i]) <= 1.0f && fabsf(m->meshes[0].normal[i]) <= 1.0f);
+        assert_true(!m->meshes[0].target_count || fabsf(m->meshes[0].targets[0].position[i]) <= 1.0f);
+        assert_true(!m->meshes[0].uv || i > 5 || fabsf(m->meshes[0].uv[i]) <= 1.0f);
+    }
+    model_free(m);
 }
 
-static void numbers_beyond_the_limit_are_refused(void **state)
+static void numbers_that_are_not_finite_are_zeros(void **state)
 {
     (void)state;
-    float values[9] = { 0, 0, 0, 0, 3e38f, 0, 0, 0, 0 };
-    scene *s = scene_new();
-    add_array(s, values, sizeof values, F32, 3, "VEC3");
-    APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
-    refused(s, "the value 3e+38 is too large: the limit is 1e12",
-            "mesh 'm' primitive 0 POSITION (accessor 0), element 1");
-    s = triangle("", "");
+    const float bad[4] = { NAN, INFINITY, -INFINITY, 2e12f };
+    for (int i = 0; i < 4; i++) {
+        float values[12] = { 1, 0, 0, 0, bad[i], 0, 0, 1, 0, 0, 0, 1 };
+        scene *s = scene_new();
+        add_array(s, values, 36, F32, 3, "VEC3");
+        APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
+        check_zeroed(s, "POSITION (accessor 0), element 1", 0);
+        check_zeroed(morphing(values, ONE_TARGET), "target 0 POSITION (accessor 1), element 1", 0);
+        s = triangle(",\"NORMAL\":1", "");
+        values[3] = bad[i];
+        add_array(s, values, 36, F32, 3, "VEC3");
+        check_zeroed(s, "NORMAL (accessor 1), element 1", 1);
+        s = triangle(",\"TEXCOORD_0\":1", "");
+        add_array(s, values, 24, F32, 3, "VEC2");
+        check_zeroed(s, "TEXCOORD_0 (accessor 1), element 1", 1);
+        s = triangle(",\"COLOR_0\":1", "");
+        add_array(s, values, 36, F32, 3, "VEC3");
+        check_zeroed(s, "COLOR_0 (accessor 1), element 1", 1);
+        s = triangle(",\"TANGENT\":1", "");
+        add_array(s, values, 48, F32, 3, "VEC4");
+        check_zeroed(s, "TANGENT (accessor 1), element 0", 1);
+    }
+}
+
+static void worlds_beyond_the_limit_are_refused(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
     APPEND(s->rest, ",\"nodes\":[{\"scale\":[1e7,1,1],\"children\":[1]},{\"name\":\"b\",\"scale\":[1e7,1,1]}]");
     refused(s, "scales of its ancestors", "node 'b'");
 }
@@ -1956,15 +2137,19 @@ static void differing_target_counts_are_refused(void **state)
     refused(s, "primitive 0 has 1 morph targets and primitive 1 has 2", "mesh 'm' primitives 0 and 1");
 }
 
-static void weights_of_the_wrong_length_are_refused(void **state)
+static void weights_of_the_wrong_length_are_cut(void **state)
 {
     (void)state;
     scene *s = morphing(up_deltas, ONE_TARGET);
-    APPEND(s->mesh_rest, ",\"weights\":[0,1]");
-    refused(s, "2 weights for 1 morph targets", "mesh 'm'");
+    APPEND(s->mesh_rest, ",\"weights\":[0.5,1]");
+    model *m = load(s);
+    assert_true(m->meshes[0].weights[0] == 0.5f && has_warning(m, "mesh 'm' has another number of weights"));
+    model_free(m);
     s = morphing(up_deltas, ONE_TARGET);
-    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"weights\":[0,1]}]");
-    refused(s, "2 weights, but its mesh 'm' has 1", "node 'n'");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"weights\":[0.25,1]}]");
+    m = load(s);
+    assert_true(m->nodes[0].weights[0] == 0.25f && has_warning(m, "node 'n' has another number of weights"));
+    model_free(m);
 }
 
 static void zero_vertices_are_refused(void **state)
@@ -1973,7 +2158,7 @@ static void zero_vertices_are_refused(void **state)
     scene *s = scene_new();
     add_accessor(s, F32, 0, "VEC3", "");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
-    refused(s, "no vertices", "mesh 'm' primitive 0 POSITION (accessor 0)");
+    refused(s, "nothing to convert; was skipped: it has no vertices", "mesh 'm' primitive 0");
 }
 
 static void check_sparse_indices(uint16_t first, uint16_t second, const char *what, const char *where)
@@ -2007,9 +2192,6 @@ static void bad_nodes_are_refused(void **state)
         { "{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "two parents", "node 'c'" },
         { "{\"name\":\"p\",\"children\":[5]}", "node 5 does not exist", "node 'p' children" },
         { "{\"name\":\"p\",\"mesh\":4}", "mesh 4 does not exist", "node 'p'" },
-        { "{\"name\":\"p\",\"rotation\":[0,1]}", "'rotation' has 2 numbers; it needs 4", "node 'p'" },
-        { "{\"name\":\"p\",\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}", "not affine", "node 'p'" },
-        { "{\"name\":\"p\",\"translation\":[1e300,0,0]}", "too large for a float", "node 'p' translation" },
         { "{\"name\":\"p\",\"mesh\":\"x\"}", "'mesh' must be a whole number", "/nodes/0/mesh" }
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
@@ -2019,17 +2201,70 @@ static void bad_nodes_are_refused(void **state)
     }
 }
 
-static void bad_references_are_refused(void **state)
+/* Transforms that a node cannot have are ignored. */
+static void bad_transforms_are_ignored(void **state)
 {
     (void)state;
-    refused(triangle("", ",\"material\":3"), "material 3 does not exist", "mesh 'm' primitive 0");
-    refused(triangle("", ",\"mode\":9"), "mode 9 is unknown", "mesh 'm' primitive 0");
+    static const char *const cases[][2] = {
+        { "\"rotation\":[0,1]", "node 'p': 'rotation' has 2 numbers; it needs 4; it was ignored" },
+        { "\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]", "node 'p': the matrix is not affine" },
+        { "\"matrix\":[2,0,0]", "node 'p': 'matrix' has 3 numbers; it needs 16; it was ignored" },
+        { "\"translation\":[1e300,0,0]", "node 'p' translation: the number 1e+300 is too large" },
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        scene *s = triangle("", "");
+        APPEND(s->rest, ",\"nodes\":[{\"name\":\"p\",\"mesh\":0,%s}]", cases[i][0]);
+        model *m = load(s);
+        for (int k = 0; k < 16; k++) assert_true(m->nodes[0].world[k] == (k % 5 == 0 ? 1.0 : 0.0));
+        if (!has_warning(m, cases[i][1])) fail_msg("%s", m->warnings[0]);
+        model_free(m);
+    }
+}
+
+static void bad_references(void **state)
+{
+    (void)state;
+    check_lost(triangle("", ",\"material\":3"), "mesh 'm' primitive 0: its material does not exist");
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":2}}}]");
-    refused(s, "texture 2 does not exist", "material 'material_0'");
+    check_lost(s, "material 'material_0': it does not exist: the file has 0 (texture 2); the texture was left out");
+    refused(triangle("", ",\"mode\":9"), "was skipped: its mode is unknown", "mesh 'm' primitive 0");
     s = triangle("", "");
     APPEND(s->rest, ",\"scenes\":[{\"nodes\":[0]}]");
     refused(s, "node 0 does not exist", "scene 0");
+}
+
+/* EXT_mesh_gpu_instancing: a node for each instance, below its node. */
+static void instances_are_nodes(void **state)
+{
+    (void)state;
+    const float moves[6] = { 1, 0, 0, 0, 2, NAN };
+    const signed char turns[8] = { 0, 0, 0, 127, 0, 127, 0, 0 };
+    scene *s = triangle("", "");
+    add_array(s, moves, sizeof moves, F32, 2, "VEC3");
+    add_array(s, turns, sizeof turns, I8, 2, "VEC4");
+    s->accessors[strlen(s->accessors) - 1] = 0;
+    APPEND(s->accessors, ",\"normalized\":true}");
+    APPEND(s->rest,
+           ",\"nodes\":[{\"name\":\"p\",\"children\":[1],\"scale\":[2,2,2]},{\"name\":\"n\",\"mesh\":0,\"extensions\":{"
+           "\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":1,\"ROTATION\":2}}}}]");
+    model *m = load(s);
+    assert_true(m->node_count == 4 && m->nodes[1].mesh == MODEL_NONE);
+    assert_string_equal(m->nodes[2].name, "n_0");
+    assert_true(m->nodes[2].mesh == 0 && m->nodes[3].mesh == 0 && m->nodes[3].parent == 1);
+    assert_true(m->nodes[2].world[12] == 2.0 && m->nodes[3].world[13] == 4.0 && m->nodes[3].world[14] == 0.0);
+    assert_true(fabs(m->nodes[2].world[0] - 2.0) < 1e-6 && fabs(m->nodes[3].world[0] + 2.0) < 1e-6);
+    assert_true(has_warning(m, "node 'n' EXT_mesh_gpu_instancing TRANSLATION (accessor 1), element 1: the value is"));
+    model_free(m);
+    s = triangle("", "");
+    add_array(s, moves, 12, F32, 1, "VEC3");
+    add_array(s, turns, sizeof turns, I8, 2, "VEC4");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+                    "\"attributes\":{\"TRANSLATION\":1,\"ROTATION\":2}}}}]");
+    m = load(s);
+    assert_true(m->node_count == 1 && m->nodes[0].mesh == 0);
+    assert_true(has_warning(m, "EXT_mesh_gpu_instancing: its attributes differ in their counts; the node was drawn"));
+    model_free(m);
 }
 
 /* --- real files --- */
@@ -2168,6 +2403,7 @@ int main(void)
         cmocka_unit_test(meshopt_quaternion),
         cmocka_unit_test(meshopt_damage_is_refused),
         cmocka_unit_test(meshopt_impossible_sizes_are_refused),
+        cmocka_unit_test(meshopt_of_khronos),
         cmocka_unit_test(strips_and_fans),
         cmocka_unit_test(points_and_lines_are_skipped),
         cmocka_unit_test(primitives_are_concatenated),
@@ -2200,7 +2436,7 @@ int main(void)
         cmocka_unit_test(nodes_parents_first),
         cmocka_unit_test(skinned_mesh_is_as_large_as_its_joints_make_it),
         cmocka_unit_test(bad_skins_are_refused),
-        cmocka_unit_test(bind_matrices_of_zeros),
+        cmocka_unit_test(bad_bind_matrices_are_replaced),
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),
         cmocka_unit_test(node_weights),
@@ -2217,8 +2453,10 @@ int main(void)
         cmocka_unit_test(an_animated_matrix_is_told),
         cmocka_unit_test(animation_without_a_target_is_skipped),
         cmocka_unit_test(animation_without_meshes),
-        cmocka_unit_test(bad_animations_are_refused),
-        cmocka_unit_test(weights_of_a_mesh_without_targets_are_refused),
+        cmocka_unit_test(bad_keys_are_left_out),
+        cmocka_unit_test(bad_channels_are_left_out),
+        cmocka_unit_test(pointers_to_nodes),
+        cmocka_unit_test(weights_of_a_mesh_without_targets_are_skipped),
         cmocka_unit_test(materials_and_textures),
         cmocka_unit_test(specular_and_glossiness),
         cmocka_unit_test(specular_maps_are_packed),
@@ -2233,20 +2471,22 @@ int main(void)
         cmocka_unit_test(required_extensions_are_refused_by_name),
         cmocka_unit_test(unknown_extensions_are_warnings),
         cmocka_unit_test(every_truncation_of_a_glb_is_refused),
-        cmocka_unit_test(indices_out_of_range_are_refused),
-        cmocka_unit_test(half_a_triangle_is_refused),
-        cmocka_unit_test(wrong_types_are_refused),
-        cmocka_unit_test(accessors_outside_their_bytes_are_refused),
+        cmocka_unit_test(triangles_of_missing_vertices_are_left_out),
+        cmocka_unit_test(half_a_triangle_is_left_out),
+        cmocka_unit_test(wrong_types_are_left_out),
+        cmocka_unit_test(accessors_outside_their_bytes_are_left_out),
         cmocka_unit_test(giant_counts_are_refused),
         cmocka_unit_test(missing_buffers_are_refused),
-        cmocka_unit_test(numbers_that_are_not_finite_are_refused),
-        cmocka_unit_test(numbers_beyond_the_limit_are_refused),
+        cmocka_unit_test(numbers_that_are_not_finite_are_zeros),
+        cmocka_unit_test(worlds_beyond_the_limit_are_refused),
         cmocka_unit_test(differing_target_counts_are_refused),
-        cmocka_unit_test(weights_of_the_wrong_length_are_refused),
+        cmocka_unit_test(weights_of_the_wrong_length_are_cut),
         cmocka_unit_test(zero_vertices_are_refused),
         cmocka_unit_test(bad_sparse_indices_are_refused),
         cmocka_unit_test(bad_nodes_are_refused),
-        cmocka_unit_test(bad_references_are_refused),
+        cmocka_unit_test(bad_transforms_are_ignored),
+        cmocka_unit_test(bad_references),
+        cmocka_unit_test(instances_are_nodes),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),
         cmocka_unit_test(compressed_head_has_the_same_shape),
         cmocka_unit_test(all_assets_load),

@@ -82,5 +82,7 @@ int channel_sample(const model_channel *c, double time_s, double snap_s, double 
     const double after = (double)c->times[key + 1];
     if (after - time_s <= snap_s) return take_key(c, key + 1, out);
     if (c->interpolation == MODEL_STEP) return take_key(c, key, out);
-    return between_keys(c, key, (time_s - before) / (after - before), out);
+    if (!between_keys(c, key, (time_s - before) / (after - before), out)) return 0;
+    (void)take_key(c, key, out);
+    return 1;
 }

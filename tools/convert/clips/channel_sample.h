@@ -12,7 +12,7 @@ extern "C" {
  * Rotations are unit quaternions, interpolated along the shorter arc (LINEAR) or normalised (CUBICSPLINE).
  * snap_s  a key at most this far away gives its value unchanged
  * out     [channel->width]
- * errors  1: a rotation has no length, as where a spline passes through zero
+ * errors  1: a rotation has no length, as where a spline passes through zero; out is then the key before
  * source  glTF 2.0, appendix C */
 int channel_sample(const model_channel *channel, double time_s, double snap_s, double *out);
 

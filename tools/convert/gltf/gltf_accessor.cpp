@@ -174,15 +174,12 @@ static uint32_t load_index(uint32_t component, const uint8_t *at)
     }
 }
 
-static void load_element(const layout &l, const uint8_t *at, uint64_t element, float *out)
+/* What is infinite or too large becomes NaN. */
+static void load_element(const layout &l, const uint8_t *at, float *out)
 {
     for (uint32_t i = 0; i < l.components; ++i) {
         out[i] = load_component(l.component, at + i * component_size(l.component));
-        if (!std::isfinite(out[i]))
-            fail(element_of(l.where, element),
-                 text("the value is %s: every number must be finite", std::isnan(out[i]) ? "NaN" : "infinite"));
-        if (std::fabs(out[i]) > NOH_NUMBER_MAX)
-            fail(element_of(l.where, element), text("the value %g is too large: the limit is 1e12", double(out[i])));
+        if (!(std::fabs(out[i]) <= NOH_NUMBER_MAX)) out[i] = NAN;
     }
 }
 
@@ -248,12 +245,12 @@ static void apply_sparse(file &f, const layout &l, const vertex_list &vertices, 
         uint32_t element = sparse_index(l, s, i);
         size_t place;
         if (place_of(vertices, element, place))
-            load_element(l, s.values.data + i * l.element_size, element, out + place * l.components);
+            load_element(l, s.values.data + i * l.element_size, out + place * l.components);
     }
 }
 
-void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
-                   const std::string &where, float *out)
+static layout read_elements(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
+                            const std::string &where, float *out)
 {
     layout l = check_type(f, accessor, components, accepted, where);
     if (l.accessor->count != vertices.total)
@@ -262,11 +259,24 @@ void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted
     span dense = dense_part(f, l);
     for (size_t i = 0; i < vertices.count(); ++i) {
         if (dense.data)
-            load_element(l, dense.data + vertices.at(i) * dense.stride, vertices.at(i), out + i * components);
+            load_element(l, dense.data + vertices.at(i) * dense.stride, out + i * components);
         else
             memset(out + i * components, 0, components * sizeof(float));
     }
     if (l.accessor->sparse.isSparse) apply_sparse(f, l, vertices, out);
+    return l;
+}
+
+void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
+                   const std::string &where, float *out)
+{
+    const layout l = read_elements(f, accessor, components, accepted, vertices, where, out);
+    for (size_t i = 0; i < vertices.count() * components; ++i)
+        if (std::isnan(out[i])) {
+            leave_out(f, element_of(l.where, vertices.at(i / components)),
+                      ": the value is NaN, infinite or above 1e12; it was read as 0");
+            out[i] = 0.0f;
+        }
 }
 
 void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, uint64_t count,
@@ -274,14 +284,7 @@ void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, 
 {
     vertex_list all;
     all.total = count;
-    read_vertices(f, accessor, components, accepted, all, where, out);
-}
-
-static void check_index(uint32_t index, uint32_t limit, const std::string &where, uint64_t element)
-{
-    if (index >= limit)
-        fail(element_of(where, element),
-             text("the index %u is out of range: the primitive has %u vertices", index, limit));
+    (void)read_elements(f, accessor, components, accepted, all, where, out);
 }
 
 /* The largest number of a type ends a strip elsewhere, and is no index in glTF (3.7.2.1). */
@@ -302,7 +305,7 @@ static void apply_sparse_indices(file &f, const layout &l, std::vector<uint32_t>
         out[sparse_index(l, s, i)] = load_index(l.component, s.values.data + i * l.element_size);
 }
 
-std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const std::string &where)
+std::vector<uint32_t> read_indices(file &f, int accessor, const std::string &where)
 {
     layout l = check_type(f, accessor, 1, c_u8 | c_u16 | c_u32, where);
     span dense = dense_part(f, l);
@@ -311,10 +314,7 @@ std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const 
     for (size_t i = 0; dense.data && i < out.size(); ++i)
         out[i] = load_index(l.component, dense.data + i * dense.stride);
     if (l.accessor->sparse.isSparse) apply_sparse_indices(f, l, out);
-    for (size_t i = 0; i < out.size(); ++i) {
-        check_restart(out[i], l, i);
-        check_index(out[i], limit, l.where, i);
-    }
+    for (size_t i = 0; i < out.size(); ++i) check_restart(out[i], l, i);
     return out;
 }
 

@@ -1,6 +1,9 @@
 /* gltf_animation.cpp: animations, all channels decoded to floats. */
 #include "gltf_internal.h"
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
 #include <set>
 
 namespace gltf
@@ -24,108 +27,192 @@ static bool path_of(const std::string &name, model_path &out)
     return false;
 }
 
-static model_interpolation interpolation_of(const std::string &name, const std::string &where)
+static model_interpolation interpolation_of(file &f, const std::string &name, const std::string &where)
 {
-    if (name.empty() || name == "LINEAR") return MODEL_LINEAR;
     if (name == "STEP") return MODEL_STEP;
-    if (name != "CUBICSPLINE") fail(where, "the interpolation '" + printable(name) + "' is unknown");
-    return MODEL_CUBICSPLINE;
+    if (name == "CUBICSPLINE") return MODEL_CUBICSPLINE;
+    if (!name.empty() && name != "LINEAR")
+        leave_out(f, where, ": the interpolation '" + printable(name) + "' is unknown; LINEAR was used");
+    return MODEL_LINEAR;
 }
 
-/* Why a channel cannot be kept, or null. Fills *path and *node. */
-static const char *reason_to_skip(const file &f, const tinygltf::AnimationChannel &c, const std::string &where,
-                                  model_path &path, uint32_t &node)
+/* --- what a channel moves --- */
+
+/* A channel's target: a node's path, written out or as a pointer (KHR_animation_pointer). */
+struct target {
+    int node;
+    std::string path;
+};
+
+static std::string pointer_of(const tinygltf::AnimationChannel &c)
 {
-    if (c.target_node < 0) return "it has no target node";
-    if (static_cast<size_t>(c.target_node) >= f.node_of.size())
-        fail(where, text("node %d does not exist: the file has %zu", c.target_node, f.node_of.size()));
-    node = f.node_of[static_cast<size_t>(c.target_node)];
-    if (node == MODEL_NONE) return "its target node is not in the default scene";
-    if (!path_of(c.target_path, path)) return "its path is unknown";
+    const auto found = c.target_extensions.find("KHR_animation_pointer");
+    if (found == c.target_extensions.end() || !found->second.Has("pointer")) return "";
+    const tinygltf::Value &pointer = found->second.Get("pointer");
+    return pointer.IsString() ? pointer.Get<std::string>() : "";
+}
+
+/* "/nodes/2/rotation"; "/meshes/1/weights" is of the first node that draws the mesh. */
+static target target_of(const file &f, const tinygltf::AnimationChannel &c)
+{
+    char path[16] = "";
+    unsigned index = 0;
+    int end = 0;
+    const std::string pointer = c.target_path == "pointer" ? pointer_of(c) : "";
+    if (pointer.empty()) return { c.target_node, c.target_path };
+    if (sscanf(pointer.c_str(), "/nodes/%9u/%15[a-z]%n", &index, path, &end) == 2 &&
+        static_cast<size_t>(end) == pointer.size())
+        return { static_cast<int>(index), path };
+    if (sscanf(pointer.c_str(), "/meshes/%9u/weights%n", &index, &end) == 1 &&
+        static_cast<size_t>(end) == pointer.size())
+        for (size_t n = 0; n < f.json.nodes.size(); ++n)
+            if (f.json.nodes[n].mesh == static_cast<int>(index) && f.node_of[n] != MODEL_NONE)
+                return { static_cast<int>(n), "weights" };
+    return { c.target_node, "pointer" };
+}
+
+/* Why a channel cannot be kept, or an empty text. Fills c.path and c.node. */
+static std::string reason_to_skip(const file &f, const target &t, const tinygltf::AnimationChannel &source,
+                                  model_channel &c)
+{
+    if (t.path == "pointer")
+        return "its pointer '" + printable(pointer_of(source)) + "' is to nothing that a clip moves";
+    if (t.node < 0) return "it has no target node";
+    if (static_cast<size_t>(t.node) >= f.node_of.size()) return "its target node does not exist";
+    c.node = f.node_of[static_cast<size_t>(t.node)];
+    if (c.node == MODEL_NONE) return "its target node is not in the default scene";
+    if (!path_of(t.path, c.path)) return "its path is unknown";
+    if (c.path != MODEL_PATH_WEIGHTS) return "";
     /* if a mesh is not kept (points, lines), neither are its weights */
-    int mesh = f.json.nodes[static_cast<size_t>(c.target_node)].mesh;
-    if (path == MODEL_PATH_WEIGHTS && mesh >= 0 && f.out->nodes[node].mesh == MODEL_NONE) return "its mesh was skipped";
-    return nullptr;
+    const uint32_t mesh = f.out->nodes[c.node].mesh;
+    if (mesh == MODEL_NONE && f.json.nodes[static_cast<size_t>(t.node)].mesh >= 0) return "its mesh was skipped";
+    if (mesh == MODEL_NONE) return "it animates weights of a node without a mesh";
+    return f.out->meshes[mesh].target_count ? "" : "it animates weights of a mesh without morph targets";
 }
 
-static uint32_t width_of(const file &f, const model_channel &c, const std::string &where)
+static uint32_t width_of(const file &f, const model_channel &c)
 {
-    if (c.path != MODEL_PATH_WEIGHTS) return c.path == MODEL_PATH_ROTATION ? 4 : 3;
-    const model_node &node = f.out->nodes[c.node];
-    if (node.mesh == MODEL_NONE)
-        fail(where, "weights are animated, but node '" + printable(node.name) + "' has no mesh");
-    uint32_t targets = f.out->meshes[node.mesh].target_count;
-    if (targets == 0)
-        fail(where,
-             "weights are animated, but mesh '" + printable(f.out->meshes[node.mesh].name) + "' has no morph targets");
-    return targets;
+    if (c.path == MODEL_PATH_WEIGHTS) return f.out->meshes[f.out->nodes[c.node].mesh].target_count;
+    return c.path == MODEL_PATH_ROTATION ? 4 : 3;
 }
 
-static void check_times(const model_channel &c, const std::string &where)
+/* --- keys --- */
+
+/* Floats of one key: of CUBICSPLINE in-tangent, value, out-tangent. */
+static size_t key_width(const model_channel &c)
 {
-    for (uint32_t i = 0; i < c.key_count; ++i) {
-        if (c.times[i] < 0.0f)
-            fail(where + text(", element %u", i), text("the key time %g is negative", static_cast<double>(c.times[i])));
-        if (i > 0 && !(c.times[i] > c.times[i - 1]))
-            fail(where + text(", element %u", i),
-                 text("the key time %g does not increase", static_cast<double>(c.times[i])));
-    }
+    return size_t{ c.width } * (c.interpolation == MODEL_CUBICSPLINE ? 3 : 1);
 }
 
 static void read_times(file &f, int accessor, model_channel &c, const std::string &where)
 {
     std::string input = where + " input";
     uint64_t count = accessor_at(f, accessor, input).count;
-    if (count == 0 || count >= MODEL_NONE)
+    if (count >= MODEL_NONE)
         fail(input + text(" (accessor %d)", accessor),
              text("%llu keys are not possible", static_cast<unsigned long long>(count)));
     c.times = allocate<float>(f, count, input);
     c.key_count = static_cast<uint32_t>(count);
     read_floats(f, accessor, 1, c_f32, count, input, c.times);
-    check_times(c, input + text(" (accessor %d)", accessor));
-}
-
-/* Of CUBICSPLINE keys, only the values between the tangents are rotations. */
-static void check_rotations(const model_channel &c, const std::string &where)
-{
-    const size_t per_key = c.interpolation == MODEL_CUBICSPLINE ? 3 : 1;
-    for (size_t i = 0; i < c.key_count; ++i) {
-        const float *q = c.values + (i * per_key + per_key / 2) * 4;
-        double square = 0.0;
-        for (int k = 0; k < 4; ++k) square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
-        if (!(square > 1e-6))
-            fail(where + text(", element %zu", i * per_key + per_key / 2), "the rotation is a quaternion of length 0");
-    }
 }
 
 static void read_values(file &f, int accessor, model_channel &c, const std::string &where)
 {
     std::string output = where + " output";
-    uint64_t values = uint64_t{ c.key_count } * (c.interpolation == MODEL_CUBICSPLINE ? 3 : 1);
     bool turns_or_morphs = c.path == MODEL_PATH_WEIGHTS || c.path == MODEL_PATH_ROTATION;
     uint32_t accepted = turns_or_morphs ? c_f32 | c_i8n | c_u8n | c_i16n | c_u16n : c_f32;
     /* weights are stored as scalars, one after another */
     uint32_t components = c.path == MODEL_PATH_WEIGHTS ? 1 : c.width;
-    uint64_t elements = c.path == MODEL_PATH_WEIGHTS ? values * c.width : values;
-    uint64_t given = accessor_at(f, accessor, output).count;
-    if (given != elements)
-        fail(output + text(" (accessor %d)", accessor),
-             text("%u keys of width %u%s need %llu elements, but the accessor has %llu", c.key_count, c.width,
-                  c.interpolation == MODEL_CUBICSPLINE ? " with tangents" : "",
-                  static_cast<unsigned long long>(elements), static_cast<unsigned long long>(given)));
-    c.values = allocate<float>(f, elements * components, output);
-    read_floats(f, accessor, components, accepted, elements, output, c.values);
-    if (c.path == MODEL_PATH_ROTATION) check_rotations(c, output + text(" (accessor %d)", accessor));
+    uint64_t given = accessor_at(f, accessor, output).count, per_key = key_width(c) / components;
+    if (given != c.key_count * per_key)
+        leave_out(f, output + text(" (accessor %d)", accessor),
+                  ": the number of values does not fit the number of keys; what has no partner was left out");
+    c.key_count = static_cast<uint32_t>(std::min<uint64_t>(c.key_count, given / per_key));
+    c.values = allocate<float>(f, given * components, output);
+    read_floats(f, accessor, components, accepted, given, output, c.values);
 }
+
+/* Of CUBICSPLINE keys, only the values between the tangents are rotations. */
+static const char *fault_of_key(const model_channel &c, size_t key)
+{
+    const size_t width = key_width(c);
+    const float *values = c.values + key * width, *q = values + (width / c.width / 2) * 4;
+    double square = 0.0;
+    bool numbers = !std::isnan(c.times[key]);
+    for (size_t i = 0; i < width; ++i) numbers = numbers && !std::isnan(values[i]);
+    if (!numbers) return ": a key with a number that is NaN, infinite or above 1e12 was left out";
+    for (int k = 0; k < 4 && c.path == MODEL_PATH_ROTATION; ++k)
+        square += static_cast<double>(q[k]) * static_cast<double>(q[k]);
+    return c.path == MODEL_PATH_ROTATION && !(square > 1e-6)
+               ? ": a key whose rotation is a quaternion of length 0 was left out"
+               : nullptr;
+}
+
+/* The keys that can be used, by time; of several at one time the last. */
+static std::vector<size_t> usable_keys(file &f, const model_channel &c, const std::string &where)
+{
+    std::vector<size_t> keys, kept;
+    for (size_t k = 0; k < c.key_count; ++k) {
+        if (const char *fault = fault_of_key(c, k))
+            leave_out(f, where + text(" key %zu", k), fault);
+        else
+            keys.push_back(k);
+    }
+    const auto earlier = [&c](size_t a, size_t b) { return c.times[a] < c.times[b]; };
+    if (!std::is_sorted(keys.begin(), keys.end(), earlier)) {
+        leave_out(f, where, ": its keys are not in the order of their times; they were sorted");
+        std::stable_sort(keys.begin(), keys.end(), earlier);
+    }
+    for (size_t k : keys) {
+        if (kept.empty() || c.times[kept.back()] < c.times[k]) {
+            kept.push_back(k);
+            continue;
+        }
+        leave_out(f, where + text(" key %zu at %g s", k, static_cast<double>(c.times[k])),
+                  " has the time of the key before it; the later one was kept");
+        kept.back() = k;
+    }
+    return kept;
+}
+
+static void keep_usable_keys(file &f, model_channel &c, const std::string &where)
+{
+    const std::vector<size_t> keys = usable_keys(f, c, where);
+    const size_t width = key_width(c);
+    const std::vector<float> times(c.times, c.times + c.key_count);
+    const std::vector<float> values(c.values, c.values + c.key_count * width);
+    if (keys.empty()) fail(where, "it has no key that can be used");
+    for (size_t i = 0; i < keys.size(); ++i) {
+        c.times[i] = times[keys[i]];
+        std::copy_n(&values[keys[i] * width], width, c.values + i * width);
+    }
+    c.key_count = static_cast<uint32_t>(keys.size());
+}
+
+/* --- channels --- */
 
 static void read_channel(file &f, const tinygltf::Animation &a, const tinygltf::AnimationChannel &source,
                          const std::string &where, model_channel &out)
 {
     const tinygltf::AnimationSampler &sampler = sampler_at(a, source.sampler, where);
-    out.interpolation = interpolation_of(sampler.interpolation, where);
-    out.width = width_of(f, out, where);
+    out.interpolation = interpolation_of(f, sampler.interpolation, where);
+    out.width = width_of(f, out);
     read_times(f, sampler.input, out, where);
     read_values(f, sampler.output, out, where);
+    keep_usable_keys(f, out, where);
+}
+
+/* A channel that cannot be read is left out: the character moves without it. */
+static void try_channel(file &f, const tinygltf::Animation &a, const tinygltf::AnimationChannel &source,
+                        const std::string &where, model_clip &out)
+{
+    model_channel &channel = out.channels[out.channel_count++]; /* counted first, so that it is freed */
+    const model_channel found = channel;
+    if (attempt(f, "; the channel was left out", [&] { read_channel(f, a, source, where, channel); })) return;
+    free(channel.times);
+    free(channel.values);
+    channel = found;
+    --out.channel_count;
 }
 
 static void read_channels(file &f, const tinygltf::Animation &a, const std::string &clip_where, model_clip &out)
@@ -133,25 +220,25 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
     std::set<std::pair<uint32_t, int>> taken;
     out.channels = allocate<model_channel>(f, a.channels.size(), clip_where);
     for (size_t i = 0; i < a.channels.size(); ++i) {
-        std::string where = clip_where + text(" channel %zu", i);
-        model_path path = MODEL_PATH_WEIGHTS;
-        uint32_t node = MODEL_NONE;
-        const char *reason = reason_to_skip(f, a.channels[i], where, path, node);
-        if (!reason && !taken.insert({ node, path }).second) reason = "another channel has the same target";
-        if (reason) {
-            leave_out(f, where, std::string(" was skipped: ") + reason);
+        const std::string where = clip_where + text(" channel %zu", i);
+        const target t = target_of(f, a.channels[i]);
+        model_channel &channel = out.channels[out.channel_count];
+        std::string reason = reason_to_skip(f, t, a.channels[i], channel);
+        if (reason.empty() && !taken.insert({ channel.node, channel.path }).second)
+            reason = "another channel has the same target";
+        if (!reason.empty()) {
+            leave_out(f, where, " was skipped: " + reason);
             continue;
         }
-        if (path != MODEL_PATH_WEIGHTS && !f.json.nodes[static_cast<size_t>(a.channels[i].target_node)].matrix.empty())
+        if (channel.path != MODEL_PATH_WEIGHTS && !f.json.nodes[static_cast<size_t>(t.node)].matrix.empty())
             leave_out(
-                f, "node '" + printable(f.out->nodes[node].name) + "'",
+                f, "node '" + printable(f.out->nodes[channel.node].name) + "'",
                 ": it has a matrix and is animated, which glTF forbids; the matrix was used for what is not animated");
-        model_channel &channel = out.channels[out.channel_count++];
-        channel.node = node;
-        channel.path = path;
-        read_channel(f, a, a.channels[i], where, channel);
-        float last = channel.times[channel.key_count - 1];
-        out.duration_s = last > out.duration_s ? last : out.duration_s;
+        try_channel(f, a, a.channels[i], where, out);
+    }
+    for (uint32_t i = 0; i < out.channel_count; ++i) {
+        const float last = out.channels[i].times[out.channels[i].key_count - 1];
+        out.duration_s = i == 0 || last > out.duration_s ? last : out.duration_s;
     }
 }
 

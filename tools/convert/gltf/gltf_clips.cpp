@@ -158,15 +158,20 @@ static void fill_bind_pose(const raw_skeleton &skeleton, raw_clip &clip)
 }
 
 /* stride: floats from one frame to the next */
-static void sample_track(const track &t, const timing &when, float *out, size_t stride, const std::string &where)
+static void sample_track(const set_job &job, const track &t, const timing &when, float *out, size_t stride,
+                         const std::string &where)
 {
     const model_channel &c = *t.channel;
     std::vector<double> value(c.width), before(c.width, 0.0);
+    uint32_t lost = 0;
     if (c.path == MODEL_PATH_ROTATION) std::copy_n(out, 4, before.begin()); /* the bind pose */
     for (uint32_t frame = 0; frame < when.frame_count; ++frame) {
         double time_s = frame_time_s(when, frame);
-        if (channel_sample(&c, time_s, when.near_s, value.data()))
-            fail(where, text("a rotation passes through zero at %g s: it has no direction there", time_s));
+        if (channel_sample(&c, time_s, when.near_s, value.data()) && !lost++)
+            check_memory(model_warn(job.m,
+                                    "%s: a rotation passes through zero at %g s and has no direction there; the "
+                                    "key before was kept",
+                                    where.c_str(), time_s));
         if (c.path == MODEL_PATH_ROTATION) quat_align(value.data(), before.data());
         for (size_t i = 0; i < c.width; ++i)
             out[frame * stride + i] = to_float(value[i], where + text(" at %g s", time_s));
@@ -193,7 +198,8 @@ static void fill_joints(const set_job &job, const std::vector<track> &tracks, co
         size_t stride = 0;
         if (t.joint == MODEL_NONE) continue;
         float *out = values_of(clip, t, stride);
-        sample_track(t, when, out, stride, where + " node '" + printable(job.m->nodes[t.channel->node].name) + "'");
+        sample_track(job, t, when, out, stride,
+                     where + " node '" + printable(job.m->nodes[t.channel->node].name) + "'");
     }
 }
 
@@ -209,7 +215,7 @@ static void fill_weights(const set_job &job, const track &t, const timing &when,
     std::vector<double> radius = radius_of(job, node, &clip);
     std::string place = where + " weights of node '" + printable(floats.name) + "'";
     for (uint32_t i = 0; i < width; ++i) floats.radius[i] = to_float(radius[i], place);
-    sample_track(t, when, floats.values, width, place);
+    sample_track(job, t, when, floats.values, width, place);
 }
 
 static void copy_events(const model_clip &from, raw_clip &clip)
@@ -291,11 +297,11 @@ static float first_key_s(const model_clip &clip)
 }
 
 /* Editors that count frames from 1 put the first key one frame after 0: each loop would stand still for that time. A
- * longer wait may be meant. */
+ * longer wait may be meant. A key before 0 is never reached. */
 static void trim_start(model &m, model_clip &clip)
 {
     const float first = first_key_s(clip), most = 0.1f;
-    if (!(first > 0.0f && first <= most && first < clip.duration_s)) return;
+    if (!(first < 0.0f || (first > 0.0f && first <= most && first < clip.duration_s))) return;
     for (uint32_t i = 0; i < clip.channel_count; ++i)
         for (uint32_t k = 0; k < clip.channels[i].key_count; ++k) clip.channels[i].times[k] -= first;
     for (uint32_t i = 0; i < clip.event_count; ++i)

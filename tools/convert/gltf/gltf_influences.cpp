@@ -16,23 +16,24 @@ struct influence {
 };
 
 /* How many sets of four influences a primitive has. */
-static size_t count_sets(const tinygltf::Primitive &p, const std::string &where)
+static size_t count_sets(file &f, const tinygltf::Primitive &p, const std::string &where)
 {
     size_t count = 0;
     for (;; ++count) {
         bool joints = p.attributes.count(text("JOINTS_%zu", count)) > 0,
              weights = p.attributes.count(text("WEIGHTS_%zu", count)) > 0;
         if (joints != weights)
-            fail(where, text("it has %s_%zu without %s_%zu", joints ? "JOINTS" : "WEIGHTS", count,
-                             joints ? "WEIGHTS" : "JOINTS", count));
-        if (!joints) return count;
+            leave_out(f, where,
+                      text(": it has %s_%zu without %s_%zu, which was ignored", joints ? "JOINTS" : "WEIGHTS", count,
+                           joints ? "WEIGHTS" : "JOINTS", count));
+        if (!joints || !weights) return count;
         if (count == sets_max) fail(where, text("it has more than %zu sets of joints and weights", sets_max));
     }
 }
 
 bool has_influences(const tinygltf::Primitive &p)
 {
-    return p.attributes.count("JOINTS_0") > 0;
+    return p.attributes.count("JOINTS_0") > 0 && p.attributes.count("WEIGHTS_0") > 0;
 }
 
 /* [vertex][set][4]; joints below 65536 are exact as floats */
@@ -72,14 +73,12 @@ static double sum_of(const std::vector<influence> &used)
 
 /* Used influences of one vertex, the strongest first. A vertex without any weight would have no position in any pose:
  * it follows the joint that it lists first. */
-static std::vector<influence> sort_influences(const float *joints, const float *weights, size_t count,
+static std::vector<influence> sort_influences(file &f, const float *joints, const float *weights, size_t count,
                                               const std::string &where, size_t vertex)
 {
     std::vector<influence> used;
     for (size_t i = 0; i < count; ++i) {
-        if (weights[i] < 0.0f)
-            fail(where + text(" vertex %zu", vertex),
-                 text("the weight %g is negative", static_cast<double>(weights[i])));
+        if (weights[i] < 0.0f) leave_out(f, where + text(" vertex %zu", vertex), ": a weight below 0 was read as 0");
         if (weights[i] > 0.0f) used.push_back({ static_cast<uint32_t>(joints[i]), weights[i] });
     }
     if (used.empty()) return { { static_cast<uint32_t>(joints[0]), 1.0f } };
@@ -111,8 +110,8 @@ void allocate_influences(file &f, const std::string &where, model_mesh &out)
     out.joint_weights = allocate<float>(f, uint64_t{ out.vertex_count } * MODEL_INFLUENCES_MAX, where);
 }
 
-/* A primitive without joints, in a mesh with joints, follows the first joint. */
-static void fill_rigid(const model_submesh &part, model_mesh &out)
+/* A primitive without joints, in a mesh with joints. */
+void bind_to_first_joint(const model_submesh &part, model_mesh &out)
 {
     for (size_t v = 0; v < part.vertex_count; ++v)
         out.joint_weights[(part.first_vertex + v) * MODEL_INFLUENCES_MAX] = 1.0f;
@@ -134,10 +133,10 @@ static void note_changes(const std::vector<influence> &used, double lost, double
 void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &vertices, const model_submesh &part,
                      const std::string &where, model_mesh &out, influence_changes &changes)
 {
-    size_t sets = count_sets(p, where), count = part.vertex_count;
+    size_t sets = count_sets(f, p, where), count = part.vertex_count;
     if (sets == 0) {
         leave_out(f, where, " has no joints, but others of its mesh have: it was bound to the first joint");
-        fill_rigid(part, out);
+        bind_to_first_joint(part, out);
         return;
     }
     charge(f, uint64_t{ count } * sets, 8 * sizeof(float), where);
@@ -146,7 +145,7 @@ void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &v
     const double rounding = weight_rounding(f, p, sets);
     for (size_t v = 0; v < count; ++v) {
         const float *given = &weights[v * sets * 4];
-        const std::vector<influence> used = sort_influences(&joints[v * sets * 4], given, sets * 4, where,
+        const std::vector<influence> used = sort_influences(f, &joints[v * sets * 4], given, sets * 4, where,
                                                             vertices.at(v));
         changes.unbound += *std::max_element(given, given + sets * 4) <= 0.0f;
         note_changes(used, store_influences(used, part.first_vertex + v, out), rounding, changes);
@@ -167,13 +166,28 @@ void warn_influence_changes(file &f, const influence_changes &changes, const std
              where.c_str(), changes.truncated, MODEL_INFLUENCES_MAX, changes.most_lost);
 }
 
-/* A mesh refers to joints by their place in the skin of the node that draws it. */
-void check_influences(const model_mesh &mesh, uint32_t joint_count)
+/* A mesh refers to joints by their place in the skin of the node that draws it. A joint that the skin lacks gives its
+ * weight to the vertex's others; a vertex without others follows the first joint. */
+void check_influences(file &f, model_mesh &mesh, uint32_t joint_count)
 {
-    for (size_t i = 0; mesh.joint_limit > joint_count && i < size_t{ mesh.vertex_count } * MODEL_INFLUENCES_MAX; ++i)
-        if (mesh.joints[i] >= joint_count)
-            fail("mesh '" + printable(mesh.name) + "'", text("vertex %zu follows joint %u, but its skin has %u joints",
-                                                             i / MODEL_INFLUENCES_MAX, mesh.joints[i], joint_count));
+    for (size_t v = 0; mesh.joint_limit > joint_count && v < mesh.vertex_count; ++v) {
+        uint16_t *joints = mesh.joints + v * MODEL_INFLUENCES_MAX;
+        float *weights = mesh.joint_weights + v * MODEL_INFLUENCES_MAX;
+        std::vector<influence> kept;
+        bool all = true;
+        for (uint32_t i = 0; i < MODEL_INFLUENCES_MAX; ++i) {
+            all = all && joints[i] < joint_count;
+            if (joints[i] < joint_count && weights[i] > 0.0f) kept.push_back({ joints[i], weights[i] });
+        }
+        if (all) continue;
+        leave_out(f, "mesh '" + printable(mesh.name) + text("' vertex %zu", v),
+                  " follows a joint that its skin does not have; the joint was ignored");
+        if (kept.empty()) kept.push_back({ 0, 1.0f });
+        std::fill_n(joints, MODEL_INFLUENCES_MAX, uint16_t{ 0 });
+        std::fill_n(weights, MODEL_INFLUENCES_MAX, 0.0f);
+        store_influences(kept, v, mesh);
+    }
+    mesh.joint_limit = std::min(mesh.joint_limit, joint_count);
 }
 
 } // namespace gltf

@@ -91,6 +91,7 @@ struct file {
     std::vector<uint32_t> mesh_of; /* [json.meshes] index into out->meshes or MODEL_NONE */
     std::vector<uint32_t> node_of; /* [json.nodes] likewise */
     std::vector<uint32_t> skin_of; /* [json.skins] likewise */
+    size_t in_scene = 0;           /* of out->nodes; what follows are joints outside the scene, then instances */
     /* from {use, texture, -1}, or {DATA, occlusion, metallic-roughness}, to an index into out->textures or MODEL_NONE
      */
     std::map<std::array<int, 4>, uint32_t> texture_of;
@@ -107,6 +108,17 @@ template <class... Arguments> void warn(file &f, const char *format, Arguments..
  * ...", ": the normal texture was left out"). After the file has been read there is one warning for each `what`, which
  * names the first place and counts the others: a file of a thousand nodes cannot bury other warnings. */
 void leave_out(file &f, const std::string &where, const std::string &what);
+/* Read a part that the model can do without: where it fails, note why and `lost` ("; its channel was left out"). */
+template <class Reader> bool attempt(file &f, const char *lost, Reader reader)
+{
+    try {
+        reader();
+        return true;
+    } catch (const failure &reason) {
+        leave_out(f, reason.where, ": " + reason.what + lost);
+        return false;
+    }
+}
 /* Give those warnings. */
 void warn_left_out(file &f);
 /* Count bytes of the model before they are allocated; refuse more than an honest file of this size needs. */
@@ -169,7 +181,7 @@ enum component : uint32_t {
     c_f32 = 512
 };
 const tinygltf::Accessor &accessor_at(const file &f, int accessor, const std::string &where);
-/* Read an accessor as floats, all checked to be finite.
+/* Read an accessor as floats. What is infinite or above 1e12 becomes NaN: the caller repairs it.
  * components  1 to 4 per element, or 16: a 4 x 4 matrix
  * accepted    a set of component bits
  * count       the number of elements in `out`; any other count in the file is an error */
@@ -189,15 +201,18 @@ struct vertex_list {
         return used.empty() ? i : used[i];
     }
 };
-/* The same for those elements alone. */
+/* The same for those elements alone, with a warning and 0 for every NaN. */
 void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
                    const std::string &where, float *out);
-/* Read an accessor as vertex indices, each checked to be below limit. */
-std::vector<uint32_t> read_indices(file &f, int accessor, uint32_t limit, const std::string &where);
+/* Read an accessor as vertex indices; the caller checks their range. */
+std::vector<uint32_t> read_indices(file &f, int accessor, const std::string &where);
 
 /* --- the parts of the model --- */
 void read_materials(file &f);
 void read_meshes(file &f);
+/* The weights of a mesh or a node; out[target_count] is zeros before. */
+void read_target_weights(file &f, const std::vector<double> &given, const std::string &where, uint32_t target_count,
+                         float *out);
 bool has_influences(const tinygltf::Primitive &p);
 void allocate_influences(file &f, const std::string &where, model_mesh &out);
 /* How the weights of one mesh's vertices were changed. */
@@ -209,6 +224,7 @@ struct influence_changes {
 };
 void read_influences(file &f, const tinygltf::Primitive &p, const vertex_list &vertices, const model_submesh &part,
                      const std::string &where, model_mesh &out, influence_changes &changes);
+void bind_to_first_joint(const model_submesh &part, model_mesh &out);
 void warn_influence_changes(file &f, const influence_changes &changes, const std::string &where);
 /* The UV set that a primitive's base colour texture uses ("TEXCOORD_1"), or the first where the primitive lacks it. */
 /* The texture coordinates of a material, and KHR_texture_transform on them, taken from its first texture. */
@@ -218,7 +234,7 @@ struct uv_use {
 };
 uv_use uv_use_of(const tinygltf::Material &m);
 std::string uv_name(const file &f, const tinygltf::Primitive &p);
-void check_influences(const model_mesh &mesh, uint32_t joint_count);
+void check_influences(file &f, model_mesh &mesh, uint32_t joint_count);
 void read_nodes(file &f);
 void read_skins(file &f); /* after read_nodes */
 void read_animations(file &f);

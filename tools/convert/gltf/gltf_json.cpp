@@ -39,6 +39,8 @@ static const integer_rule integer_rules[] = {
 /* Extensions that are understood, or may be ignored if they are not required. */
 static const char *const supported[] = { "KHR_mesh_quantization",
                                          "EXT_meshopt_compression",
+                                         "KHR_animation_pointer",
+                                         "EXT_mesh_gpu_instancing",
                                          "KHR_texture_transform",
                                          "KHR_materials_unlit",
                                          "KHR_materials_specular",
@@ -246,6 +248,23 @@ static bool is_fallback(const json &object)
     return fallback != meshopt->end() && fallback->is_boolean() && fallback->get<bool>();
 }
 
+/* KHR_meshopt_compression is the ratified name of EXT_meshopt_compression. */
+static void rename_meshopt(json &document)
+{
+    const char *const old = "EXT_meshopt_compression", *const ratified = "KHR_meshopt_compression";
+    for (const char *name : { "extensionsUsed", "extensionsRequired", "buffers", "bufferViews" }) {
+        auto list = document.find(name);
+        if (list == document.end() || !list->is_array()) continue;
+        for (json &item : *list) {
+            if (item == ratified) item = old;
+            auto extensions = item.is_object() ? item.find("extensions") : item.end();
+            if (extensions == item.end() || !extensions->is_object() || !extensions->contains(ratified)) continue;
+            (*extensions)[old] = (*extensions)[ratified];
+            extensions->erase(ratified);
+        }
+    }
+}
+
 static void take_buffers(file &f, json &document)
 {
     json array = take(document, "buffers");
@@ -383,8 +402,9 @@ void parse_json(file &f, const char *text_begin, size_t size)
 {
     json document = parse_text(text_begin, size);
     check_asset(document);
-    check_required(document);
     check_top_level(document);
+    rename_meshopt(document);
+    check_required(document);
     check_value(document, "", "");
     check_members(document);
     find_unsupported(f, document);

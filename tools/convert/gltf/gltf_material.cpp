@@ -124,8 +124,9 @@ static void read_sampler(file &f, int index, model_texture &out, const std::stri
 {
     tinygltf::Sampler sampler; /* with glTF's defaults */
     if (index >= 0 && static_cast<size_t>(index) >= f.json.samplers.size())
-        fail(where, text("sampler %d does not exist: the file has %zu", index, f.json.samplers.size()));
-    if (index >= 0) sampler = f.json.samplers[static_cast<size_t>(index)];
+        leave_out(f, where, ": its sampler does not exist; glTF's default was used");
+    else if (index >= 0)
+        sampler = f.json.samplers[static_cast<size_t>(index)];
     out.wrap_s = wrap_of(f, sampler.wrapS, where);
     out.wrap_t = wrap_of(f, sampler.wrapT, where);
     out.mag_filter = filter_of(f, sampler.magFilter, where);
@@ -151,8 +152,10 @@ static size_t image_of(const file &f, const tinygltf::Texture &texture, const st
 
 static void read_texture(file &f, size_t index, model_texture &out)
 {
-    const tinygltf::Texture &texture = f.json.textures[index];
     std::string where = text("texture %zu", index);
+    if (index >= f.json.textures.size())
+        fail(where, text("it does not exist: the file has %zu", f.json.textures.size()));
+    const tinygltf::Texture &texture = f.json.textures[index];
     const size_t place = image_of(f, texture, where);
     const image &source = f.images[place];
     where += text(" image %zu", place);
@@ -189,8 +192,6 @@ static uint32_t try_texture(file &f, size_t index, const std::string &material)
 static uint32_t texture_for(file &f, int index, model_texture_use use, const std::string &where)
 {
     if (index < 0) return MODEL_NONE;
-    if (static_cast<size_t>(index) >= f.json.textures.size())
-        fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
     const std::array<int, 4> key = { static_cast<int>(use), index, -1, -1 };
     auto found = f.texture_of.find(key);
     if (found != f.texture_of.end()) return found->second;
@@ -250,13 +251,6 @@ static void add_channel(file &f, uint32_t slot, int index, size_t channel, const
     drop_last_texture(f);
 }
 
-static void check_indices(const file &f, std::initializer_list<int> indices, const std::string &where)
-{
-    for (int index : indices)
-        if (index >= 0 && static_cast<size_t>(index) >= f.json.textures.size())
-            fail(where, text("texture %d does not exist: the file has %zu", index, f.json.textures.size()));
-}
-
 /* Images become one, so that a pixel reads one texture: added images take its size and sampling. */
 static uint32_t make_surface_texture(file &f, int occlusion, int roughness, int weight, const std::string &where)
 {
@@ -281,7 +275,6 @@ static uint32_t make_surface_texture(file &f, int occlusion, int roughness, int 
 static uint32_t surface_texture(file &f, int occlusion, int roughness, int weight, const std::string &where)
 {
     if (occlusion < 0 && roughness < 0 && weight < 0) return MODEL_NONE;
-    check_indices(f, { occlusion, roughness, weight }, where);
     const std::array<int, 4> key = { static_cast<int>(MODEL_TEXTURE_DATA), occlusion, roughness, weight };
     auto found = f.texture_of.find(key);
     if (found != f.texture_of.end()) return found->second;
@@ -291,7 +284,6 @@ static uint32_t surface_texture(file &f, int occlusion, int roughness, int weigh
 /* The colour of reflections with their weight in alpha. */
 static uint32_t specular_texture(file &f, int color, int weight, const std::string &where)
 {
-    check_indices(f, { color, weight }, where);
     const std::array<int, 4> key = { SPECULAR_KEY, color, weight, -1 };
     auto found = f.texture_of.find(key);
     if (found != f.texture_of.end()) return found->second;
@@ -481,7 +473,6 @@ static void set_roughness(model_texture &t, size_t channel, double gloss)
 static void read_gloss_map(file &f, int index, int occlusion, double gloss, model_material &out,
                            const std::string &where)
 {
-    check_indices(f, { index, occlusion }, where);
     const uint32_t slot = try_texture(f, static_cast<size_t>(index), where);
     if (slot == MODEL_NONE) {
         out.surface_texture = surface_texture(f, occlusion, -1, -1, where);

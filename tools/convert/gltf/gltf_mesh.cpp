@@ -81,9 +81,7 @@ static uint32_t accepted_uv_delta(const file &f)
 
 static std::vector<uint32_t> listed_vertices(file &f, const mesh_job &job, const part &p)
 {
-    if (p.source->indices >= 0)
-        return read_indices(f, p.source->indices, static_cast<uint32_t>(p.vertices.total),
-                            where_of(job, p) + " indices");
+    if (p.source->indices >= 0) return read_indices(f, p.source->indices, where_of(job, p) + " indices");
     charge(f, p.vertices.total, sizeof(uint32_t), where_of(job, p));
     std::vector<uint32_t> list(p.vertices.total);
     for (size_t i = 0; i < list.size(); ++i) list[i] = static_cast<uint32_t>(i);
@@ -113,14 +111,31 @@ static std::vector<uint32_t> unroll(file &f, const std::vector<uint32_t> &list, 
     return out;
 }
 
+static void drop_bad_triangles(file &f, const std::string &where, uint64_t vertex_count, std::vector<uint32_t> &list)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i + 2 < list.size(); i += 3) {
+        const uint32_t a = list[i], b = list[i + 1], c = list[i + 2];
+        if (std::max({ a, b, c }) >= vertex_count) {
+            leave_out(f, where + text(" triangle %zu", i / 3), " was left out: the primitive has no such vertex");
+            continue;
+        }
+        list[kept++] = a;
+        list[kept++] = b;
+        list[kept++] = c;
+    }
+    list.resize(kept);
+}
+
 static void read_triangles(file &f, const mesh_job &job, part &p)
 {
     std::vector<uint32_t> list = listed_vertices(f, job, p);
     if (p.source->mode != TINYGLTF_MODE_TRIANGLES)
         list = unroll(f, list, p.source->mode, where_of(job, p));
-    else if (list.size() % 3 != 0)
-        fail(where_of(job, p),
-             text("%zu corners are not whole triangles: the number must be a multiple of 3", list.size()));
+    else if (list.size() % 3 != 0) {
+        leave_out(f, where_of(job, p), ": its last corners are no whole triangle and were left out");
+    }
+    drop_bad_triangles(f, where_of(job, p), p.vertices.total, list);
     p.indices.swap(list);
 }
 
@@ -150,15 +165,10 @@ static void keep_used_vertices(part &p)
 
 static const char *reason_to_skip(const tinygltf::Primitive &p)
 {
+    if (p.mode < TINYGLTF_MODE_POINTS || p.mode > TINYGLTF_MODE_TRIANGLE_FAN) return "its mode is unknown";
     if (p.mode >= TINYGLTF_MODE_POINTS && p.mode <= TINYGLTF_MODE_LINE_STRIP)
         return "it holds points or lines, not triangles";
     return has(p.attributes, "POSITION") ? nullptr : "it has no POSITION";
-}
-
-static void check_mode(const tinygltf::Primitive &p, const std::string &where)
-{
-    if (p.mode < TINYGLTF_MODE_POINTS || p.mode > TINYGLTF_MODE_TRIANGLE_FAN)
-        fail(where, text("the mode %d is unknown", p.mode));
 }
 
 static void check_vertex_total(const mesh_job &job, uint64_t vertices, uint64_t indices)
@@ -174,17 +184,18 @@ static void find_parts(file &f, mesh_job &job)
         const tinygltf::Primitive &source = job.source->primitives[i];
         part p = { &source, i, {}, static_cast<uint32_t>(vertices), {} };
         std::string where = where_of(job, p);
-        check_mode(source, where);
         if (const char *reason = reason_to_skip(source)) {
             leave_out(f, where, std::string(" was skipped: ") + reason);
             continue;
         }
         int position = find(source.attributes, "POSITION");
         p.vertices.total = accessor_at(f, position, where + " POSITION").count;
-        if (p.vertices.total == 0)
-            fail(where + text(" POSITION (accessor %d)", position), "the primitive has no vertices");
+        if (p.vertices.total == 0) {
+            leave_out(f, where, " was skipped: it has no vertices");
+            continue;
+        }
         check_vertex_total(job, p.vertices.total, indices);
-        read_triangles(f, job, p);
+        if (!attempt(f, "; the primitive was left out", [&] { read_triangles(f, job, p); })) continue;
         if (p.indices.empty()) {
             leave_out(f, where, " was skipped: it has no triangle");
             continue;
@@ -213,7 +224,9 @@ static void check_target_counts(const mesh_job &job)
 
 static const tinygltf::Material *material_of(const file &f, const tinygltf::Primitive &p)
 {
-    return p.material >= 0 ? &f.json.materials[static_cast<size_t>(p.material)] : nullptr;
+    return static_cast<size_t>(p.material) < f.json.materials.size()
+               ? &f.json.materials[static_cast<size_t>(p.material)]
+               : nullptr;
 }
 
 static uv_use uv_use_of(const file &f, const tinygltf::Primitive &p)
@@ -311,40 +324,36 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
     const size_t first = p.first_vertex;
     read_vertices(f, find(a, "POSITION"), 3, accepted_position(f), p.vertices, where + " POSITION",
                   m.position + first * 3);
-    if (has(a, "NORMAL"))
-        read_vertices(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertices, where + " NORMAL", m.normal + first * 3);
-    else
+    if (!has(a, "NORMAL") || !attempt(f, "; normals were computed", [&] {
+            read_vertices(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertices, where + " NORMAL",
+                          m.normal + first * 3);
+        }))
         submesh.missing |= MODEL_MISSING_NORMAL;
-    if (has(a, "TANGENT"))
-        read_tangent(f, job, p, m.tangent + first * 4);
-    else if (m.tangent)
+    if (m.tangent && (!has(a, "TANGENT") ||
+                      !attempt(f, "; tangents were computed", [&] { read_tangent(f, job, p, m.tangent + first * 4); })))
         submesh.missing |= MODEL_MISSING_TANGENT;
     std::string uv = uv_name(f, *p.source);
     if (has(a, uv)) {
         if (uv != text("TEXCOORD_%d", uv_use_of(f, *p.source).set))
             leave_out(f, where, ": it lacks the UV set that its texture uses; TEXCOORD_0 was used");
-        read_vertices(f, find(a, uv), 2, accepted_uv(f), p.vertices, where + " " + uv, m.uv + first * 2);
-        transform_uvs(f, job, p, 1.0, m.uv + first * 2);
+        (void)attempt(f, "; texture coordinates are 0", [&] {
+            read_vertices(f, find(a, uv), 2, accepted_uv(f), p.vertices, where + " " + uv, m.uv + first * 2);
+            transform_uvs(f, job, p, 1.0, m.uv + first * 2);
+        });
     }
-    if (m.color) read_color(f, job, p, m.color + first * 4);
+    if (m.color) (void)attempt(f, "; colours are white", [&] { read_color(f, job, p, m.color + first * 4); });
 }
 
-static void read_submesh(mesh_job &job, const part &p, uint32_t first_index, model_submesh &out)
+static void read_submesh(file &f, mesh_job &job, const part &p, uint32_t first_index, model_submesh &out)
 {
     out.first_index = first_index;
     out.index_count = static_cast<uint32_t>(p.indices.size());
     out.first_vertex = p.first_vertex;
     out.vertex_count = static_cast<uint32_t>(p.vertices.count());
-    out.material = p.source->material >= 0 ? static_cast<uint32_t>(p.source->material) : MODEL_NONE;
+    out.material = material_of(f, *p.source) ? static_cast<uint32_t>(p.source->material) : MODEL_NONE;
+    if (p.source->material >= 0 && out.material == MODEL_NONE)
+        leave_out(f, where_of(job, p), ": its material does not exist; glTF's default was used");
     for (size_t i = 0; i < p.indices.size(); ++i) job.out->indices[first_index + i] = p.indices[i] + p.first_vertex;
-}
-
-static void check_materials(const file &f, const mesh_job &job)
-{
-    for (const part &p : job.parts)
-        if (p.source->material >= 0 && static_cast<size_t>(p.source->material) >= f.json.materials.size())
-            fail(where_of(job, p),
-                 text("material %d does not exist: the file has %zu", p.source->material, f.json.materials.size()));
 }
 
 /* --- targets --- */
@@ -352,7 +361,7 @@ static void check_materials(const file &f, const mesh_job &job)
 /* Deltas are used only if the base has the attribute: else they belong to a surface that the file does not have. */
 static bool gives(const part &p, size_t target, const char *name)
 {
-    return has(p.source->targets[target], name) && has(p.source->attributes, name);
+    return target < p.source->targets.size() && has(p.source->targets[target], name) && has(p.source->attributes, name);
 }
 
 static bool any_part_gives(const mesh_job &job, size_t target, const char *name)
@@ -496,14 +505,18 @@ static void name_targets(file &f, mesh_job &job)
     }
 }
 
+void read_target_weights(file &f, const std::vector<double> &given, const std::string &where, uint32_t target_count,
+                         float *out)
+{
+    if (!given.empty() && given.size() != target_count)
+        leave_out(f, where, " has another number of weights than of morph targets; those without one are 0");
+    for (size_t i = 0; i < given.size() && i < target_count; ++i) out[i] = to_float(given[i], where + " weights");
+}
+
 static void read_default_weights(file &f, mesh_job &job)
 {
-    const std::vector<double> &weights = job.source->weights;
-    if (!weights.empty() && weights.size() != job.out->target_count)
-        fail(job.where, text("the mesh has %zu weights for %u morph targets: there must be one for each",
-                             weights.size(), job.out->target_count));
     job.out->weights = allocate<float>(f, job.out->target_count, job.where);
-    for (size_t i = 0; i < weights.size(); ++i) job.out->weights[i] = to_float(weights[i], job.where + " weights");
+    read_target_weights(f, job.source->weights, job.where, job.out->target_count, job.out->weights);
 }
 
 static void read_targets(file &f, mesh_job &job)
@@ -539,21 +552,23 @@ static void read_skinning(file &f, mesh_job &job)
     allocate_influences(f, job.where, *job.out);
     influence_changes changes;
     for (size_t i = 0; i < job.parts.size(); ++i)
-        read_influences(f, *job.parts[i].source, job.parts[i].vertices, job.out->submeshes[i],
-                        where_of(job, job.parts[i]), *job.out, changes);
+        if (!attempt(f, "; the primitive was bound to the first joint", [&] {
+                read_influences(f, *job.parts[i].source, job.parts[i].vertices, job.out->submeshes[i],
+                                where_of(job, job.parts[i]), *job.out, changes);
+            }))
+            bind_to_first_joint(job.out->submeshes[i], *job.out);
     warn_influence_changes(f, changes, job.where);
 }
 
 static void fill_mesh(file &f, mesh_job &job)
 {
     uint32_t first_index = 0;
-    check_materials(f, job);
     check_target_counts(job);
     count_mesh(job);
     allocate_base(f, job);
     for (size_t i = 0; i < job.parts.size(); ++i) {
         model_submesh &submesh = job.out->submeshes[i];
-        read_submesh(job, job.parts[i], first_index, submesh);
+        read_submesh(f, job, job.parts[i], first_index, submesh);
         read_base(f, job, job.parts[i], submesh);
         first_index += submesh.index_count;
     }

@@ -103,6 +103,8 @@ bytes decode_meshopt(file &f, const tinygltf::Value &extension, const std::strin
     check_filter(s, where);
     charge(f, s.count, s.stride, where);
     bytes out(static_cast<size_t>(s.count * s.stride));
+    if (s.mode == "ATTRIBUTES" && s.source.size && s.source.data[0] == 0xa1)
+        fail(where, "EXT_meshopt_compression: codec version 1 is not read: compress the file with version 0");
     if (decode(s, out) != 0) fail(where, "EXT_meshopt_compression: the compressed data is damaged");
     apply_filter(s, out);
     return out;

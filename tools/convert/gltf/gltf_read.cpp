@@ -98,8 +98,12 @@ static void read_model(file &f, const bytes &data)
     read_springs(f);
     find_left_out(f);
     warn_left_out(f);
-    if (f.out->mesh_count == 0 && f.out->clip_count == 0)
-        fail("glTF JSON", "the file has no triangle meshes and no animations: there is nothing to convert");
+    if (f.out->mesh_count == 0 && f.out->clip_count == 0) {
+        const std::string nothing = "the file has no triangle meshes and no animations: there is nothing to convert";
+        if (f.losses.empty()) fail("glTF JSON", nothing);
+        const left_out &loss = f.losses[0];
+        fail(loss.first, nothing + "; " + loss.what.substr(loss.what.find(' ') + 1));
+    }
 }
 
 struct model_deleter {

@@ -3,6 +3,7 @@
 
 #include "noh/base.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -64,10 +65,9 @@ static std::vector<size_t> root_nodes(const file &f)
 }
 
 /* Depth first: parents before children, children in the file's order. */
-static std::vector<visit> visit_order(file &f)
+static void visit_below(file &f, const std::vector<size_t> &roots, std::vector<visit> &order)
 {
-    std::vector<size_t> roots = root_nodes(f);
-    std::vector<visit> order, open;
+    std::vector<visit> open;
     for (size_t i = roots.size(); i-- > 0;) open.push_back({ roots[i], MODEL_NONE });
     while (!open.empty()) {
         visit v = open.back();
@@ -79,6 +79,38 @@ static std::vector<visit> visit_order(file &f)
         const std::vector<int> &children = f.json.nodes[v.node].children;
         for (size_t i = children.size(); i-- > 0;) open.push_back({ static_cast<size_t>(children[i]), index });
     }
+}
+
+/* The roots above joints that the scene forgot, of skins whose meshes it draws. */
+static std::vector<size_t> forgotten_roots(file &f)
+{
+    std::vector<size_t> parents(f.json.nodes.size(), SIZE_MAX), roots;
+    for (size_t i = 0; i < f.json.nodes.size(); ++i)
+        for (int child : f.json.nodes[i].children) parents[static_cast<size_t>(child)] = i;
+    for (size_t i = 0; i < f.json.nodes.size(); ++i) {
+        const size_t skin = static_cast<size_t>(f.json.nodes[i].skin);
+        if (f.node_of[i] == MODEL_NONE || skin >= f.json.skins.size()) continue;
+        for (int joint : f.json.skins[skin].joints) {
+            size_t root = static_cast<size_t>(joint), steps = 0;
+            if (root >= parents.size() || f.node_of[root] != MODEL_NONE) continue;
+            while (parents[root] != SIZE_MAX && steps++ < parents.size()) root = parents[root];
+            if (parents[root] == SIZE_MAX && std::find(roots.begin(), roots.end(), root) == roots.end())
+                roots.push_back(root);
+        }
+    }
+    return roots;
+}
+
+static std::vector<visit> visit_order(file &f)
+{
+    std::vector<visit> order;
+    visit_below(f, root_nodes(f), order);
+    const std::vector<size_t> forgotten = forgotten_roots(f);
+    f.in_scene = order.size();
+    for (size_t root : forgotten)
+        leave_out(f, where_of(f, root),
+                  " holds joints of a skin but is not in the default scene: its joints were read, its meshes were not");
+    visit_below(f, forgotten, order);
     /* every node has at most one parent, so nodes that no root leads to form a cycle */
     if (f.json.scenes.empty() && order.size() != f.json.nodes.size())
         fail("nodes", text("%zu nodes are their own ancestors", f.json.nodes.size() - order.size()));
@@ -92,12 +124,15 @@ struct transform {
     double matrix[16];
 };
 
-static void read_numbers(const std::vector<double> &from, size_t count, const char *name, const std::string &where,
-                         double *out)
+static void read_numbers(file &f, const std::vector<double> &from, size_t count, const char *name,
+                         const std::string &where, double *out)
 {
     if (from.empty()) return;
-    if (from.size() != count) fail(where, text("'%s' has %zu numbers; it needs %zu", name, from.size(), count));
-    for (size_t i = 0; i < count; ++i) out[i] = static_cast<double>(to_float(from[i], where + " " + name));
+    (void)attempt(f, "; it was ignored", [&] {
+        if (from.size() != count) fail(where, text("'%s' has %zu numbers; it needs %zu", name, from.size(), count));
+        for (double number : from) (void)to_float(number, where + " " + name);
+        for (size_t i = 0; i < count; ++i) out[i] = static_cast<double>(static_cast<float>(from[i]));
+    });
 }
 
 static void normalize_rotation(file &f, double *q, const std::string &where)
@@ -195,24 +230,27 @@ static void decompose(file &f, transform &t, const std::string &where)
         leave_out(f, where, ": the matrix is skewed; as translation, rotation and scale it is only approximate");
 }
 
-static void check_affine(const double *m, const std::string &where)
+static void check_affine(file &f, double *m, const std::string &where)
 {
     if (m[3] != 0.0 || m[7] != 0.0 || m[11] != 0.0 || m[15] != 1.0)
-        fail(where, "the matrix is not affine: its last row must be 0 0 0 1");
+        leave_out(f, where, ": the matrix is not affine; its last row was taken as 0 0 0 1");
+    m[3] = m[7] = m[11] = 0.0;
+    m[15] = 1.0;
 }
 
 static transform read_transform(file &f, const tinygltf::Node &node, const std::string &where)
 {
     transform t = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 1.0 }, { 1.0, 1.0, 1.0 }, { 0.0 } };
     if (!node.matrix.empty()) {
-        read_numbers(node.matrix, 16, "matrix", where, t.matrix);
-        check_affine(t.matrix, where);
+        t.matrix[0] = t.matrix[5] = t.matrix[10] = t.matrix[15] = 1.0;
+        read_numbers(f, node.matrix, 16, "matrix", where, t.matrix);
+        check_affine(f, t.matrix, where);
         decompose(f, t, where);
         return t;
     }
-    read_numbers(node.translation, 3, "translation", where, t.translation);
-    read_numbers(node.rotation, 4, "rotation", where, t.rotation);
-    read_numbers(node.scale, 3, "scale", where, t.scale);
+    read_numbers(f, node.translation, 3, "translation", where, t.translation);
+    read_numbers(f, node.rotation, 4, "rotation", where, t.rotation);
+    read_numbers(f, node.scale, 3, "scale", where, t.scale);
     normalize_rotation(f, t.rotation, where);
     compose(t);
     return t;
@@ -278,11 +316,8 @@ static void read_weights(file &f, const tinygltf::Node &node, model_node &out, c
         return;
     }
     const model_mesh &mesh = f.out->meshes[out.mesh];
-    if (node.weights.size() != mesh.target_count)
-        fail(where, text("the node has %zu weights, but its mesh '%s' has %u morph targets: there must be one for each",
-                         node.weights.size(), printable(mesh.name).c_str(), mesh.target_count));
     out.weights = allocate<float>(f, mesh.target_count, where);
-    for (size_t i = 0; i < node.weights.size(); ++i) out.weights[i] = to_float(node.weights[i], where + " weights");
+    read_target_weights(f, node.weights, where, mesh.target_count, out.weights);
 }
 
 static void read_node(file &f, const visit &v, model_node &out)
@@ -293,10 +328,102 @@ static void read_node(file &f, const visit &v, model_node &out)
     out.parent = v.parent;
     out.skin = MODEL_NONE;
     read_mesh_of_node(f, node, out, where);
+    if (f.node_of[v.node] >= f.in_scene) out.mesh = MODEL_NONE;
     read_weights(f, node, out, where);
     transform t = read_transform(f, node, where);
     if (out.parent == MODEL_NONE && faces_back(f)) turn_round(t);
     store_transform(f, t, out, where);
+}
+
+/* --- EXT_mesh_gpu_instancing: a node for each instance, below the node that has them --- */
+
+struct instances {
+    size_t node; /* in the file */
+    uint64_t count;
+    std::vector<float> translation, rotation, scale; /* empty: none of them given */
+};
+
+static std::vector<float> read_instance_numbers(file &f, const tinygltf::Value &attributes, const char *name,
+                                                uint32_t width, const std::string &where, uint64_t &count)
+{
+    if (!attributes.IsObject() || !attributes.Has(name) || !attributes.Get(name).IsInt()) return {};
+    const int accessor = attributes.Get(name).Get<int>();
+    const uint64_t given = accessor_at(f, accessor, where).count;
+    if (count && given != count) fail(where, "its attributes differ in their counts");
+    count = given;
+    charge(f, count, width * sizeof(float) + sizeof(model_node), where);
+    std::vector<float> out(static_cast<size_t>(count) * width);
+    vertex_list all;
+    all.total = count;
+    read_vertices(f, accessor, width, width == 4 ? c_f32 | c_i8n | c_i16n : c_f32, all, where + " " + name, out.data());
+    return out;
+}
+
+/* Instances that cannot be read leave the node as it is. */
+static bool read_instances(file &f, size_t node, instances &out)
+{
+    const auto extension = f.json.nodes[node].extensions.find("EXT_mesh_gpu_instancing");
+    const uint32_t index = f.node_of[node];
+    const std::string where = where_of(f, node) + " EXT_mesh_gpu_instancing";
+    if (extension == f.json.nodes[node].extensions.end() || index == MODEL_NONE) return false;
+    if (f.out->nodes[index].mesh == MODEL_NONE || f.json.nodes[node].skin >= 0) {
+        leave_out(f, where, " was ignored: its node has no mesh, or a skin");
+        return false;
+    }
+    return attempt(f, "; the node was drawn once", [&] {
+        const tinygltf::Value &attributes = extension->second.Get("attributes");
+        out.node = node;
+        out.count = 0;
+        out.translation = read_instance_numbers(f, attributes, "TRANSLATION", 3, where, out.count);
+        out.rotation = read_instance_numbers(f, attributes, "ROTATION", 4, where, out.count);
+        out.scale = read_instance_numbers(f, attributes, "SCALE", 3, where, out.count);
+        if (!out.count) fail(where, "it has no instances");
+    });
+}
+
+static void copy_numbers(const std::vector<float> &from, size_t instance, size_t width, double *out)
+{
+    for (size_t i = 0; i < width && !from.empty(); ++i) out[i] = static_cast<double>(from[instance * width + i]);
+}
+
+static void add_instance(file &f, const instances &all, size_t i)
+{
+    const uint32_t parent = f.node_of[all.node];
+    const std::string where = where_of(f, all.node) + text(" instance %zu", i);
+    model_node &out = f.out->nodes[f.out->node_count++];
+    transform t = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 1.0 }, { 1.0, 1.0, 1.0 }, { 0.0 } };
+    out.name = copy_string(f.out->nodes[parent].name + text("_%zu", i));
+    out.parent = parent;
+    out.skin = MODEL_NONE;
+    out.mesh = f.mesh_of[static_cast<size_t>(f.json.nodes[all.node].mesh)];
+    if (f.out->nodes[parent].weights) read_weights(f, f.json.nodes[all.node], out, where);
+    copy_numbers(all.translation, i, 3, t.translation);
+    copy_numbers(all.rotation, i, 4, t.rotation);
+    copy_numbers(all.scale, i, 3, t.scale);
+    normalize_rotation(f, t.rotation, where);
+    compose(t);
+    store_transform(f, t, out, where);
+}
+
+static void add_instances(file &f)
+{
+    std::vector<instances> found;
+    uint64_t count = f.out->node_count;
+    for (size_t n = 0; n < f.json.nodes.size(); ++n) {
+        instances one;
+        if (!read_instances(f, n, one)) continue;
+        count += one.count;
+        found.push_back(std::move(one));
+    }
+    if (found.empty()) return;
+    model_node *nodes = allocate<model_node>(f, count, "instances");
+    memcpy(nodes, f.out->nodes, f.out->node_count * sizeof *nodes);
+    free(f.out->nodes);
+    f.out->nodes = nodes;
+    for (const instances &one : found) {
+        for (size_t i = 0; i < one.count; ++i) add_instance(f, one, i);
+        f.out->nodes[f.node_of[one.node]].mesh = MODEL_NONE;
+    }
 }
 
 void read_nodes(file &f)
@@ -306,6 +433,7 @@ void read_nodes(file &f)
     f.out->nodes = allocate<model_node>(f, order.size(), "nodes");
     f.out->node_count = static_cast<uint32_t>(order.size());
     for (size_t i = 0; i < order.size(); ++i) read_node(f, order[i], f.out->nodes[i]);
+    add_instances(f);
 }
 
 } // namespace gltf

@@ -2,6 +2,7 @@
 #include "convert/model/affine.h"
 #include "gltf_internal.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -11,18 +12,18 @@ namespace gltf
 /* --- inverse bind matrices --- */
 
 /* Exporters that invert in floats leave rounding errors in the last row: it is repaired. */
-static void repair_last_row(float *m, const std::string &where)
+static bool repair_last_row(float *m)
 {
     const float expected[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     for (int i = 0; i < 4; ++i) {
-        if (!(std::fabs(m[i * 4 + 3] - expected[i]) <= 1e-4f))
-            fail(where, "the inverse bind matrix is not affine: its last row must be 0 0 0 1");
+        if (!(std::fabs(m[i * 4 + 3] - expected[i]) <= 1e-4f)) return false;
         m[i * 4 + 3] = expected[i];
     }
+    return true;
 }
 
 /* The determinant is compared with the product of the columns' lengths, so that small scales are not an error. */
-static void check_invertible(const float *m, const std::string &where)
+static bool is_invertible(const float *m)
 {
     double columns[3][3], cross[3], size = 1.0;
     for (int c = 0; c < 3; ++c) {
@@ -30,8 +31,30 @@ static void check_invertible(const float *m, const std::string &where)
         size *= std::sqrt(vec_dot(columns[c], columns[c]));
     }
     vec_cross(columns[0], columns[1], cross);
-    if (!(std::fabs(vec_dot(cross, columns[2])) > 1e-6 * size) || size == 0.0)
-        fail(where, "the inverse bind matrix is singular: no pose has such an inverse");
+    return std::fabs(vec_dot(cross, columns[2])) > 1e-6 * size && size > 0.0;
+}
+
+/* Why an inverse bind matrix cannot be one, or null. Exporters that run out of time leave zeros. */
+static const char *fault_of(float *m)
+{
+    bool zeros = true, numbers = true;
+    for (int i = 0; i < 16; ++i) {
+        zeros = zeros && m[i] == 0.0f;
+        numbers = numbers && !std::isnan(m[i]);
+    }
+    if (!numbers) return "has a number that is NaN, infinite or above 1e12";
+    if (zeros) return "is all zeros";
+    if (!repair_last_row(m)) return "is not affine: its last row must be 0 0 0 1";
+    return is_invertible(m) ? nullptr : "is singular";
+}
+
+/* The joint is bound where it rests; without a size there, at its place alone. */
+static void bind_at_rest(const model_node &node, float *m)
+{
+    double inverse[16] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1 };
+    if (affine_invert(node.world, inverse))
+        for (int i = 0; i < 16; ++i) inverse[i] = i >= 12 && i < 15 ? -node.world[i] : i % 5 == 0 ? 1.0 : 0.0;
+    for (int i = 0; i < 16; ++i) m[i] = static_cast<float>(inverse[i]);
 }
 
 static void fill_identities(model_skin &out)
@@ -40,24 +63,18 @@ static void fill_identities(model_skin &out)
         for (size_t i = 0; i < 4; ++i) out.inverse_bind[j * 16 + i * 5] = 1.0f;
 }
 
-static bool is_zero(const float *m)
+/* Matrices that the file does not have stay zeros. */
+static void read_given_binds(file &f, int accessor, const std::string &where, model_skin &out)
 {
-    for (int i = 0; i < 16; ++i)
-        if (m[i] != 0.0f) return false;
-    return true;
-}
-
-/* Exporters that run out of time leave zeros: such a joint is bound where it rests, as if the file gave no matrix. */
-static void bind_at_rest(file &f, uint32_t joint, const std::string &where, float *m)
-{
-    const model_node &node = f.out->nodes[joint];
-    double inverse[16];
-    if (affine_invert(node.world, inverse))
-        fail(where, "the inverse bind matrix of joint '" + printable(node.name) +
-                        "' is all zeros, and its rest transform has no inverse");
-    for (int i = 0; i < 16; ++i) m[i] = static_cast<float>(inverse[i]);
-    leave_out(f, where + ": the inverse bind matrix of joint '" + printable(node.name) + "'",
-              " is all zeros; the joint was bound at its rest transform");
+    const uint64_t count = accessor_at(f, accessor, where).count;
+    charge(f, count, 64, where);
+    std::vector<float> matrices(static_cast<size_t>(count) * 16);
+    read_floats(f, accessor, 16, c_f32, count, where, matrices.data());
+    memcpy(out.inverse_bind, matrices.data(), static_cast<size_t>(std::min<uint64_t>(out.joint_count, count)) * 64);
+    if (count < out.joint_count)
+        leave_out(f, where,
+                  text(": %u joints but %llu inverse bind matrices", out.joint_count,
+                       static_cast<unsigned long long>(count)));
 }
 
 static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::string &where, model_skin &out)
@@ -67,22 +84,15 @@ static void read_inverse_binds(file &f, const tinygltf::Skin &skin, const std::s
         fill_identities(out);
         return;
     }
-    uint64_t count = accessor_at(f, skin.inverseBindMatrices, where).count;
-    if (count < out.joint_count)
-        fail(where,
-             text("%u joints but %llu inverse bind matrices", out.joint_count, static_cast<unsigned long long>(count)));
-    charge(f, count, 64, where);
-    std::vector<float> matrices(static_cast<size_t>(count) * 16);
-    read_floats(f, skin.inverseBindMatrices, 16, c_f32, count, where, matrices.data());
-    memcpy(out.inverse_bind, matrices.data(), size_t{ out.joint_count } * 64);
+    (void)attempt(f, "", [&] { read_given_binds(f, skin.inverseBindMatrices, where, out); });
     for (uint32_t j = 0; j < out.joint_count; ++j) {
-        const std::string joint = printable(f.out->nodes[out.joints[j]].name);
-        std::string element = where + text(" (accessor %d), element %u, joint '%s'", skin.inverseBindMatrices, j,
-                                           joint.c_str());
-        if (is_zero(out.inverse_bind + size_t{ j } * 16))
-            bind_at_rest(f, out.joints[j], where, out.inverse_bind + size_t{ j } * 16);
-        repair_last_row(out.inverse_bind + size_t{ j } * 16, element);
-        check_invertible(out.inverse_bind + size_t{ j } * 16, element);
+        const model_node &node = f.out->nodes[out.joints[j]];
+        float *matrix = out.inverse_bind + size_t{ j } * 16;
+        if (const char *fault = fault_of(matrix)) {
+            bind_at_rest(node, matrix);
+            leave_out(f, where + ": the inverse bind matrix of joint '" + printable(node.name) + "'",
+                      text(" %s; the joint was bound at its rest transform", fault));
+        }
     }
 }
 
@@ -98,7 +108,7 @@ static void check_joints(const file &f, const tinygltf::Skin &skin, const std::s
             fail(where, text("joint node %d does not exist: the file has %zu nodes", joint, f.json.nodes.size()));
 }
 
-/* Joints outside the scene move nothing that is drawn. */
+/* Joints outside the scene were read where a mesh of the scene needs them (gltf_scene.cpp). */
 static bool all_in_scene(const file &f, const tinygltf::Skin &skin)
 {
     for (int joint : skin.joints)
@@ -112,8 +122,7 @@ static void read_skin(file &f, size_t index)
     std::string where = text("skin %zu", index);
     check_joints(f, skin, where);
     if (!all_in_scene(f, skin)) {
-        leave_out(f, where,
-                  " was skipped: a joint of it is not in the default scene; its meshes stay where their nodes are");
+        leave_out(f, where, " was skipped: its joints are not in the default scene, and no mesh there follows them");
         return;
     }
     model_skin &out = f.out->skins[f.out->skin_count]; /* counted first, so that it is freed when reading fails */
@@ -146,7 +155,7 @@ static void bind_nodes(file &f)
         bind_node(f, i, out);
         if (out.skin == MODEL_NONE || out.mesh == MODEL_NONE) continue;
         if (f.out->meshes[out.mesh].joints) {
-            check_influences(f.out->meshes[out.mesh], f.out->skins[out.skin].joint_count);
+            check_influences(f, f.out->meshes[out.mesh], f.out->skins[out.skin].joint_count);
             continue;
         }
         out.skin = MODEL_NONE;

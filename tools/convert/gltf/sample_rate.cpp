@@ -124,11 +124,10 @@ static std::vector<double> rates_to_try(const std::vector<double> &times, double
 
 /* --- the error of a sample rate --- */
 
-static void sample(const track &t, double time_s, double near_s, const std::string &where, std::vector<double> &out)
+static void sample(const track &t, double time_s, double near_s, std::vector<double> &out)
 {
     out.resize(t.channel->width);
-    if (channel_sample(t.channel, time_s, near_s, out.data()))
-        fail(where, text("a rotation passes through zero at %g s: it has no direction there", time_s));
+    (void)channel_sample(t.channel, time_s, near_s, out.data()); /* what has no direction is told in gltf_clips.cpp */
 }
 
 static double difference_cm(const track &t, const std::vector<double> &a, const std::vector<double> &b)
@@ -164,29 +163,29 @@ static std::vector<double> places_between(const model_channel &c, double from_s,
 }
 
 /* Stops above the limit. */
-static double track_error(const track &track, const timing &t, double limit_cm, const std::string &where)
+static double track_error(const track &track, const timing &t, double limit_cm)
 {
     std::vector<double> a, b, curve;
     double worst = 0.0;
-    sample(track, 0.0, t.near_s, where, b);
+    sample(track, 0.0, t.near_s, b);
     for (uint32_t frame = 1; frame < t.frame_count && worst <= limit_cm; ++frame) {
         double from = frame_time_s(t, frame - 1), to = frame_time_s(t, frame);
         a.swap(b);
-        sample(track, to, t.near_s, where, b);
+        sample(track, to, t.near_s, b);
         for (double at : places_between(*track.channel, from, to, t.near_s)) {
-            sample(track, from + (to - from) * at, 0.0, where, curve);
+            sample(track, from + (to - from) * at, 0.0, curve);
             worst = std::fmax(worst, difference_cm(track, played(track, a, b, at), curve));
         }
     }
     return worst;
 }
 
-static double error_of(const std::vector<track> &tracks, const timing &t, double limit_cm, const std::string &where)
+static double error_of(const std::vector<track> &tracks, const timing &t, double limit_cm)
 {
     double worst = 0.0;
     for (const track &track : tracks)
         if (track.channel->key_count > 1 && worst <= limit_cm)
-            worst = std::fmax(worst, track_error(track, t, limit_cm, where));
+            worst = std::fmax(worst, track_error(track, t, limit_cm));
     return worst;
 }
 
@@ -208,9 +207,9 @@ timing choose_timing(const std::vector<track> &tracks, double duration_s, double
         t = timing_at(duration_s, rate, frames_max, where);
         t.keys_hz = grid;
         t.near_s = on_grid(times, t.sample_rate_hz) ? 2.5e-3 / t.sample_rate_hz : rounding_s;
-        if (error_of(curves, t, tolerance_cm, where) <= tolerance_cm) break;
+        if (error_of(curves, t, tolerance_cm) <= tolerance_cm) break;
     }
-    t.error_cm = error_of(tracks, t, no_limit, where);
+    t.error_cm = error_of(tracks, t, no_limit);
     return t;
 }
 

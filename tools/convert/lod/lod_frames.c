@@ -71,7 +71,7 @@ static void rest_poses(const model *m, node_pose *out)
     }
 }
 
-static int sample_clip(const model *m, uint32_t clip, double time_s, node_pose *out)
+static void sample_clip(const model *m, uint32_t clip, double time_s, node_pose *out)
 {
     rest_poses(m, out);
     for (uint32_t i = 0; i < m->clips[clip].channel_count; i++) {
@@ -80,11 +80,10 @@ static int sample_clip(const model *m, uint32_t clip, double time_s, node_pose *
         double *to = c->path == MODEL_PATH_TRANSLATION ? node->translation
                      : c->path == MODEL_PATH_ROTATION  ? node->rotation
                                                        : node->scale;
-        if (c->path != MODEL_PATH_WEIGHTS && channel_sample(c, time_s, SNAP_S, to)) {
-            return 1;
+        if (c->path != MODEL_PATH_WEIGHTS) {
+            (void)channel_sample(c, time_s, SNAP_S, to);
         }
     }
-    return 0;
 }
 
 /* [node_count][12] */
@@ -205,7 +204,11 @@ static int skin_frame(const model *m, uint32_t node, const node_pose *poses, flo
 int lod_frame_pose(const model *m, uint32_t node, uint32_t clip, double time_s, float *out)
 {
     node_pose *poses = model_zeros(m->node_count, sizeof *poses);
-    int failed = !poses || sample_clip(m, clip, time_s, poses) || skin_frame(m, node, poses, out, NULL);
+    int failed = !poses;
+    if (!failed) {
+        sample_clip(m, clip, time_s, poses);
+        failed = skin_frame(m, node, poses, out, NULL);
+    }
     free(poses);
     return failed;
 }
@@ -260,19 +263,16 @@ static double difference(const model_skin *skin, const node_pose *a, const node_
     return sum;
 }
 
-/* Lower every moment's distance to that from the pose `taken`. Returns 1 if a rotation has no length. */
-static int near_by(const model *m, const model_skin *skin, moment *list, uint32_t count, const node_pose *taken,
-                   node_pose *scratch)
+/* Lower every moment's distance to that from the pose `taken`. */
+static void near_by(const model *m, const model_skin *skin, moment *list, uint32_t count, const node_pose *taken,
+                    node_pose *scratch)
 {
     for (uint32_t i = 0; i < count; i++) {
         double d;
-        if (sample_clip(m, list[i].clip, list[i].time_s, scratch)) {
-            return 1;
-        }
+        sample_clip(m, list[i].clip, list[i].time_s, scratch);
         d = difference(skin, taken, scratch);
         list[i].distance = d < list[i].distance ? d : list[i].distance;
     }
-    return 0;
 }
 
 static int choose(const model *m, uint32_t node, moment *list, uint32_t count, uint32_t wanted, lod_frames *out)
@@ -290,18 +290,18 @@ static int choose(const model *m, uint32_t node, moment *list, uint32_t count, u
     }
     while (!failed && out->count < wanted) {
         uint32_t best = 0;
-        failed = near_by(m, skin, list, count, taken, scratch);
+        near_by(m, skin, list, count, taken, scratch);
         for (uint32_t i = 1; i < count; i++) {
             best = list[i].distance > list[best].distance ? i : best;
         }
-        if (failed || !(list[best].distance > 0.0)) {
+        if (!(list[best].distance > 0.0)) {
             break;
         }
         out->moments[out->count].clip = list[best].clip;
         out->moments[out->count].time_s = list[best].time_s;
         out->poses[out->count] = model_zeros(floats, sizeof(float));
-        failed = !out->poses[out->count] || sample_clip(m, list[best].clip, list[best].time_s, taken) ||
-                 skin_frame(m, node, taken, out->poses[out->count], out->cap_error);
+        sample_clip(m, list[best].clip, list[best].time_s, taken);
+        failed = !out->poses[out->count] || skin_frame(m, node, taken, out->poses[out->count], out->cap_error);
         out->count++;
     }
     free(taken);
