@@ -18,9 +18,9 @@ extern "C" {
 #endif
 
 typedef struct sample_options {
-    double sample_rate_hz; /* 0: the rate of the keys, if they lie on a grid of 15 Hz or more and are linear. Else
-                            * the lowest of the grid's multiples, or of 30, 60 and 120, at which playing the frames
-                            * is off the curves by at most 1/1000 of the skeleton's size; at most 120 */
+    double sample_rate_hz; /* 0: the lowest of the rates of the keys' grid and its multiples, or of 30, 60 and 120, at
+                            * which playing the frames moves no vertex off the curves by more than 1/1000 of the size
+                            * of what moves; at most 120 */
 } sample_options;
 
 /* The joints of a model's skin in its skeleton. */

@@ -28,6 +28,14 @@ static void multiply(const double *a, const double *b, double *out)
         }
 }
 
+void raw_pose_below(uint32_t parent, const double *local, size_t joint, double *pose)
+{
+    if (parent == MODEL_NONE)
+        memcpy(pose + joint * 12, local, 12 * sizeof *local);
+    else
+        multiply(pose + (size_t)parent * 12, local, pose + joint * 12);
+}
+
 void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_t frame, double *out)
 {
     for (uint32_t j = 0; j < skeleton->joint_count; ++j) {
@@ -38,10 +46,7 @@ void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_
         local_matrix(bound ? joint->rotation : clip->rotations + at * 4,
                      bound ? joint->translation : clip->translations + at * 3,
                      bound ? joint->scale : clip->scales + at * 3, local);
-        if (joint->parent == MODEL_NONE)
-            memcpy(out + (size_t)j * 12, local, sizeof local);
-        else
-            multiply(out + (size_t)joint->parent * 12, local, out + (size_t)j * 12);
+        raw_pose_below(joint->parent, local, j, out);
     }
 }
 

@@ -46,6 +46,9 @@ uint32_t raw_skeleton_hash(const raw_skeleton *skeleton);
  * out  [joint_count][12]: three columns and the translation */
 void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_t frame, double *out);
 
+/* The object space matrix of a joint, whose parent (MODEL_NONE: none) comes before it, from its local one. */
+void raw_pose_below(uint32_t parent, const double *local, size_t joint, double *pose);
+
 /* The radius of each joint: the largest distance, in centimetres and in the bind pose, to one of the joints and ends
  * below it, which an error of its rotation would move. out [joint_count]. *size_cm: the largest of them. Returns 1 when
  * out of memory. */

@@ -10,6 +10,7 @@
 
 #include "gltf_internal.h"
 #include "convert/clips/model_clips.h"
+#include "convert/clips/moved_vertices.h"
 #include "convert/clips/raw_set.h"
 
 namespace gltf
@@ -38,19 +39,26 @@ struct track {
     uint32_t joint;                /* MODEL_NONE for weights */
     double lever_cm;               /* of a joint's: centimetres per radian, unit of translation or unit of scale */
     std::vector<double> radius_cm; /* of weights: centimetres per unit of each */
+    bool seen;                     /* its joint moves vertices, on which it is judged with all others */
 };
 struct timing {
     double sample_rate_hz;
     uint32_t frame_count;
     double near_s;   /* a key at most this far from a frame counts as on it, so that a rounded time does not cost its
                         exact value */
-    double error_cm; /* the largest distance between the played frames and the curves, each track judged alone */
+    double error_cm; /* the largest distance between the played frames and the curves: of vertices, and of morph
+                        weights, each judged alone */
     double keys_hz;  /* of the grid that all keys lie on; 0: there is none */
 };
 double frame_time_s(const timing &t, uint32_t frame);
+/* What the tracks of joints move. */
+struct moved {
+    const raw_skeleton *skeleton;
+    const moved_vertices *vertices;
+};
 /* sample_rate_hz 0: choose one. Throws failure if more than frames_max would be needed. */
-timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,
-                     uint64_t frames_max, const std::string &where);
+timing choose_timing(const std::vector<track> &tracks, const moved &what, double duration_s, double sample_rate_hz,
+                     double tolerance_cm, uint64_t frames_max, const std::string &where);
 
 /* --- weight_radius.cpp --- */
 

@@ -7,13 +7,15 @@
 #include <memory>
 
 #include "convert/clips/channel_sample.h"
+#include "convert/model/affine.h"
 #include "convert/base/quat.h"
 
 namespace gltf
 {
 
 static const double tolerance_part = 1e-3; /* of the skeleton's size */
-static const double shell_cm = 3.0;        /* around a joint without anything below it */
+static const double shell_cm = 3.0;        /* around a joint that moves nothing, ... */
+static const double shell_part = 0.02;     /* ... but no more than this of the size of what others move */
 
 struct clip_deleter {
     void operator()(model_clips *made) const
@@ -30,8 +32,15 @@ struct set_job {
     const model_clips *made;
     uint32_t index;
     raw_set *set;
-    std::vector<double> lever_cm;        /* [joints] of a rotation: the radius of its descendants */
+    moved_vertices vertices;
+    std::vector<double> lever_cm; /* [joints] of a rotation: the radius of its descendants and of what they move */
     std::vector<double> parent_scale_cm; /* [joints] centimetres per unit of its translation */
+    std::vector<bool> seen;              /* [joints] it or one below it moves vertices */
+    double shell_cm;
+    ~set_job()
+    {
+        moved_vertices_free(&vertices);
+    }
 };
 
 template <class T> static T *zeros(size_t count)
@@ -54,6 +63,37 @@ static double column_length(const double *m)
                      std::sqrt(vec_dot(m + 6, m + 6)));
 }
 
+/* From the node's mesh to the joint's own space; the nodes between do not move. */
+static bool rigid_place(const model &m, uint32_t node, uint32_t joint_node, double *out)
+{
+    double inverse[16], product[16];
+    if (joint_node == MODEL_NONE || affine_invert(m.nodes[joint_node].world, inverse)) return false;
+    affine_multiply(inverse, m.nodes[node].world, product);
+    for (int i = 0; i < 12; ++i) out[i] = product[i / 3 * 4 + i % 3];
+    return true;
+}
+
+static void find_vertices(set_job &job)
+{
+    const model &m = *job.m;
+    const raw_skeleton &skeleton = job.set->skeleton;
+    for (uint32_t n = 0; n < m.node_count; ++n) {
+        const model_node &node = m.nodes[n];
+        const node_joint &mover = job.made->nodes[n];
+        double place[12];
+        if (node.mesh == MODEL_NONE) continue;
+        if (node.skin != MODEL_NONE) {
+            const clip_skin &skin = job.made->skins[node.skin];
+            if (skin.joints && skin.set == job.index)
+                check_memory(moved_vertices_add(&job.vertices, &m.meshes[node.mesh], &m.skins[node.skin], skin.joints));
+        } else if (mover.set == job.index && mover.joint != MODEL_NONE &&
+                   rigid_place(m, n, skeleton.joints[mover.joint].node, place)) {
+            check_memory(moved_vertices_add_rigid(&job.vertices, &m.meshes[node.mesh], mover.joint, place));
+        }
+    }
+    check_memory(moved_vertices_close(&job.vertices, skeleton.joint_count));
+}
+
 static void find_levers(set_job &job)
 {
     const raw_skeleton &skeleton = job.set->skeleton;
@@ -61,10 +101,18 @@ static void find_levers(set_job &job)
     double size_cm = 0.0;
     job.lever_cm.assign(skeleton.joint_count + 1, 0.0);
     job.parent_scale_cm.assign(skeleton.joint_count + 1, skeleton.unit_cm);
+    std::vector<double> reach(skeleton.joint_count + 1, 0.0);
     check_memory(raw_skeleton_radius(&skeleton, job.lever_cm.data(), &size_cm));
     raw_pose_object(&skeleton, nullptr, 0, pose.data());
+    moved_vertices_reach(&job.vertices, &skeleton, pose.data(), 0, reach.data());
+    for (size_t j = 0; j < reach.size(); ++j) {
+        job.seen.push_back(reach[j] > 0.0);
+        job.lever_cm[j] = std::fmax(job.lever_cm[j], reach[j]);
+    }
+    const double size = *std::max_element(job.lever_cm.begin(), job.lever_cm.end());
+    job.shell_cm = job.vertices.vertex_count ? std::fmin(shell_cm, size * shell_part) : shell_cm;
     for (uint32_t j = 0; j < skeleton.joint_count; ++j) {
-        job.lever_cm[j] = std::fmax(job.lever_cm[j], shell_cm);
+        job.lever_cm[j] = std::fmax(job.lever_cm[j], job.shell_cm);
         if (skeleton.joints[j].parent != MODEL_NONE)
             job.parent_scale_cm[j] = skeleton.unit_cm * column_length(&pose[size_t{ skeleton.joints[j].parent } * 12]);
     }
@@ -106,9 +154,9 @@ static std::vector<track> find_tracks(const set_job &job, const model_clip &clip
         const model_channel &c = clip.channels[i];
         uint32_t joint = joint_of(*job.plan, c.node);
         if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
-            tracks.push_back({ &c, joint, lever_of(job, c, joint), {} });
+            tracks.push_back({ &c, joint, lever_of(job, c, joint), {}, job.seen[joint] });
         if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
-            tracks.push_back({ &c, MODEL_NONE, 0.0, radius_of(job, c.node, nullptr) });
+            tracks.push_back({ &c, MODEL_NONE, 0.0, radius_of(job, c.node, nullptr), false });
     }
     return tracks;
 }
@@ -125,7 +173,7 @@ static double largest_value(const model_channel &c)
 static double tolerance_of(const set_job &job, const std::vector<track> &tracks)
 {
     double size_cm = *std::max_element(job.lever_cm.begin(), job.lever_cm.end());
-    size_cm = std::fmax(size_cm, shell_cm);
+    size_cm = std::fmax(size_cm, job.shell_cm);
     for (const track &t : tracks) {
         if (t.channel->path == MODEL_PATH_TRANSLATION)
             size_cm = std::fmax(size_cm, largest_value(*t.channel) * t.lever_cm);
@@ -235,7 +283,7 @@ static void copy_events(const model_clip &from, raw_clip &clip)
 
 static void warn_of_error(const set_job &job, const raw_clip &clip, double tolerance_cm, const std::string &where)
 {
-    const double usual_hz = 119.0; /* linear keys at a usual sample rate are used as frames, without a warning */
+    const double usual_hz = 119.0;
     if (clip.source_error_cm > tolerance_cm && clip.sample_rate_hz >= usual_hz)
         check_memory(model_warn(job.m, "%s: sampled at %g Hz it is up to %.3g cm off its curves between frames",
                                 where.c_str(), clip.sample_rate_hz, clip.source_error_cm));
@@ -258,8 +306,8 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     double tolerance_cm = tolerance_of(job, tracks);
     uint64_t per_frame = frame_bytes(job, tracks),
              frames_max = std::min<uint64_t>(bytes_left / per_frame, RAW_FRAMES_MAX);
-    timing when = choose_timing(tracks, static_cast<double>(from.duration_s), sample_rate_hz, tolerance_cm, frames_max,
-                                where);
+    timing when = choose_timing(tracks, { &job.set->skeleton, &job.vertices }, static_cast<double>(from.duration_s),
+                                sample_rate_hz, tolerance_cm, frames_max, where);
     bytes_left -= std::min(bytes_left, when.frame_count * per_frame);
     clip.name = copy_string(from.name);
     clip.sample_rate_hz = when.sample_rate_hz;
@@ -360,7 +408,8 @@ static model_clips *make_model_clips(model &m, double sample_rate_hz)
     std::vector<bool> used(m.clip_count, false);
     uint64_t bytes_left = RAW_BYTES_MAX;
     for (uint32_t p = 0; p < plans.size(); ++p) {
-        set_job job = { &m, &plans[p], made.get(), p, made->sets[p], {}, {} };
+        set_job job = { &m, &plans[p], made.get(), p, made->sets[p], {}, {}, {}, {}, 0.0 };
+        find_vertices(job);
         find_levers(job);
         make_clips(job, sample_rate_hz, used, bytes_left);
     }

@@ -16,7 +16,6 @@ namespace gltf
 {
 
 static const double rate_max_hz = 120.0;       /* the highest that is chosen; keys on a denser grid keep theirs */
-static const double dense_rate_min_hz = 15.0;  /* linear keys at this rate or a higher one are used as frames */
 static const double sparse_rate_max_hz = 60.0; /* of a grid on which most frames have no key */
 static const double rounding_s = 1e-6;         /* of key times, which are floats */
 
@@ -65,26 +64,6 @@ static bool worth_its_frames(const std::vector<double> &times, double sample_rat
            static_cast<double>(times.size()) * 2.0 > times.back() * sample_rate_hz;
 }
 
-static bool changes(const model_channel &c)
-{
-    const float *first = channel_key(&c, 0);
-    if (c.interpolation == MODEL_CUBICSPLINE) return c.key_count > 1;
-    for (uint32_t key = 1; key < c.key_count; ++key)
-        if (!std::equal(first, first + c.width, channel_key(&c, key))) return true;
-    return false;
-}
-
-/* The tracks that may need more frames than the keys have. Linear keys at a usual sample rate already are frames:
- * played, they give what the curves give. A constant track needs none, whatever its interpolation. */
-static std::vector<track> curves_of(const std::vector<track> &tracks, double grid_hz)
-{
-    std::vector<track> curves;
-    for (const track &t : tracks)
-        if (changes(*t.channel) && (t.channel->interpolation != MODEL_LINEAR || grid_hz < dense_rate_min_hz))
-            curves.push_back(t);
-    return curves;
-}
-
 /* The coarsest grid on which all keys lie: whole numbers of Hz are tried first, then television's rates, then any. 0 if
  * there is none. */
 static double grid_rate(const std::vector<double> &times)
@@ -127,7 +106,7 @@ static std::vector<double> rates_to_try(const std::vector<double> &times, double
 static void sample(const track &t, double time_s, double near_s, std::vector<double> &out)
 {
     out.resize(t.channel->width);
-    (void)channel_sample(t.channel, time_s, near_s, out.data()); /* what has no direction is told in gltf_clips.cpp */
+    (void)channel_sample(t.channel, time_s, near_s, out.data()); /* gltf_clips.cpp warns of what has no direction */
 }
 
 static double difference_cm(const track &t, const std::vector<double> &a, const std::vector<double> &b)
@@ -151,14 +130,23 @@ static std::vector<double> played(const track &t, const std::vector<double> &a, 
     return out;
 }
 
-/* The times between two frames at which errors are measured: the quarters, and the keys in between. */
-static std::vector<double> places_between(const model_channel &c, double from_s, double to_s, double near_s)
+static void add_keys_between(const model_channel &c, double from_s, double to_s, double near_s,
+                             std::vector<double> &places)
 {
-    std::vector<double> places = { 0.25, 0.5, 0.75 };
     const float *key = std::upper_bound(c.times, c.times + c.key_count, static_cast<float>(from_s + near_s));
     for (; key < c.times + c.key_count && static_cast<double>(*key) < to_s - near_s; ++key)
         if (static_cast<double>(*key) > from_s)
             places.push_back((static_cast<double>(*key) - from_s) / (to_s - from_s));
+}
+
+/* The times between two frames at which errors are measured: three, and the keys in between. */
+static std::vector<double> places_between(const std::vector<track> &tracks, double from_s, double to_s, double near_s)
+{
+    std::vector<double> places = { 0.2113, 0.5,
+                                   0.7887 }; /* between linear keys rotations stray most at the outer two */
+    for (const track &t : tracks) add_keys_between(*t.channel, from_s, to_s, near_s, places);
+    std::sort(places.begin(), places.end());
+    places.erase(std::unique(places.begin(), places.end()), places.end());
     return places;
 }
 
@@ -172,7 +160,7 @@ static double track_error(const track &track, const timing &t, double limit_cm)
         double from = frame_time_s(t, frame - 1), to = frame_time_s(t, frame);
         a.swap(b);
         sample(track, to, t.near_s, b);
-        for (double at : places_between(*track.channel, from, to, t.near_s)) {
+        for (double at : places_between({ track }, from, to, t.near_s)) {
             sample(track, from + (to - from) * at, 0.0, curve);
             worst = std::fmax(worst, difference_cm(track, played(track, a, b, at), curve));
         }
@@ -180,26 +168,104 @@ static double track_error(const track &track, const timing &t, double limit_cm)
     return worst;
 }
 
-static double error_of(const std::vector<track> &tracks, const timing &t, double limit_cm)
+/* --- whole poses --- */
+
+struct local {
+    double rotation[4], translation[3], scale[3];
+};
+
+static std::vector<local> rest_pose(const raw_skeleton &skeleton)
+{
+    std::vector<local> pose(skeleton.joint_count);
+    for (size_t j = 0; j < pose.size(); ++j) {
+        const raw_joint &joint = skeleton.joints[j];
+        std::copy_n(joint.rotation, 4, pose[j].rotation);
+        std::copy_n(joint.translation, 3, pose[j].translation);
+        std::copy_n(joint.scale, 3, pose[j].scale);
+        (void)quat_normalize(pose[j].rotation);
+    }
+    return pose;
+}
+
+static double *value_in(std::vector<local> &pose, const track &t)
+{
+    local &l = pose[t.joint];
+    if (t.channel->path == MODEL_PATH_ROTATION) return l.rotation;
+    return t.channel->path == MODEL_PATH_TRANSLATION ? l.translation : l.scale;
+}
+
+static void sample_pose(const std::vector<track> &tracks, double time_s, double near_s, std::vector<local> &pose)
+{
+    for (const track &t : tracks)
+        if (t.joint != MODEL_NONE) (void)channel_sample(t.channel, time_s, near_s, value_in(pose, t));
+}
+
+static void play_pose(const std::vector<local> &a, const std::vector<local> &b, double at, std::vector<local> &out)
+{
+    for (size_t j = 0; j < a.size(); ++j) {
+        quat_nlerp(a[j].rotation, b[j].rotation, at, out[j].rotation);
+        for (int i = 0; i < 3; ++i) {
+            out[j].translation[i] = a[j].translation[i] + (b[j].translation[i] - a[j].translation[i]) * at;
+            out[j].scale[i] = a[j].scale[i] + (b[j].scale[i] - a[j].scale[i]) * at;
+        }
+    }
+}
+
+static void object_pose(const raw_skeleton &skeleton, const std::vector<local> &pose, std::vector<double> &out)
+{
+    for (size_t j = 0; j < pose.size(); ++j) {
+        double matrix[12];
+        quat_columns(pose[j].rotation, matrix);
+        for (int i = 0; i < 9; ++i) matrix[i] *= pose[j].scale[i / 3];
+        std::copy_n(pose[j].translation, 3, matrix + 9);
+        raw_pose_below(skeleton.joints[j].parent, matrix, j, out.data());
+    }
+}
+
+/* The frames and the times between them of all tracks together. Stops above the limit. */
+static double vertex_error(const std::vector<track> &tracks, const moved &what, const timing &t, double limit_cm)
+{
+    const raw_skeleton &skeleton = *what.skeleton;
+    std::vector<local> a = rest_pose(skeleton), b = a, curve = a, shown = a;
+    std::vector<double> from(a.size() * 12), to(from), scratch(a.size());
+    double worst = 0.0;
+    sample_pose(tracks, 0.0, t.near_s, b);
+    for (uint32_t frame = 1; frame < t.frame_count && worst <= limit_cm / skeleton.unit_cm; ++frame) {
+        const double begin = frame_time_s(t, frame - 1), end = frame_time_s(t, frame);
+        a.swap(b);
+        sample_pose(tracks, end, t.near_s, b);
+        for (double at : places_between(tracks, begin, end, t.near_s)) {
+            sample_pose(tracks, begin + (end - begin) * at, 0.0, curve);
+            play_pose(a, b, at, shown);
+            object_pose(skeleton, curve, from);
+            object_pose(skeleton, shown, to);
+            worst = moved_vertices_apart(what.vertices, from.data(), to.data(), worst, scratch.data());
+        }
+    }
+    return worst * skeleton.unit_cm;
+}
+
+static double error_of(const std::vector<track> &tracks, const moved &what, const timing &t, double limit_cm)
 {
     double worst = 0.0;
     for (const track &track : tracks)
-        if (track.channel->key_count > 1 && worst <= limit_cm)
+        if (track.channel->key_count > 1 && !track.seen && worst <= limit_cm)
             worst = std::fmax(worst, track_error(track, t, limit_cm));
+    if (what.vertices->vertex_count > 0 && worst <= limit_cm)
+        worst = std::fmax(worst, vertex_error(tracks, what, t, limit_cm));
     return worst;
 }
 
 /* A shorter animation is one frame, without a rate. */
 static const double shortest_s = 1e-6;
 
-timing choose_timing(const std::vector<track> &tracks, double duration_s, double sample_rate_hz, double tolerance_cm,
-                     uint64_t frames_max, const std::string &where)
+timing choose_timing(const std::vector<track> &tracks, const moved &what, double duration_s, double sample_rate_hz,
+                     double tolerance_cm, uint64_t frames_max, const std::string &where)
 {
     const double no_limit = std::numeric_limits<double>::infinity();
     if (!(duration_s >= shortest_s)) return { sample_rate_hz > 0.0 ? sample_rate_hz : 30.0, 1, 0.0, 0.0, 0.0 };
     std::vector<double> times = key_times(tracks);
     const double grid = grid_rate(times);
-    const std::vector<track> curves = curves_of(tracks, grid);
     std::vector<double> rates = sample_rate_hz > 0.0 ? std::vector<double>{ sample_rate_hz }
                                                      : rates_to_try(times, grid);
     timing t = { 0.0, 0, 0.0, 0.0, grid };
@@ -207,9 +273,10 @@ timing choose_timing(const std::vector<track> &tracks, double duration_s, double
         t = timing_at(duration_s, rate, frames_max, where);
         t.keys_hz = grid;
         t.near_s = on_grid(times, t.sample_rate_hz) ? 2.5e-3 / t.sample_rate_hz : rounding_s;
-        if (error_of(curves, t, tolerance_cm) <= tolerance_cm) break;
+        t.error_cm = error_of(tracks, what, t, tolerance_cm);
+        if (t.error_cm <= tolerance_cm) return t;
     }
-    t.error_cm = error_of(tracks, t, no_limit);
+    t.error_cm = error_of(tracks, what, t, no_limit);
     return t;
 }
 
