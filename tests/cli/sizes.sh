@@ -46,7 +46,7 @@ warns() { # NAME UNIT TEXT OPTIONS...: what a build with this unit warns of; TEX
 
 warns 'a leg' 1 none
 warns 'a leg of 10 m' 10 none
-warns 'a leg of 1 cm' 0.01 'visibly coarse: --error-cm 6e-05 --shell-cm 0.02'
+warns 'a leg of 1 cm' 0.01 'visibly coarse: --error-cm 6e-05 --shell-cm 0.02 were used'
 warns 'a leg of 1 cm' 0.01 'if it should be 100 cm large, its unit is wrong: export it scaled by 100'
 warns 'a leg of 1 cm, as suggested' 0.01 none --error-cm 6e-05 --shell-cm 0.02
 warns 'a leg of 100 m' 100 'finer than visible: --error-cm 0.6 --shell-cm 200'

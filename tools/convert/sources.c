@@ -345,6 +345,7 @@ static void scale_translations(raw_clip *clip, double scale)
 static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
 {
     raw_clip *grown = realloc(to->clips, ((size_t)to->clip_count + 1u) * sizeof *grown);
+    clip->source = NULL; /* its nodes are another file's */
     if (!grown) {
         return out_of_memory(error);
     }

@@ -55,9 +55,10 @@ typedef struct raw_clip {
     uint32_t float_count;
     raw_floats *floats;
     uint32_t event_count;
-    raw_event *events;      /* keys and markers, in time order */
-    double source_error_cm; /* the largest distance between these frames as played (lerp, normalise) and the source's
-                               curves, each joint and scalar judged alone; 0: none */
+    raw_event *events;        /* keys and markers, in time order */
+    const model_clip *source; /* the model's curves that the frames were sampled from, and still show; NULL: none */
+    double source_error_cm;   /* the largest distance between these frames as played (lerp, normalise) and the source's
+                               curves: of a vertex, or of a joint that moves none and of a scalar alone; 0: none */
 } raw_clip;
 
 /* One skeleton and its clips. */
@@ -65,7 +66,8 @@ typedef struct raw_set {
     raw_skeleton skeleton;
     uint32_t clip_count;
     raw_clip *clips;
-    char *warning; /* a sentence for the user about the file, or NULL */
+    double error_cm, shell_cm; /* that fit its size (pack/size_warn.h); 0: the usual ones do */
+    char *warning;             /* a sentence for the user about the file, or NULL */
 } raw_set;
 
 #ifdef __cplusplus

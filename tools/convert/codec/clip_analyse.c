@@ -94,7 +94,7 @@ static void find_modes(encoder *e)
         t->bound = e->bound;
         if (e->options.joint_error_cm && e->options.joint_error_cm[j] > 0.0)
             t->bound = e->options.joint_error_cm[j] * e->tight / e->unit_cm;
-        radius = lever[j] > e->shell ? lever[j] : e->shell;
+        radius = lever[j] > t->reach ? lever[j] : t->reach;
         t->lever = radius;
         t->modes[TRANSLATION] = linear_range(e, j, TRANSLATION, value) * scale > e->drop * t->bound
                                     ? NOH_CLIP_MODE_ANIMATED
@@ -108,7 +108,7 @@ static void find_modes(encoder *e)
             for (uint32_t f = 0; f < e->frame_count; f += stride_of(e)) {
                 double d = space_distance(enc_global(e, f, j)->p, enc_global(e, f, t->parent)->p);
                 if (e->options.open_loop || t->modes[ROTATION] != NOH_CLIP_MODE_ANIMATED)
-                    d += radius > e->shell ? radius : 0.0;
+                    d += radius > t->reach ? radius : 0.0;
                 if (d > lever[t->parent]) lever[t->parent] = d;
             }
         }
@@ -170,16 +170,16 @@ static void place_point(const encoder *e, uint32_t carrier, enc_point *point)
 /* The radius of a joint's descendants around it, shells included. */
 static double scale_radius(const encoder *e, uint32_t joint)
 {
-    double radius = 0.0;
+    double radius = e->joints[joint].reach;
     for (uint32_t j = joint + 1u; j < e->joint_count; j++) {
         uint32_t p = j;
         while (p != ENC_NONE && p > joint) p = e->joints[p].parent;
         if (p == joint) {
-            const double r = point_radius(e, joint, j);
+            const double r = point_radius(e, joint, j) + e->joints[j].reach;
             if (r > radius) radius = r;
         }
     }
-    return radius + e->shell;
+    return radius;
 }
 
 /* The points that a joint's rotation must keep in place; when there are too many, the farthest. */
@@ -190,7 +190,7 @@ static int find_points(encoder *e, uint32_t carrier)
     t->points = enc_alloc(e, ENC_RIG_MAX, sizeof *t->points);
     if (!t->points) return 1;
     t->point_count = 0;
-    t->lever = e->shell;
+    t->lever = t->reach;
     if (t->modes[SCALE] == NOH_CLIP_MODE_ANIMATED) t->scale_lever = scale_radius(e, carrier);
     for (uint32_t j = carrier + 1u; j < e->joint_count; j++) {
         uint32_t at = t->point_count;
@@ -371,7 +371,7 @@ static void joint_tracks(encoder *e, uint32_t joint)
         track = new_track(e, order[i].kind, joint);
         if (what == ROTATION) {
             rotation_reference(e, track, joint);
-            track->step_guess = guess_step(t->bound / sqrt(t->lever * t->lever * 0.8 + 0.44 * e->shell * e->shell));
+            track->step_guess = guess_step(t->bound / sqrt(t->lever * t->lever * 0.8 + 0.44 * t->reach * t->reach));
         } else {
             linear_reference(e, track, joint, what);
             track->step_guess = guess_step(t->bound * 0.5 / (what == SCALE ? t->scale_lever : 1.0));

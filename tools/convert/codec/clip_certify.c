@@ -85,12 +85,37 @@ static void measure_floats(certifier *c, uint32_t frame, double fraction)
     }
 }
 
+/* Where a frame lies between two ticks, it is shown at the nearer one, at which the raw clip has moved on. The bound is
+ * for the frame's own time; the certificate includes this. */
+static void measure_tick(certifier *c, uint32_t frame)
+{
+    const encoder *e = c->e;
+    const double rate = e->clip->sample_rate_hz, last = (double)c->clip->info.duration_ticks;
+    const double tick = fmin(floor((double)frame * NOH_CLIP_TICKS_PER_SECOND / rate + 0.5), last);
+    const double offset = tick * rate / NOH_CLIP_TICKS_PER_SECOND - (double)frame;
+    const uint32_t from = offset < 0.0 ? frame - 1u : frame;
+    if (fabs(offset) < 1e-9 || from + 1u >= e->frame_count) return;
+    for (uint32_t j = 0; j < e->joint_count; j++) {
+        space_local raw;
+        double d;
+        space_between(enc_local(e, from, j), enc_local(e, from + 1u, j), offset < 0.0 ? 1.0 + offset : offset, &raw);
+        space_compose(enc_parent(c->raw, e->joints[j].parent), &raw, &c->raw[j]);
+        d = enc_error(e, j, &c->raw[j], &c->lossy[j]);
+        if (d > c->max_error) {
+            c->max_error = d;
+            c->joint = j;
+            c->time_parts = frame * ENC_PARTS;
+        }
+    }
+}
+
 static void measure(certifier *c, const uint8_t *a, const uint8_t *b, uint32_t frame, uint32_t part)
 {
     const double fraction = (double)part / ENC_PARTS;
     noh_clip_blend_frames(c->clip, a, b, (float)fraction, c->e->joint_count, c->pose, c->floats);
     measure_joints(c, frame, fraction, frame * ENC_PARTS + part);
     measure_floats(c, frame, fraction);
+    if (!part) measure_tick(c, frame);
 }
 
 static void measure_segment(certifier *c, uint32_t s)

@@ -93,7 +93,6 @@ static int set_options(encoder *e, const clip_options *given)
     if (!(e->skeleton->unit_cm > 0.0)) return enc_fail(e, "unit_cm: above 0");
     e->unit_cm = e->skeleton->unit_cm;
     e->bound = o->error_cm * e->tight / e->unit_cm;
-    e->shell = o->shell_cm / e->unit_cm;
     if (o->effort > EFFORT_MAX) return enc_fail(e, "effort: 1 to 3");
     if (o->effort == 0u) o->effort = EFFORT_USUAL;
     if (!o->segment_frames) o->segment_frames = e->attempt_frames;

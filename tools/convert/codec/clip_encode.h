@@ -20,7 +20,8 @@ extern "C" {
 
 typedef struct clip_options {
     double error_cm;              /* the bound; 0 = 0.01 */
-    double shell_cm;              /* distance of the points from their joint; 0 = 3 */
+    double shell_cm;              /* least distance of the points from their joint; 0 = 3 */
+    const double *reach_cm;       /* [joint_count] where it is larger; NULL = none */
     double float_error;           /* bound of floats without a radius, in their own unit; 0 = 0.001 */
     const double *joint_error_cm; /* [joint_count] bounds of single joints, 0 = error_cm; NULL = none */
     uint32_t effort;              /* 1 to 3: time for bytes, a higher one never larger; 0 = 2 */

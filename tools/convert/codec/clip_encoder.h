@@ -45,7 +45,8 @@ typedef struct enc_joint {
     double lever;               /* units: distance of the farthest point that only its rotation places */
     double scale_lever;         /* units: the radius of all that its scale moves */
     double bound;               /* units */
-    double shell[3];            /* how far from it its error is measured, in its own unit along each of its axes */
+    double reach;               /* how far from it its error is measured, in units of the bind pose's world, ... */
+    double shell[3];            /* ... and in its own unit along each of its axes */
     int turned;                 /* nothing scales it, in any frame: its linear part is a rotation */
     double depth;               /* 0 at the root of its longest chain of turning joints, 1 at the tip */
     enc_point *points;
@@ -120,8 +121,8 @@ typedef struct encoder {
     const enc_tuning *tunings; /* [tuning_count] every segment is encoded with each; the smallest result is kept */
     uint32_t tuning_count;
     model_error *error;
-    double unit_cm, bound, shell; /* unit_cm: centimetres per unit; bound and shell in units */
-    double tight; /* the share of the bound that is aimed at: below 1 if single precision needs the rest */
+    double unit_cm, bound; /* unit_cm: centimetres per unit; bound in units */
+    double tight;          /* the share of the bound that is aimed at: below 1 if single precision needs the rest */
     int level, wide, single;
     double drop;
     uint32_t joint_count, frame_count, float_count, group_count;
@@ -192,7 +193,7 @@ static inline double enc_error(const encoder *e, uint32_t joint, const space_glo
 {
     const enc_joint *t = &e->joints[joint];
     if (e->options.axes) return space_error_axes(raw, lossy, t->shell);
-    return t->turned ? space_error_turned(raw, lossy, e->shell) : space_error_sphere(raw, lossy, t->shell);
+    return t->turned ? space_error_turned(raw, lossy, t->reach) : space_error_sphere(raw, lossy, t->shell);
 }
 
 /* Each returns 0, or 1 with e->error filled. */

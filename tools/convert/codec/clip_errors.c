@@ -11,7 +11,9 @@
 #include "noh/format.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
+#include "convert/base/quat.h"
 #include "convert/clips/joint_order.h"
+#include "convert/clips/source_pose.h"
 #include "convert/model/model_build.h"
 
 #define CACHED_SEGMENTS 4u /* an eighth of a second lies in two or three segments */
@@ -141,6 +143,88 @@ static void close_player(player *p)
     free(p->work);
 }
 
+/* ---- vertices against the source ---- */
+
+#define PARTS 8u /* of a frame */
+
+typedef struct comparison {
+    const raw_skeleton *skeleton;
+    const raw_clip *raw;
+    const moved_vertices *vertices;
+    uint32_t *joints;
+    noh_transform *shown;
+    double *locals, *source, *lossy, *scratch;
+} comparison;
+
+static int open_comparison(const raw_skeleton *s, const raw_clip *raw, const moved_vertices *v, comparison *c)
+{
+    const size_t count = s->joint_count, channels = raw->source ? raw->source->channel_count : 0u;
+    c->skeleton = s;
+    c->raw = raw;
+    c->vertices = v;
+    c->joints = model_zeros(channels + 1u, sizeof *c->joints);
+    c->shown = model_zeros(count, sizeof *c->shown);
+    c->locals = model_zeros(count * SOURCE_LOCAL, sizeof *c->locals);
+    c->source = model_zeros(count * 12u, sizeof *c->source);
+    c->lossy = model_zeros(count * 12u, sizeof *c->lossy);
+    c->scratch = model_zeros(count, sizeof *c->scratch);
+    if (!c->joints || !c->shown || !c->locals || !c->source || !c->lossy || !c->scratch) return 1;
+    if (raw->source) source_joints(s, raw->source, c->joints);
+    return 0;
+}
+
+static void close_comparison(comparison *c)
+{
+    free(c->joints);
+    free(c->shown);
+    free(c->locals);
+    free(c->source);
+    free(c->lossy);
+    free(c->scratch);
+}
+
+static double apart_at(comparison *c, player *p, uint64_t tick, double floor)
+{
+    const uint32_t count = c->skeleton->joint_count;
+    source_rest(c->skeleton, c->locals);
+    source_locals(c->raw, c->joints, (double)tick / NOH_TICKS_PER_SECOND, c->locals);
+    source_object(c->skeleton, c->locals, c->source);
+    noh_clip_sample(p->cache, 0, (int64_t)tick, count, c->shown, NULL);
+    for (uint32_t j = 0; j < count; j++) {
+        double *l = c->locals + SOURCE_LOCAL * (size_t)j;
+        for (int i = 0; i < 4; i++) l[i] = (double)c->shown[j].rotation[i];
+        for (int i = 0; i < 3; i++) {
+            l[4 + i] = (double)c->shown[j].translation[i];
+            l[7 + i] = (double)c->shown[j].scale[i];
+        }
+        (void)quat_normalize(l);
+    }
+    source_object(c->skeleton, c->locals, c->lossy);
+    return moved_vertices_apart(c->vertices, c->source, c->lossy, floor, c->scratch);
+}
+
+/* Where frames lie between ticks, the runtime shows them at the tick nearest to them: they are compared there. */
+static int measure_vertices(const raw_skeleton *s, const raw_clip *raw, const moved_vertices *v, player *p,
+                            clip_errors *out)
+{
+    comparison c;
+    const uint64_t last = p->entry.duration_ticks;
+    double worst[2] = { 0.0, 0.0 };
+    int failed;
+    out->frame_error_cm = out->between_error_cm = -1.0;
+    if (!v || !v->vertex_count || !raw->joint_count) return 0;
+    failed = open_comparison(s, raw, v, &c);
+    for (uint32_t part = 0; !failed && part <= PARTS * (raw->frame_count - 1u); part++) {
+        const uint64_t tick = (uint64_t)(part * (double)NOH_TICKS_PER_SECOND / (PARTS * raw->sample_rate_hz) + 0.5);
+        double *of = &worst[part % PARTS != 0];
+        *of = apart_at(&c, p, tick < last ? tick : last, *of);
+    }
+    close_comparison(&c);
+    out->frame_error_cm = worst[0] * s->unit_cm;
+    out->between_error_cm = worst[1] * s->unit_cm;
+    return failed;
+}
+
 /* Raise each error to the one before it: a lower update rate, or fewer joints, never counts as better. Returns 0 if an
  * error is not finite. */
 static int settle(float *errors, uint32_t count)
@@ -174,7 +258,7 @@ int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const
         failed = !out->level_count ||
                  noh_joint_lod_measure(p.work, p.work_bytes, &p.probe, 0, counts, out->level_count, out->joint, NULL);
     }
-    failed = failed ||
+    failed = failed || measure_vertices(skeleton, raw, at->vertices, &p, out) ||
              measure_update_rates(&p, raw->joint_count && at->joint_radius ? at->points : NULL, out->update_rate);
     close_player(&p);
     if (failed) {

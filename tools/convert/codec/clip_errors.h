@@ -7,6 +7,7 @@
 #include "noh/format.h"
 #include "noh/low_stage.h"
 #include "convert/base/byte_buffer.h"
+#include "convert/clips/moved_vertices.h"
 #include "convert/clips/raw_clip.h"
 
 /* In the skeleton's unit; as noh_clip_header has them. */
@@ -15,6 +16,9 @@ typedef struct clip_errors {
     float update_rate[NOH_CLIP_UPDATE_RATES];
     float shell;          /* distance of the points from each joint; 0: errors are of vertices */
     uint32_t level_count; /* 0 without joints */
+    /* The largest distance of a vertex from where the source has it (source_pose.h), in centimetres, as the runtime
+     * plays the clip: at its frames, and at the eighths between them, by whole ticks. Negative: it moves no vertex. */
+    double frame_error_cm, between_error_cm;
 } clip_errors;
 
 /* Where a clip's error is measured. Borrowed. */
@@ -22,6 +26,7 @@ typedef struct error_points {
     const float *joint_radius; /* [joint_count] radius of what each joint moves (skin/joint_radius.h); NULL: no mesh is
                                   bound to the skeleton, points lie `shell_cm` from each joint */
     const noh_time_lod_points *points; /* vertices on which update rates are measured; read only with `joint_radius` */
+    const moved_vertices *vertices;    /* all of them */
     double shell_cm;
 } error_points;
 

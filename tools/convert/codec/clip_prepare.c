@@ -109,9 +109,12 @@ static int prepare_shells(encoder *e)
         for (int i = 0; i < 3; i++) l.t[i] = (double)e->bind[j].translation[i];
         for (int i = 0; i < 3; i++) l.s[i] = (double)e->bind[j].scale[i];
         space_compose(enc_parent(bind, t->parent), &l, &bind[j]);
+        t->reach = e->options.shell_cm;
+        if (e->options.reach_cm && e->options.reach_cm[j] > t->reach) t->reach = e->options.reach_cm[j];
+        t->reach /= e->unit_cm;
         for (int k = 0; k < 3; k++) {
             const double *m = bind[j].m, n = sqrt(m[k] * m[k] + m[3 + k] * m[3 + k] + m[6 + k] * m[6 + k]);
-            t->shell[k] = n > SHELL_SCALE_MIN && n < 1.0 / SHELL_SCALE_MIN ? e->shell / n : e->shell;
+            t->shell[k] = n > SHELL_SCALE_MIN && n < 1.0 / SHELL_SCALE_MIN ? t->reach / n : t->reach;
         }
     }
     free(bind);

@@ -174,7 +174,7 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
         add_pull(a, b, u, off, 1.0);
     }
     det = a[0] * (a[1] * a[2] - a[5] * a[5]) - a[3] * (a[3] * a[2] - a[5] * a[4]) + a[4] * (a[3] * a[5] - a[1] * a[4]);
-    if (!(det > 1e-9 * e->shell * e->shell * e->shell * e->shell * e->shell * e->shell)) return;
+    if (!(det > 1e-9 * t->reach * t->reach * t->reach * t->reach * t->reach * t->reach)) return;
     x[0] = ((a[1] * a[2] - a[5] * a[5]) * b[0] + (a[4] * a[5] - a[3] * a[2]) * b[1] +
             (a[3] * a[5] - a[4] * a[1]) * b[2]) /
            det;
@@ -184,7 +184,7 @@ static void correct(const encoder *e, uint32_t joint, uint32_t frame, const doub
     x[2] = ((a[3] * a[5] - a[1] * a[4]) * b[0] + (a[3] * a[4] - a[0] * a[5]) * b[1] +
             (a[0] * a[1] - a[3] * a[3]) * b[2]) /
            det;
-    most = TURN_MAX * t->bound / e->shell; /* points that lie close, as on what has shrunk, would ask for any turn */
+    most = TURN_MAX * t->bound / t->reach; /* points that lie close, as on what has shrunk, would ask for any turn */
     size = sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
     for (int i = 0; i < 3; i++) turn[i] = x[i] * (size > most ? most / size : 1.0) / 2.0 * e->tuning.correction;
     turn[3] = 1.0;
@@ -273,17 +273,18 @@ static uint32_t find_probes(const encoder *e, uint32_t joint, uint32_t frame, co
     uint32_t count = 0;
     for (int i = 0; i < 3; i++) x[i] = position[i] - raw->p[i];
     for (int k = 0; k < 3 && e->options.axes; k++) {
-        const double arm[3] = { e->shell * raw->m[k], e->shell * raw->m[3 + k], e->shell * raw->m[6 + k] };
+        const double arm[3] = { t->reach * raw->m[k], t->reach * raw->m[3 + k], t->reach * raw->m[6 + k] };
         set_probe(&out[count++], x, arm, 0.0, t->bound);
     }
-    if (!e->options.axes) set_probe(&out[count++], x, none, e->shell, t->bound);
+    if (!e->options.axes) set_probe(&out[count++], x, none, t->reach, t->bound);
     for (uint32_t i = 0; i < t->point_count && count < ENC_PROBES; i++) {
         const enc_point *point = &t->points[i];
         const double *at = enc_global(e, frame, point->joint)->p, bound = e->joints[point->joint].bound;
         double arm[3], base[3];
         space_apply(raw->m, point->offset, arm);
         for (int k = 0; k < 3; k++) base[k] = position[k] + arm[k] - at[k];
-        set_probe(&out[count++], base, arm, point->still ? e->shell : 0.0, point->still ? bound : bound * rho);
+        set_probe(&out[count++], base, arm, point->still ? e->joints[point->joint].reach : 0.0,
+                  point->still ? bound : bound * rho);
     }
     return count;
 }

@@ -313,6 +313,7 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     clip.sample_rate_hz = when.sample_rate_hz;
     clip.loop = from.loop;
     clip.source_error_cm = when.error_cm;
+    clip.source = &from;
     fill_joints(job, tracks, when, clip, where);
     clip.floats = zeros<raw_floats>(tracks.size());
     for (const track &t : tracks)

@@ -9,7 +9,10 @@
 #include <cmath>
 #include <limits>
 
+#include "noh/clip.h"
+
 #include "convert/clips/channel_sample.h"
+#include "convert/clips/source_pose.h"
 #include "convert/base/quat.h"
 
 namespace gltf
@@ -86,13 +89,21 @@ static double median_rate(const std::vector<double> &times)
     return 1.0 / steps[steps.size() / 2];
 }
 
+/* Whether frames lie at whole ticks, at which the runtime samples. */
+static bool on_ticks(double sample_rate_hz)
+{
+    const double ticks = NOH_TICKS_PER_SECOND / sample_rate_hz;
+    return std::fabs(ticks - std::floor(ticks + 0.5)) < 1e-6;
+}
+
 static std::vector<double> rates_to_try(const std::vector<double> &times, double grid)
 {
     std::vector<double> rates;
     if (grid > 0.0) {
         rates.push_back(grid);
         for (double factor : { 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 15.0, 20.0, 24.0, 30.0, 40.0, 60.0, 120.0 })
-            if (grid * factor <= rate_max_hz * 1.001) rates.push_back(grid * factor);
+            if (grid * factor <= rate_max_hz * 1.001 && (on_ticks(grid * factor) || !on_ticks(grid)))
+                rates.push_back(grid * factor);
         return rates;
     }
     rates = { 30.0, 60.0, rate_max_hz };
@@ -170,65 +181,21 @@ static double track_error(const track &track, const timing &t, double limit_cm)
 
 /* --- whole poses --- */
 
-struct local {
-    double rotation[4], translation[3], scale[3];
-};
-
-static std::vector<local> rest_pose(const raw_skeleton &skeleton)
-{
-    std::vector<local> pose(skeleton.joint_count);
-    for (size_t j = 0; j < pose.size(); ++j) {
-        const raw_joint &joint = skeleton.joints[j];
-        std::copy_n(joint.rotation, 4, pose[j].rotation);
-        std::copy_n(joint.translation, 3, pose[j].translation);
-        std::copy_n(joint.scale, 3, pose[j].scale);
-        (void)quat_normalize(pose[j].rotation);
-    }
-    return pose;
-}
-
-static double *value_in(std::vector<local> &pose, const track &t)
-{
-    local &l = pose[t.joint];
-    if (t.channel->path == MODEL_PATH_ROTATION) return l.rotation;
-    return t.channel->path == MODEL_PATH_TRANSLATION ? l.translation : l.scale;
-}
-
-static void sample_pose(const std::vector<track> &tracks, double time_s, double near_s, std::vector<local> &pose)
+static void sample_pose(const std::vector<track> &tracks, double time_s, double near_s, std::vector<double> &locals)
 {
     for (const track &t : tracks)
-        if (t.joint != MODEL_NONE) (void)channel_sample(t.channel, time_s, near_s, value_in(pose, t));
-}
-
-static void play_pose(const std::vector<local> &a, const std::vector<local> &b, double at, std::vector<local> &out)
-{
-    for (size_t j = 0; j < a.size(); ++j) {
-        quat_nlerp(a[j].rotation, b[j].rotation, at, out[j].rotation);
-        for (int i = 0; i < 3; ++i) {
-            out[j].translation[i] = a[j].translation[i] + (b[j].translation[i] - a[j].translation[i]) * at;
-            out[j].scale[i] = a[j].scale[i] + (b[j].scale[i] - a[j].scale[i]) * at;
-        }
-    }
-}
-
-static void object_pose(const raw_skeleton &skeleton, const std::vector<local> &pose, std::vector<double> &out)
-{
-    for (size_t j = 0; j < pose.size(); ++j) {
-        double matrix[12];
-        quat_columns(pose[j].rotation, matrix);
-        for (int i = 0; i < 9; ++i) matrix[i] *= pose[j].scale[i / 3];
-        std::copy_n(pose[j].translation, 3, matrix + 9);
-        raw_pose_below(skeleton.joints[j].parent, matrix, j, out.data());
-    }
+        if (t.joint != MODEL_NONE) source_channel(t.channel, t.joint, time_s, near_s, locals.data());
 }
 
 /* The frames and the times between them of all tracks together. Stops above the limit. */
 static double vertex_error(const std::vector<track> &tracks, const moved &what, const timing &t, double limit_cm)
 {
     const raw_skeleton &skeleton = *what.skeleton;
-    std::vector<local> a = rest_pose(skeleton), b = a, curve = a, shown = a;
-    std::vector<double> from(a.size() * 12), to(from), scratch(a.size());
+    const uint32_t count = skeleton.joint_count;
+    std::vector<double> a(size_t{ count } * SOURCE_LOCAL), from(size_t{ count } * 12), to(from), scratch(count);
     double worst = 0.0;
+    source_rest(&skeleton, a.data());
+    std::vector<double> b = a, curve = a, shown = a;
     sample_pose(tracks, 0.0, t.near_s, b);
     for (uint32_t frame = 1; frame < t.frame_count && worst <= limit_cm / skeleton.unit_cm; ++frame) {
         const double begin = frame_time_s(t, frame - 1), end = frame_time_s(t, frame);
@@ -236,9 +203,9 @@ static double vertex_error(const std::vector<track> &tracks, const moved &what, 
         sample_pose(tracks, end, t.near_s, b);
         for (double at : places_between(tracks, begin, end, t.near_s)) {
             sample_pose(tracks, begin + (end - begin) * at, 0.0, curve);
-            play_pose(a, b, at, shown);
-            object_pose(skeleton, curve, from);
-            object_pose(skeleton, shown, to);
+            source_blend(count, a.data(), b.data(), at, shown.data());
+            source_object(&skeleton, curve.data(), from.data());
+            source_object(&skeleton, shown.data(), to.data());
             worst = moved_vertices_apart(what.vertices, from.data(), to.data(), worst, scratch.data());
         }
     }

@@ -111,6 +111,7 @@ int clean_set(raw_set *set, unsigned what, FILE *report)
     for (uint32_t i = 0; i < set->clip_count; i++) {
         raw_clip *clip = &set->clips[i];
         if (!clip->joint_count) continue;
+        if (what) clip->source = NULL;
         if ((what & CLEAN_GAPS) && fill_gaps(&set->skeleton, clip, report)) return 1;
         if ((what & CLEAN_JITTER) && filter_jitter(&set->skeleton, clip, report)) return 1;
         if ((what & FEET) && use_feet(&set->skeleton, clip, what, report)) return 1;

@@ -13,6 +13,7 @@
 #include "convert/skin/joint_radius.h"
 #include "convert/clips/loop_check.h"
 #include "convert/clips/raw_set.h"
+#include "convert/model/model_build.h"
 
 static uint32_t float_count(const raw_clip *clip)
 {
@@ -51,6 +52,10 @@ static void report_clip(const clips_settings *s, const raw_set *set, const encod
     if (c->raw->joint_count) {
         fprintf(s->report, "error %.4f cm at '%s', %.2f s\n", r->max_error_cm,
                 set->skeleton.joints[r->max_error_joint].name, r->max_error_time_s);
+        if (c->errors.frame_error_cm >= 0.0) {
+            fprintf(s->report, "  vertices at most %.4g cm off the source at frames, %.4g cm between them\n",
+                    c->errors.frame_error_cm, c->errors.between_error_cm);
+        }
     } else {
         fprintf(s->report, "error at most %.4f of the bound\n", r->max_float_error);
     }
@@ -170,35 +175,66 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *a
     return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
-/* Fills radius[joint_count] and points. The caller frees both, also on failure. */
-static int open_points(const clips_settings *s, uint32_t index, uint32_t joint_count, float *radius,
-                       joint_points *points, error_points *at)
+/* What a set's clips move, and where their errors are measured. */
+typedef struct set_points {
+    float *radius;
+    double *reach_cm, *pose;
+    joint_points points;
+    moved_vertices vertices;
+    error_points at;
+} set_points;
+
+static int open_points(const clips_settings *s, const raw_skeleton *skeleton, uint32_t index, set_points *p)
 {
-    memset(points, 0, sizeof *points);
-    at->shell_cm = shell_cm(s);
-    at->joint_radius = radius && joint_radius(s->m, index, joint_count, radius) ? radius : NULL;
-    at->points = at->joint_radius ? &points->points : NULL;
-    return !radius || (at->joint_radius && joint_points_choose(s->m, index, joint_count, points));
+    const uint32_t count = skeleton->joint_count;
+    memset(p, 0, sizeof *p);
+    p->radius = model_zeros(count + 1u, sizeof *p->radius);
+    p->reach_cm = model_zeros(count + 1u, sizeof *p->reach_cm);
+    p->pose = model_zeros(count + 1u, 12u * sizeof *p->pose);
+    if (!p->radius || !p->reach_cm || !p->pose || moved_vertices_add_bound(&p->vertices, s->m, index) ||
+        moved_vertices_close(&p->vertices, count)) {
+        return 1;
+    }
+    raw_pose_object(skeleton, NULL, 0, p->pose);
+    moved_vertices_reach(&p->vertices, skeleton, p->pose, 1, p->reach_cm);
+    p->at.shell_cm = shell_cm(s);
+    p->at.joint_radius = joint_radius(s->m, index, count, p->radius) ? p->radius : NULL;
+    p->at.points = p->at.joint_radius ? &p->points.points : NULL;
+    p->at.vertices = &p->vertices;
+    return p->at.joint_radius && joint_points_choose(s->m, index, count, &p->points);
+}
+
+static void close_points(set_points *p)
+{
+    free(p->radius);
+    free(p->reach_cm);
+    free(p->pose);
+    joint_points_free(&p->points);
+    moved_vertices_free(&p->vertices);
 }
 
 static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s, model_error *error)
 {
     raw_set *set = m->sets[index];
-    float *radius = malloc((set->skeleton.joint_count + 1u) * sizeof *radius);
-    joint_points points;
-    error_points at;
-    int failed = open_points(s, index, set->skeleton.joint_count, radius, &points, &at);
+    clips_settings own = *s;
+    set_points points;
+    int failed;
+    if (set->error_cm > 0.0) {
+        own.clip.error_cm = set->error_cm;
+        own.clip.shell_cm = fmin(shell_cm(s), set->shell_cm);
+    }
+    failed = open_points(&own, &set->skeleton, index, &points);
     if (failed) {
         snprintf(error->what, sizeof error->what, "out of memory");
     }
+    own.clip.reach_cm = points.reach_cm;
     for (uint32_t c = 0; c < set->clip_count && !failed; c++) {
         encoded_clip *to = &m->clips[m->clip_count++];
         to->set = index;
         to->raw = &set->clips[c];
-        failed = encode_clip(set, &set->clips[c], &at, s, to, error);
+        failed = encode_clip(set, &set->clips[c], &points.at, &own, to, error);
     }
-    joint_points_free(&points);
-    free(radius);
+    close_points(&points);
     return failed;
 }
 

@@ -16,6 +16,24 @@
 #define USUAL_LEAST_CM 20.0
 #define USUAL_MOST_CM 400.0
 
+/* The longest side of a box about a mesh, of clips that move no joints. */
+static double meshes_cm(const model *m)
+{
+    double size = 0.0;
+    for (uint32_t i = 0; m && i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        for (size_t axis = 0; axis < 3; axis++) {
+            double low = HUGE_VAL, high = -HUGE_VAL;
+            for (size_t v = 0; v < mesh->vertex_count; v++) {
+                low = fmin(low, (double)mesh->position[v * 3 + axis]);
+                high = fmax(high, (double)mesh->position[v * 3 + axis]);
+            }
+            size = fmax(size, 100.0 * (high - low) * (double)model_mesh_scale(m, i));
+        }
+    }
+    return size;
+}
+
 /* The longest side of a box about joints in the bind pose and what each moves; 0: there is nothing to measure. */
 static double size_cm(const model *m, const raw_set *set, uint32_t index, int *failed)
 {
@@ -39,7 +57,7 @@ static double size_cm(const model *m, const raw_set *set, uint32_t index, int *f
     }
     free(pose);
     free(radius);
-    return size * set->skeleton.unit_cm;
+    return count ? size * set->skeleton.unit_cm : meshes_cm(m);
 }
 
 /* To one digit. */
@@ -59,12 +77,16 @@ static double unit_slip(double size)
     return 0.0;
 }
 
-static int warn(model *m, const raw_set *set, double size, double error_cm)
+static int warn(model *m, raw_set *set, double size, double error_cm, int fits)
 {
     const double error = fmin(fmax(rounded(size * PERSON_ERROR_CM / PERSON_CM), 1e-6), 400.0);
     const double shell = fmin(fmax(rounded(size * PERSON_SHELL_CM / PERSON_CM), 1e-3), 1e5);
     const double slip = unit_slip(size);
     char unit[160] = "";
+    if (fits) {
+        set->error_cm = error;
+        set->shell_cm = shell;
+    }
     if (slip > 0.0) {
         (void)snprintf(unit, sizeof unit,
                        "; if it should be %.3g cm large, its unit is wrong: export it scaled by %.3g", size * slip,
@@ -73,9 +95,10 @@ static int warn(model *m, const raw_set *set, double size, double error_cm)
     return model_warn(
         m,
         "skeleton '%.60s' and what it moves are %.3g cm large, for which --error-cm %g is %s: --error-cm %g "
-        "--shell-cm %g fit this size%s",
+        "--shell-cm %g %s%s",
         set->skeleton.name ? set->skeleton.name : "", size, error_cm,
-        error_cm > size * SHARE_MOST ? "visibly coarse" : "finer than visible", error, shell, unit);
+        error_cm > size * SHARE_MOST ? "visibly coarse" : "finer than visible", error, shell,
+        fits ? "were used" : "fit this size", unit);
 }
 
 int size_warn(model *m, raw_set *const *sets, uint32_t set_count, double error_cm)
@@ -84,11 +107,11 @@ int size_warn(model *m, raw_set *const *sets, uint32_t set_count, double error_c
     for (uint32_t i = 0; i < set_count; i++) {
         int failed;
         double size;
-        if (!sets[i]->clip_count || !sets[i]->skeleton.joint_count) continue;
+        if (!sets[i]->clip_count) continue;
         size = size_cm(m, sets[i], i, &failed);
         if (failed) return 1;
         if (!(size > 1e-6) || (error <= size * SHARE_MOST && error >= size * SHARE_LEAST)) continue;
-        if (warn(m, sets[i], size, error)) return 1;
+        if (warn(m, sets[i], size, error, !(error_cm > 0.0) && error > size * SHARE_MOST)) return 1;
     }
     return 0;
 }

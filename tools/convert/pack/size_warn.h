@@ -7,7 +7,9 @@
 /* Distances in centimetres: of points around joints, as clips are encoded to them. The default tolerance is right for
  * people. On a coin it is visible, and on a ship it wastes bytes; the suggestion is the same share of the size. If the
  * size would be usual in another unit, the warning says so.
- * sets  [set_count]; meshes bound. Returns 1 when out of memory. */
+ * sets      [set_count]; meshes bound. Where the default would be visible, the suggestion is stored in them.
+ * error_cm  0: none was asked for
+ * Returns 1 when out of memory. */
 int size_warn(model *m, raw_set *const *sets, uint32_t set_count, double error_cm);
 
 #endif

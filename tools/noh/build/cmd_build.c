@@ -20,9 +20,9 @@
 #define INPUTS_MAX 64
 
 typedef struct clip_args {
-    const char *events, *unit_cm, *rest, *facing, *bound, *rename, *clean;
+    const char *events, *unit_cm, *rest, *facing, *bound, *rename, *clean, *error_cm;
     int partial, loop, open_loop;
-    double rate, error_cm, shell_cm, split_hz, segment_frames, effort;
+    double rate, shell_cm, split_hz, segment_frames, effort;
     option_list clip_errors, joint_errors;
 } clip_args;
 
@@ -107,7 +107,9 @@ static int check_errors(const char *name, const option_list *list)
 
 static int set_clip(const build_args *a, convert_options *o)
 {
-    if (a->clips.rate < 0.0 || a->clips.rate > 1000.0 || a->clips.error_cm <= 0.0 || a->clips.shell_cm <= 0.0) {
+    const int asked = strcmp(a->clips.error_cm, "auto") != 0;
+    if (a->clips.rate < 0.0 || a->clips.rate > 1000.0 || a->clips.shell_cm <= 0.0 ||
+        (asked && (tool_number(a->clips.error_cm, &o->clip.clip.error_cm) || !(o->clip.clip.error_cm > 0.0)))) {
         return tool_usage("--rate must be 0 to 1000 Hz, and --error-cm and --shell-cm above 0");
     }
     if (a->clips.effort != 1.0 && a->clips.effort != 2.0 && a->clips.effort != 3.0) {
@@ -146,7 +148,6 @@ static int set_clip(const build_args *a, convert_options *o)
         return tool_usage("--split-hz must be 0 or more frames a second, not %g", a->clips.split_hz);
     o->source.sample_rate_hz = a->clips.rate;
     o->clip.check_loops = a->clips.loop;
-    o->clip.clip.error_cm = a->clips.error_cm;
     o->clip.clip.shell_cm = a->clips.shell_cm;
     o->clip.clip.axes = a->clips.bound[0] == 'a';
     o->clip.clip.segment_frames = (uint32_t)a->clips.segment_frames;
@@ -659,11 +660,12 @@ static const option options[] = {
       .example = "30",
       .excludes = "--only=mesh" },
     { .name = "--error-cm",
-      .kind = OPTION_NUMBER,
+      .kind = OPTION_TEXT,
       .at = offsetof(build_args, clips.error_cm),
-      .value = "CM",
-      .initial = "0.01",
-      .what = "largest error of clips at the shell, centimetres, over 0",
+      .value = "auto|CM",
+      .initial = "auto",
+      .what =
+          "largest error of clips at the shell, centimetres, over 0; auto: 0.01, or less where the figure is so small that it would show",
       .example = "0.02",
       .excludes = "--only=mesh" },
     { .name = "--shell-cm",
@@ -671,7 +673,8 @@ static const option options[] = {
       .at = offsetof(build_args, clips.shell_cm),
       .value = "CM",
       .initial = "3",
-      .what = "distance from a joint at which its error is measured, centimetres, over 0",
+      .what =
+          "distance from a joint at which its error is measured, centimetres, over 0; farther where it moves vertices that lie farther",
       .example = "6",
       .excludes = "--only=mesh" },
     { .name = "--bound",

@@ -31,7 +31,6 @@ static convert_options options_of(const lod_settings *levels, FILE *words)
     convert_options o;
     memset(&o, 0, sizeof o);
     o.morph.error_um = 10.0f;
-    o.clip.clip.error_cm = 0.01;
     o.clip.clip.shell_cm = 3.0;
     o.source.unit_cm = 1.0;
     o.lod = *levels;
