@@ -47,8 +47,7 @@ QUICK_LD    := $(if $(shell command -v ld.lld),-fuse-ld=lld)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 # Draco meshes in glTF are read where its library is.
 HAVE_DRACO := $(shell $(PKG) --exists draco && echo y)
-HAVE_ASSIMP := $(shell $(PKG) --exists assimp && echo y)
-TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(if $(HAVE_DRACO),-ldraco) $(if $(HAVE_ASSIMP),-lassimp) -ldl -lm
+TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(or $(shell $(PKG) --libs zlib),-lz) $(if $(HAVE_DRACO),-ldraco) -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
 Q        := $(if $(V),,@)
 say       = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))
@@ -64,7 +63,7 @@ RUNTIME_C  := $(foreach room,$(ROOMS),$(call sources,runtime/$(room),*.c))
 # template.c is for reading; the tests compile it.
 PLATFORM_C := $(filter-out platform/template.c,$(sort $(wildcard platform/*.c)))
 CONVERT_C  := $(call sources,tools/convert,*.c)
-CONVERT_CC := $(filter-out $(if $(HAVE_ASSIMP),,tools/convert/fbx/fbx_a% tools/convert/fbx/fbx_m% tools/convert/fbx/fbx_s%),$(call sources,tools/convert,*.cpp))
+CONVERT_CC := $(call sources,tools/convert,*.cpp)
 VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
 VIEW_C     := $(filter-out $(VIEW_NOT_C) %/cmd_view.c,$(call sources,tools/noh/view,*.c))
 VIEW_CC    := $(call sources,tools/noh/view,*.cpp)

@@ -61,9 +61,8 @@ wires=$!
 
 # Also the converter: C and C++, with its input libraries.
 link_import() {
-    more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb"
+    more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb -lz"
     if pkg-config --exists draco; then more="$more -DNOH_DRACO" libraries="$libraries -ldraco"; fi
-    if pkg-config --exists assimp; then more="$more -DNOH_ASSIMP" libraries="$libraries -lassimp"; fi
     rm -rf "$work/import"
     mkdir "$work/import"
     # shellcheck disable=SC2016

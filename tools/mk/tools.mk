@@ -11,16 +11,10 @@ $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 $(BUILD)/tools/convert/gltf/gltf_draco.o: ALL_CXXFLAGS += $(if $(HAVE_DRACO),-DNOH_DRACO)
 $(BUILD)/tools/convert/gltf/gltf_draco.o: $(BUILD)/gen/with_draco
 
-$(BUILD)/tools/convert/fbx/%.o: ALL_CXXFLAGS += $(if $(HAVE_ASSIMP),-DNOH_ASSIMP)
-$(patsubst %.cpp,$(BUILD)/%.o,$(wildcard tools/convert/fbx/*.cpp)): $(BUILD)/gen/with_assimp
-
-# Change when Draco or Assimp comes or goes.
+# Changes when Draco comes or goes.
 $(BUILD)/gen/with_draco: FORCE
 	@mkdir -p $(@D)
 	@echo '$(HAVE_DRACO)' | cmp -s - $@ || echo '$(HAVE_DRACO)' >$@
-$(BUILD)/gen/with_assimp: FORCE
-	@mkdir -p $(@D)
-	@echo '$(HAVE_ASSIMP)' | cmp -s - $@ || echo '$(HAVE_ASSIMP)' >$@
 
 # One file of the library, wherever it lies, for an instruction set, its entry renamed.
 kernel_c    = $(firstword $(filter %/$(1).c,$(RUNTIME_C)))
@@ -84,8 +78,8 @@ $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
 
-# The same as on a machine that has only what it must: no Draco, no Assimp, no window. For the tests.
-WITHOUT_CC := tools/convert/gltf/gltf_draco.cpp tools/convert/fbx/fbx_read.cpp
+# The same as on a machine that has only what it must: no Draco, no window. For the tests.
+WITHOUT_CC := tools/convert/gltf/gltf_draco.cpp
 WITHOUT_O  := $(WITHOUT_CC:%.cpp=$(BUILD)/without/%.o) $(VIEW_NOT_C:%.c=$(BUILD)/without/%.o)
 $(BUILD)/without/%.o: %.cpp
 	@mkdir -p $(@D)
@@ -95,9 +89,9 @@ $(BUILD)/without/%.o: %.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) -DNOH_VIEW_WITHOUT='"glfw3 and imgui"' -MMD -MP -c $< -o $@
-$(BUILD)/noh_without: $(TOOL_O) $(WITHOUT_O) $(filter-out $(BUILD)/tools/convert/fbx/% %/gltf_draco.o,$(CONVERT_O)) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
+$(BUILD)/noh_without: $(TOOL_O) $(WITHOUT_O) $(filter-out %/gltf_draco.o,$(CONVERT_O)) $(PLATFORM_O) $(KERNELS) $(BUILD)/libnoh.a
 	$(call say,CXX,$@)
-	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $(filter %.o %.a,$^) -o $@ $(filter-out -ldraco -lassimp,$(TOOL_LIBS))
+	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $(filter %.o %.a,$^) -o $@ $(filter-out -ldraco,$(TOOL_LIBS))
 
 # The man page and the completion for bash come from the tables that the verbs read their options by.
 $(BUILD)/noh.1: $(BUILD)/noh

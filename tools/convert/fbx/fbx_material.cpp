@@ -1,171 +1,224 @@
-/* fbx_material.cpp: materials and the pictures that they name, in the file or in its folder. */
+/* fbx_material.cpp: materials: Lambert and Phong, and physical ones of 3ds Max and Maya, whose properties have a path
+ * before their name ("3dsMax|main|base_color_map"). */
 #include "fbx_internal.h"
 
-#include <assimp/material.h>
-
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <cstring>
-#include <filesystem>
 
 namespace fbx
 {
 
-/* --- pictures --- */
+/* --- names of properties --- */
 
-static std::string base_name(const std::string &path)
+/* "3dsMax|main|base_color_map" and "Maya|baseColor" as "basecolormap" and "basecolor"; others as they are. */
+static std::string plain_property(const std::string &name)
 {
-    const size_t slash = path.find_last_of("/\\");
-    return slash == std::string::npos ? path : path.substr(slash + 1);
-}
-
-/* Paths are from the author's machine: the picture is looked up by its name, where exporters put it. */
-static std::string beside(const job &j, const std::string &path)
-{
-    const std::filesystem::path file(j.path);
-    const std::string name = base_name(path);
-    std::string as_given = path;
-    std::replace(as_given.begin(), as_given.end(), '\\', '/');
-    std::error_code ignored;
-    for (const std::string &try_at : { as_given, name, file.stem().string() + ".fbm/" + name, "textures/" + name,
-                                       "Textures/" + name, "../textures/" + name, "../Textures/" + name }) {
-        const bool local = !try_at.empty() && try_at[0] != '/' && try_at.find(':') == std::string::npos;
-        if (local && std::filesystem::is_regular_file(file.parent_path() / try_at, ignored)) return try_at;
-    }
-    return std::string();
-}
-
-static std::string percent_encode(const std::string &path)
-{
-    static const char digits[] = "0123456789ABCDEF";
+    const size_t bar = name.rfind('|');
     std::string out;
-    for (char c : path) {
-        const unsigned char byte = static_cast<unsigned char>(c);
-        const bool plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
-                           strchr("-_.~/", c);
-        if (plain && c)
-            out += c;
-        else
-            (((out += '%') += digits[byte >> 4]) += digits[byte & 15]);
-    }
+    if (bar == std::string::npos) return name;
+    for (size_t i = bar + 1; i < name.size(); ++i)
+        if (name[i] != '_') out += static_cast<char>(tolower(static_cast<unsigned char>(name[i])));
     return out;
 }
 
-/* A picture that is stored in the file: encoded bytes, since its height is 0. */
-static const aiTexture *embedded(const job &j, const char *path)
-{
-    const aiTexture *t = j.scene->GetEmbeddedTexture(path);
-    return t && t->mHeight == 0 && t->mWidth > 0 ? t : nullptr;
-}
+struct source {
+    const scene &s;
+    size_t object;
+    std::map<std::string, const std::vector<value> *> physical; /* by plain name */
 
-static bool find_image(job &j, const char *path, tinygltf::Image &out)
-{
-    const aiTexture *inside = embedded(j, path);
-    out.name = base_name(path);
-    if (inside) {
-        const unsigned char *bytes = reinterpret_cast<const unsigned char *>(inside->pcData);
-        out.mimeType = inside->mWidth > 1 && bytes[0] == 0xff && bytes[1] == 0xd8 ? "image/jpeg" : "image/png";
-        out.bufferView = add_view(j, bytes, inside->mWidth);
-        return true;
+    source(const scene &given, size_t material) : s(given), object(material)
+    {
+        for (const auto &p : s.objects[material].own)
+            if (p.first.find('|') != std::string::npos && !p.second.empty())
+                physical.insert({ plain_property(p.first), &p.second });
     }
-    const std::string at = beside(j, path);
-    if (at.empty()) {
-        note(j, "the picture '" + out.name + "' is neither in the file nor in its folder and was left out");
-        return false;
+    /* The first of these that there is; physical ones are in lower case. */
+    const std::vector<value> *find(std::initializer_list<const char *> names) const
+    {
+        for (const char *name : names) {
+            const auto found = physical.find(name);
+            if (found != physical.end()) return found->second;
+            const std::vector<value> *plain = isupper(static_cast<unsigned char>(name[0])) ? s.property(object, name)
+                                                                                           : nullptr;
+            if (plain) return plain;
+        }
+        return nullptr;
     }
-    out.uri = percent_encode(at);
-    return true;
-}
+    double real(std::initializer_list<const char *> names, double otherwise) const
+    {
+        const std::vector<value> *found = find(names);
+        return found ? number_of((*found)[0], otherwise) : otherwise;
+    }
+    vec color(std::initializer_list<const char *> names, double otherwise) const
+    {
+        const std::vector<value> *found = find(names);
+        vec out = { { otherwise, otherwise, otherwise } };
+        for (size_t k = 0; found && k < 3 && k < found->size(); ++k)
+            out[static_cast<int>(k)] = number_of((*found)[k], otherwise);
+        return out;
+    }
+};
 
-/* The texture of a kind, or -1. */
-static int texture_of(job &j, const aiMaterial &m, aiTextureType kind)
+static double share(double value)
 {
-    aiString path;
-    tinygltf::Image image;
-    if (m.GetTexture(kind, 0, &path) != AI_SUCCESS || !path.length) return -1;
-    for (size_t i = 0; i < j.out.images.size(); ++i)
-        if (j.out.images[i].extras.IsString() && j.out.images[i].extras.Get<std::string>() == path.C_Str())
-            return static_cast<int>(i);
-    if (!find_image(j, path.C_Str(), image)) return -1;
-    image.extras = tinygltf::Value(std::string(path.C_Str()));
-    tinygltf::Texture texture;
-    texture.source = static_cast<int>(j.out.images.size());
-    j.out.images.push_back(image);
-    j.out.textures.push_back(texture);
-    return static_cast<int>(j.out.textures.size() - 1);
+    return std::min(std::max(value, 0.0), 1.0);
 }
-
-static int texture_of_either(job &j, const aiMaterial &m, aiTextureType kind, aiTextureType other)
-{
-    const int found = texture_of(j, m, kind);
-    return found >= 0 ? found : texture_of(j, m, other);
-}
-
-/* --- materials --- */
 
 /* Colours are sRGB, as in modelling programs; glTF's are linear. */
-static double linear(ai_real value)
+static double linear(double value)
 {
-    const double v = std::min(std::max(static_cast<double>(value), 0.0), 1.0);
+    const double v = share(value);
     return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
 }
 
-/* Phong's exponent as GGX's roughness: their lobes are equally wide (Walter et al. 2007: n = 2 / a^2 - 2, a = r^2). */
-static double roughness_of(const aiMaterial &m)
+/* --- textures --- */
+
+enum use { USE_COLOR, USE_NORMAL, USE_EMISSIVE, USE_OPACITY, USE_COUNT };
+
+static bool use_of(const std::string &property, use *out)
 {
-    float value = 0.0f;
-    if (m.Get(AI_MATKEY_ROUGHNESS_FACTOR, value) == AI_SUCCESS)
-        return std::min(std::max(static_cast<double>(value), 0.0), 1.0);
-    if (m.Get(AI_MATKEY_SHININESS, value) != AI_SUCCESS || !(value > 0.0f)) return 0.8;
-    return std::min(std::pow(2.0 / (static_cast<double>(value) + 2.0), 0.25), 1.0);
+    static const std::map<std::string, use> known = {
+        { "DiffuseColor", USE_COLOR },
+        { "basecolormap", USE_COLOR },
+        { "basecolor", USE_COLOR },
+        { "texcolormap", USE_COLOR },
+        { "colormap", USE_COLOR },
+        { "NormalMap", USE_NORMAL },
+        { "normmap", USE_NORMAL },
+        { "normalmap", USE_NORMAL },
+        { "texnormalmap", USE_NORMAL },
+        { "normalcamera", USE_NORMAL },
+        { "EmissiveColor", USE_EMISSIVE },
+        { "emitcolormap", USE_EMISSIVE },
+        { "texemissivemap", USE_EMISSIVE },
+        { "emissivemap", USE_EMISSIVE },
+        { "emissioncolor", USE_EMISSIVE },
+        { "emissioncolormap", USE_EMISSIVE },
+        { "TransparentColor", USE_OPACITY },
+        { "opacitymap", USE_OPACITY },
+        { "TransparencyFactor", USE_OPACITY },
+        { "opacity", USE_OPACITY },
+    };
+    const auto found = known.find(plain_property(property));
+    if (found == known.end()) return false;
+    *out = found->second;
+    return true;
 }
 
-static void read_colors(const aiMaterial &m, tinygltf::Material &out)
+/* uses: [USE_COUNT] texture objects, or none */
+static void find_textures(job &j, size_t material, size_t *uses)
 {
-    aiColor3D color(1.0f, 1.0f, 1.0f);
-    float opacity = 1.0f;
+    std::fill_n(uses, static_cast<size_t>(USE_COUNT), none);
+    for (const link &l : j.in.objects[material].below) {
+        const std::string &kind = j.in.objects[l.other].kind;
+        use u;
+        if ((kind != "Texture" && kind != "LayeredTexture") || l.property == "AmbientColor") continue;
+        if (use_of(l.property, &u)) {
+            if (uses[u] == none) uses[u] = l.other;
+            continue;
+        }
+        j.in.warn(place_of(j.in, material) + " " + l.property, ": a picture of this kind is not read and was left out");
+    }
+}
+
+static bool same_picture(const scene &s, size_t a, size_t b)
+{
+    return a == b || (a != none && b != none && picture_path(s, a) == picture_path(s, b));
+}
+
+/* --- one material --- */
+
+/* Exporters disagree about what a transparent colour of 0 means; the product is 0 in all that are opaque. */
+static double opacity_of(const source &m)
+{
+    const vec color = m.color({ "TransparentColor" }, 0.0);
+    const auto own = m.s.objects[m.object].own.find("Opacity");
+    double out = 1.0 - m.real({ "TransparencyFactor" }, 0.0) * (color[0] + color[1] + color[2]) / 3.0;
+    if (own != m.s.objects[m.object].own.end() && !own->second.empty()) out = number_of(own->second[0], 1.0);
+    if (m.find({ "opacity" })) out = m.color({ "opacity" }, 1.0)[0];
+    return out > 0.0 && out < 1.0 ? out : 1.0;
+}
+
+static bool is_blender(const scene &s)
+{
+    const node *header = s.file.top.child("FBXHeaderExtension"), *creator = s.file.top.child("Creator");
+    if (!creator && header) creator = header->child("Creator");
+    return creator && creator->text(0).find("Blender") != std::string::npos;
+}
+
+/* Phong's exponent as GGX's roughness: their lobes are equally wide (Walter et al. 2007: n = 2 / a^2 - 2, a = r^2).
+ * Blender writes its roughness as an exponent of its own, (10 - 10 r)^2. */
+static double roughness_of(const source &m)
+{
+    if (m.find({ "glossiness" }) && m.real({ "useglossiness" }, 1.0) == 1.0)
+        return share(1.0 - m.real({ "glossiness" }, 0.0));
+    if (m.find({ "roughness", "specularroughness" })) return share(m.real({ "roughness", "specularroughness" }, 0.5));
+    const double exponent = m.real({ "ShininessExponent", "Shininess" }, 0.0);
+    if (is_blender(m.s) && m.find({ "ShininessExponent", "Shininess" }))
+        return share(1.0 - std::sqrt(std::max(exponent, 0.0)) / 10.0);
+    return exponent > 0.0 ? share(std::pow(2.0 / (exponent + 2.0), 0.25)) : 0.8;
+}
+
+static double metallic_of(const source &m)
+{
+    return share(m.real({ "metalness", "metallic" }, is_blender(m.s) ? m.real({ "ReflectionFactor" }, 0.0) : 0.0));
+}
+
+static void read_colors(const source &m, tinygltf::Material &out)
+{
     const bool textured = out.pbrMetallicRoughness.baseColorTexture.index >= 0;
-    if (textured || m.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS) color = aiColor3D(1.0f, 1.0f, 1.0f);
-    if (m.Get(AI_MATKEY_OPACITY, opacity) != AI_SUCCESS || !(opacity > 0.0f && opacity < 1.0f)) opacity = 1.0f;
-    out.pbrMetallicRoughness.baseColorFactor = { linear(color.r), linear(color.g), linear(color.b),
-                                                 static_cast<double>(opacity) };
-    if (opacity < 1.0f) out.alphaMode = "BLEND";
-    if (m.Get(AI_MATKEY_COLOR_EMISSIVE, color) == AI_SUCCESS && out.emissiveTexture.index < 0)
-        out.emissiveFactor = { linear(color.r), linear(color.g), linear(color.b) };
-    else if (out.emissiveTexture.index >= 0)
+    const double strength = m.real({ "base" }, 1.0), opacity = opacity_of(m);
+    const vec color = textured ? vec{ { 1.0, 1.0, 1.0 } }
+                               : m.color({ "basecolor", "color", "DiffuseColor", "Diffuse" }, 1.0);
+    const double factor = textured ? 1.0 : m.find({ "basecolor" }) ? strength : m.real({ "DiffuseFactor" }, 1.0);
+    const vec glow = m.color({ "emitcolor", "emissioncolor", "emissive", "EmissiveColor", "Emissive" }, 0.0);
+    const double glow_factor = m.real({ "emission", "EmissiveFactor" }, 1.0);
+    out.pbrMetallicRoughness.baseColorFactor = { linear(color[0] * factor), linear(color[1] * factor),
+                                                 linear(color[2] * factor), opacity };
+    if (opacity < 1.0) out.alphaMode = "BLEND";
+    if (out.emissiveTexture.index >= 0)
         out.emissiveFactor = { 1.0, 1.0, 1.0 };
+    else
+        out.emissiveFactor = { linear(glow[0] * glow_factor), linear(glow[1] * glow_factor),
+                               linear(glow[2] * glow_factor) };
 }
 
-static void read_material(job &j, const aiMaterial &m)
+/* Before version 7 textures belong to the node, one for each material or one for all. */
+static size_t texture_of_node(const scene &s, size_t material, size_t model)
 {
+    const std::vector<size_t> textures = s.below(model, "Texture", nullptr), all = s.below(model, "Material", nullptr);
+    const size_t place = static_cast<size_t>(std::find(all.begin(), all.end(), material) - all.begin());
+    return textures.empty() ? none : textures[std::min(place, textures.size() - 1)];
+}
+
+int material_of(job &j, size_t material, size_t model)
+{
+    size_t uses[USE_COUNT];
     tinygltf::Material out;
-    aiString name;
-    float metallic = 0.0f;
-    if (m.Get(AI_MATKEY_NAME, name) == AI_SUCCESS) out.name = name.C_Str();
-    out.pbrMetallicRoughness.baseColorTexture.index = texture_of_either(j, m, aiTextureType_DIFFUSE,
-                                                                        aiTextureType_BASE_COLOR);
-    out.normalTexture.index = texture_of_either(j, m, aiTextureType_NORMALS, aiTextureType_NORMAL_CAMERA);
-    out.emissiveTexture.index = texture_of(j, m, aiTextureType_EMISSIVE);
-    if (m.GetTextureCount(aiTextureType_OPACITY)) { /* exporters name the colours' own picture: its alpha cuts */
-        aiString colors, opacity;
-        m.GetTexture(aiTextureType_DIFFUSE, 0, &colors);
-        m.GetTexture(aiTextureType_OPACITY, 0, &opacity);
-        if (colors == opacity)
+    find_textures(j, material, uses);
+    if (uses[USE_COLOR] == none) uses[USE_COLOR] = texture_of_node(j.in, material, model);
+    const std::pair<size_t, size_t> key = { material, uses[USE_COLOR] };
+    const auto known = j.material_of.find(key);
+    if (known != j.material_of.end()) return known->second;
+    const source m(j.in, material);
+    const auto index = [&](use u) { return uses[u] == none ? -1 : texture_of(j, uses[u]); };
+    out.name = j.in.objects[material].name;
+    out.pbrMetallicRoughness.baseColorTexture.index = index(USE_COLOR);
+    out.normalTexture.index = index(USE_NORMAL);
+    out.emissiveTexture.index = index(USE_EMISSIVE);
+    read_colors(m, out);
+    if (uses[USE_OPACITY] != none) { /* exporters name the colours' own picture: its alpha cuts */
+        if (same_picture(j.in, uses[USE_COLOR], uses[USE_OPACITY]))
             out.alphaMode = "MASK";
         else
-            note(j, "separate opacity textures were left out");
+            j.in.warn(place_of(j.in, material), " has a picture of its opacity, which was left out: put it in the "
+                                                "alpha of its colours");
     }
-    read_colors(m, out);
-    if (m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) != AI_SUCCESS) metallic = 0.0f;
-    out.pbrMetallicRoughness.metallicFactor = std::min(std::max(static_cast<double>(metallic), 0.0), 1.0);
+    out.pbrMetallicRoughness.metallicFactor = metallic_of(m);
     out.pbrMetallicRoughness.roughnessFactor = roughness_of(m);
     j.out.materials.push_back(out);
-}
-
-void read_materials(job &j)
-{
-    for (unsigned i = 0; i < j.scene->mNumMaterials; ++i) read_material(j, *j.scene->mMaterials[i]);
-    for (tinygltf::Image &image : j.out.images) image.extras = tinygltf::Value();
+    return j.material_of[key] = static_cast<int>(j.out.materials.size() - 1);
 }
 
 } // namespace fbx

@@ -1,263 +1,229 @@
-/* fbx_mesh.cpp: meshes, their shapes as morph targets, and skins.
- *
- * Assimp gives a vertex for each corner; those that are alike in everything become one. The meshes of a node, one for
- * each material, become the primitives of one mesh. */
+/* fbx_mesh.cpp: geometry as meshes. Corners that are alike in everything become one vertex; the triangles of each
+ * material become a primitive. What moves a mesh under its node alone (Geometric...) is applied to its points. */
 #include "fbx_internal.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <stdexcept>
 #include <unordered_map>
+
+#include "convert/obj/obj_polygon.h"
 
 namespace fbx
 {
 
-struct influence {
-    uint16_t joint;
-    float weight;
+struct corner {
+    uint32_t point;
+    float normal[3], uv[2], color[4];
 };
 
-/* One of Assimp's meshes while it becomes a primitive. */
+struct corner_hash {
+    size_t operator()(const corner &c) const
+    {
+        unsigned char bytes[sizeof c];
+        uint64_t hash = 0xcbf29ce484222325ull; /* FNV-1a */
+        memcpy(bytes, &c, sizeof c);
+        for (unsigned char b : bytes) hash = (hash ^ b) * 0x100000001b3ull;
+        return static_cast<size_t>(hash);
+    }
+};
+
+struct corner_equal {
+    bool operator()(const corner &a, const corner &b) const
+    {
+        return memcmp(&a, &b, sizeof a) == 0;
+    }
+};
+
+/* The triangles of one material. */
 struct part {
-    const aiMesh *mesh;
-    std::vector<std::vector<influence>> influences; /* [vertex] or empty */
-    std::vector<unsigned> first;                    /* [kept vertex] the first corner like it */
+    std::vector<corner> vertices;
     std::vector<uint32_t> indices;
+    std::unordered_map<corner, uint32_t, corner_hash, corner_equal> known;
 };
 
-/* A node's skin: the bones of its meshes. */
-struct skin {
-    std::vector<int> joints; /* nodes */
-    std::vector<float> inverse_bind;
-    std::map<int, uint16_t> place;
+struct mesh_job {
+    job &j;
+    size_t geometry, model; /* object; place in models */
+    mat pivot;
+    std::vector<float> points; /* by three, in the file's unit, moved by the pivot */
+    element normals, uvs, colors, materials;
+    bool has_normals, has_uvs, has_colors, has_materials;
+    std::map<int, part> parts; /* by place among the node's materials */
 };
 
-/* --- skins --- */
+/* --- corners --- */
 
-static void push_inverse_bind(const job &j, const aiMatrix4x4 &m, std::vector<float> &out)
+static void fill_corner(const mesh_job &m, size_t place, uint32_t point, size_t polygon, corner &out)
 {
-    const float unit = static_cast<float>(j.unit);
-    for (unsigned column = 0; column < 4; ++column)
-        for (unsigned row = 0; row < 4; ++row)
-            out.push_back(column == 3 && row < 3 ? m[row][column] * unit
-                          : row == 3             ? (column == 3 ? 1.0f : 0.0f)
-                                                 : m[row][column]);
+    memset(&out, 0, sizeof out);
+    out.point = point;
+    const double *n = m.has_normals ? m.normals.at(place, point, polygon) : nullptr;
+    const double *uv = m.has_uvs ? m.uvs.at(place, point, polygon) : nullptr;
+    const double *color = m.has_colors ? m.colors.at(place, point, polygon) : nullptr;
+    if (n) { /* the cofactors keep it upright on the surface */
+        vec turned;
+        for (int k = 0; k < 3; ++k)
+            turned = turned + cross(m.pivot.column[(k + 1) % 3], m.pivot.column[(k + 2) % 3]) * n[k];
+        const double length = std::sqrt(dot(turned, turned));
+        const double sign = determinant(m.pivot) < 0.0 ? -1.0 : 1.0;
+        for (int k = 0; k < 3; ++k) out.normal[k] = static_cast<float>(length > 0.0 ? sign * turned[k] / length : 0.0);
+    }
+    if (uv) {
+        out.uv[0] = static_cast<float>(uv[0]);
+        out.uv[1] = static_cast<float>(1.0 - uv[1]); /* FBX counts from the bottom of the picture */
+    }
+    for (size_t k = 0; color && k < 4; ++k) out.color[k] = static_cast<float>(std::min(std::max(color[k], 0.0), 1.0));
+    if (m.has_colors && !color) std::fill_n(out.color, 4, 1.0f);
 }
 
-static void add_bone(job &j, const aiBone &bone, part &p, skin &s)
+static void add_triangle(part &p, const corner *corners, bool turn_over)
 {
-    const auto node = j.node_named.find(bone.mName.C_Str());
-    if (node == j.node_named.end()) {
-        note(j, "no node has the name of a bone, which moves nothing: '" + std::string(bone.mName.C_Str()) + "'");
+    for (size_t c = 0; c < 3; ++c) {
+        const corner &at = corners[turn_over ? 2 - c : c];
+        const auto kept = p.known.insert({ at, static_cast<uint32_t>(p.vertices.size()) });
+        if (kept.second) p.vertices.push_back(at);
+        p.indices.push_back(kept.first->second);
+    }
+}
+
+/* points: of one polygon; first: the place of its first corner */
+static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t first, size_t polygon)
+{
+    std::vector<float> places;
+    std::vector<uint32_t> triangles;
+    std::vector<corner> corners(points.size());
+    if (points.size() < 3) {
+        m.j.in.warn(place_of(m.j.in, m.geometry), " has points and lines, which were left out");
         return;
     }
-    auto place = s.place.find(node->second);
-    if (place == s.place.end()) {
-        if (s.joints.size() > 0xffff) throw std::runtime_error("a skin has more than 65,536 bones");
-        place = s.place.insert({ node->second, static_cast<uint16_t>(s.joints.size()) }).first;
-        s.joints.push_back(node->second);
-        push_inverse_bind(j, bone.mOffsetMatrix, s.inverse_bind);
+    for (size_t c = 0; c < points.size(); ++c) {
+        fill_corner(m, first + c, points[c], polygon, corners[c]);
+        places.insert(places.end(), &m.points[size_t{ points[c] } * 3], &m.points[size_t{ points[c] } * 3] + 3);
     }
-    for (unsigned w = 0; w < bone.mNumWeights; ++w) {
-        const aiVertexWeight &given = bone.mWeights[w];
-        if (given.mVertexId < p.mesh->mNumVertices && given.mWeight > 0.0f)
-            p.influences[given.mVertexId].push_back({ place->second, given.mWeight });
-    }
-}
-
-static void add_bones(job &j, part &p, skin &s)
-{
-    if (!p.mesh->mNumBones) return;
-    p.influences.resize(p.mesh->mNumVertices);
-    for (unsigned b = 0; b < p.mesh->mNumBones; ++b) add_bone(j, *p.mesh->mBones[b], p, s);
-    for (std::vector<influence> &of : p.influences)
-        std::stable_sort(of.begin(), of.end(),
-                         [](const influence &a, const influence &b) { return a.weight > b.weight; });
-}
-
-/* --- equal corners --- */
-
-static uint64_t mix(uint64_t hash, const void *bytes, size_t size)
-{
-    const unsigned char *b = static_cast<const unsigned char *>(bytes);
-    for (size_t i = 0; i < size; ++i) hash = (hash ^ b[i]) * 0x100000001b3ull;
-    return hash;
-}
-
-template <class T> static bool same(const T *array, unsigned a, unsigned b)
-{
-    return !array || memcmp(&array[a], &array[b], sizeof *array) == 0;
-}
-
-static bool same_corner(const part &p, unsigned a, unsigned b)
-{
-    const aiMesh &m = *p.mesh;
-    if (!same(m.mVertices, a, b) || !same(m.mNormals, a, b) || !same(m.mTextureCoords[0], a, b) ||
-        !same(m.mColors[0], a, b))
-        return false;
-    if (!p.influences.empty()) {
-        const std::vector<influence> &of_a = p.influences[a], &of_b = p.influences[b];
-        if (of_a.size() != of_b.size()) return false;
-        for (size_t i = 0; i < of_a.size(); ++i)
-            if (of_a[i].joint != of_b[i].joint || of_a[i].weight != of_b[i].weight) return false;
-    }
-    for (unsigned t = 0; t < m.mNumAnimMeshes; ++t)
-        if (!same(m.mAnimMeshes[t]->mVertices, a, b) || !same(m.mAnimMeshes[t]->mNormals, a, b)) return false;
-    return true;
-}
-
-static uint64_t hash_corner(const part &p, unsigned v)
-{
-    const aiMesh &m = *p.mesh;
-    uint64_t hash = mix(0xcbf29ce484222325ull, &m.mVertices[v], sizeof m.mVertices[v]);
-    if (m.mNormals) hash = mix(hash, &m.mNormals[v], sizeof m.mNormals[v]);
-    if (m.mTextureCoords[0]) hash = mix(hash, &m.mTextureCoords[0][v], sizeof m.mTextureCoords[0][v]);
-    return hash;
-}
-
-/* Only triangles are kept; lines and points are noted. */
-static void join_corners(job &j, part &p)
-{
-    std::unordered_multimap<uint64_t, uint32_t> kept;
-    for (unsigned f = 0; f < p.mesh->mNumFaces; ++f) {
-        const aiFace &face = p.mesh->mFaces[f];
-        if (face.mNumIndices != 3) {
-            note(j, "points and lines of the file were left out");
-            continue;
-        }
-        for (unsigned c = 0; c < 3; ++c) {
-            const unsigned corner = face.mIndices[c];
-            if (corner >= p.mesh->mNumVertices) throw std::runtime_error("a triangle refers to a missing vertex");
-            const uint64_t hash = hash_corner(p, corner);
-            const auto range = kept.equal_range(hash);
-            auto found = range.first;
-            while (found != range.second && !same_corner(p, p.first[found->second], corner)) ++found;
-            if (found == range.second) {
-                found = kept.insert({ hash, static_cast<uint32_t>(p.first.size()) });
-                p.first.push_back(corner);
-            }
-            p.indices.push_back(found->second);
-        }
+    triangles.resize((points.size() - 2) * 3);
+    const int failed = obj_polygon_cut(places.data(), static_cast<uint32_t>(points.size()), triangles.data());
+    if (failed == 1) throw std::bad_alloc();
+    if (failed)
+        m.j.in.warn(place_of(m.j.in, m.geometry),
+                    " has a polygon with too many corners, which was cut from its first corner: triangulate it");
+    const double *material = m.has_materials ? m.materials.at(first, points[0], polygon) : nullptr;
+    part &p = m.parts[material ? static_cast<int>(std::min(std::max(*material, -1.0), 65535.0)) : 0];
+    for (size_t t = 0; t < triangles.size(); t += 3) {
+        const corner of[3] = { corners[triangles[t]], corners[triangles[t + 1]], corners[triangles[t + 2]] };
+        add_triangle(p, of, determinant(m.pivot) < 0.0);
     }
 }
 
-/* --- attributes --- */
-
-static std::vector<float> vectors(const part &p, const aiVector3D *of, const aiVector3D *less, float scale)
+/* A polygon ends with the complement of a point's place. */
+static void add_polygons(mesh_job &m)
 {
-    std::vector<float> out;
-    out.reserve(p.first.size() * 3);
-    for (unsigned v : p.first)
-        for (unsigned k = 0; k < 3; ++k) out.push_back((of[v][k] - (less ? less[v][k] : 0.0f)) * scale);
+    const size_t point_count = m.points.size() / 3;
+    std::vector<uint32_t> points;
+    size_t polygon = 0, place = 0;
+    bool damaged = false;
+    for (double given : list_of(*m.j.in.objects[m.geometry].from, "PolygonVertexIndex").values) {
+        const int64_t index = whole_of(given), point = index < 0 ? -(index + 1) : index;
+        ++place;
+        damaged = damaged || static_cast<uint64_t>(point) >= point_count;
+        points.push_back(static_cast<uint32_t>(point));
+        if (index >= 0) continue;
+        if (damaged)
+            m.j.in.warn(place_of(m.j.in, m.geometry),
+                        " has polygons with points that are missing, which were left out: export it again");
+        else
+            add_polygon(m, points, place - points.size(), polygon);
+        ++polygon;
+        damaged = false;
+        points.clear();
+    }
+    if (!points.empty())
+        m.j.in.warn(place_of(m.j.in, m.geometry), " ends inside a polygon, which was left out: export it again");
+}
+
+static void read_geometry(mesh_job &m)
+{
+    static const char *const normals[3] = { "LayerElementNormal", "Normals", "NormalsIndex" };
+    static const char *const uvs[3] = { "LayerElementUV", "UV", "UVIndex" };
+    static const char *const colors[3] = { "LayerElementColor", "Colors", "ColorIndex" };
+    static const char *const materials[3] = { "LayerElementMaterial", "Materials", "" };
+    const std::vector<double> points = list_of(*m.j.in.objects[m.geometry].from, "Vertices").values;
+    m.has_normals = read_element(m.j, m.geometry, normals, 3, m.normals);
+    m.has_uvs = read_element(m.j, m.geometry, uvs, 2, m.uvs);
+    m.has_colors = read_element(m.j, m.geometry, colors, 4, m.colors);
+    m.has_materials = read_element(m.j, m.geometry, materials, 1, m.materials);
+    for (size_t i = 0; i + 2 < points.size(); i += 3) {
+        const vec moved = m.pivot.point({ { points[i], points[i + 1], points[i + 2] } });
+        for (int k = 0; k < 3; ++k) m.points.push_back(static_cast<float>(moved[k]));
+    }
+    add_polygons(m);
+}
+
+/* --- primitives --- */
+
+static std::vector<float> values_of(const part &p, size_t offset, size_t width)
+{
+    std::vector<float> out(p.vertices.size() * width);
+    for (size_t v = 0; v < p.vertices.size(); ++v)
+        memcpy(&out[v * width], reinterpret_cast<const char *>(&p.vertices[v]) + offset, width * sizeof(float));
     return out;
 }
 
-/* Bounds are required of positions. */
-static int add_positions(job &j, const std::vector<float> &values)
-{
-    const int index = add_floats(j, values, TINYGLTF_TYPE_VEC3);
-    tinygltf::Accessor &a = j.out.accessors.back();
-    for (size_t k = 0; k < 3; ++k) {
-        double low = 0.0, high = 0.0;
-        for (size_t i = k; i < values.size(); i += 3) {
-            const double v = static_cast<double>(values[i]);
-            low = i == k ? v : std::min(low, v);
-            high = i == k ? v : std::max(high, v);
-        }
-        a.minValues.push_back(low);
-        a.maxValues.push_back(high);
-    }
-    return index;
-}
-
-static void add_influences(job &j, const part &p, tinygltf::Primitive &out)
+static void add_influences(job &j, const part &p, const skin &s, tinygltf::Primitive &out)
 {
     size_t most = 1;
-    for (unsigned v : p.first) most = std::max(most, p.influences[v].size());
+    for (const corner &c : p.vertices) most = std::max(most, s.points[c.point].size());
     for (size_t set = 0; set * 4 < most && set < 4; ++set) {
         std::vector<uint16_t> joints;
         std::vector<float> weights;
-        for (unsigned v : p.first)
+        for (const corner &c : p.vertices)
             for (size_t i = set * 4; i < set * 4 + 4; ++i) {
-                const bool there = i < p.influences[v].size();
-                joints.push_back(there ? p.influences[v][i].joint : 0);
-                weights.push_back(there ? p.influences[v][i].weight : 0.0f);
+                const bool there = i < s.points[c.point].size();
+                joints.push_back(there ? s.points[c.point][i].joint : 0);
+                weights.push_back(there ? s.points[c.point][i].weight : 0.0f);
             }
         out.attributes["JOINTS_" + std::to_string(set)] = add_u16(j, joints, TINYGLTF_TYPE_VEC4);
         out.attributes["WEIGHTS_" + std::to_string(set)] = add_floats(j, weights, TINYGLTF_TYPE_VEC4);
     }
 }
 
-static void add_targets(job &j, const part &p, size_t target_count, tinygltf::Primitive &out)
+static void add_targets(const mesh_job &m, const part &p, const shapes &s, tinygltf::Primitive &out)
 {
-    const float unit = static_cast<float>(j.unit);
-    for (size_t t = 0; t < target_count; ++t) {
-        std::map<std::string, int> target;
-        const aiAnimMesh *shape = t < p.mesh->mNumAnimMeshes ? p.mesh->mAnimMeshes[t] : nullptr;
-        if (shape && shape->mVertices && shape->mNumVertices == p.mesh->mNumVertices) {
-            target["POSITION"] = add_positions(j, vectors(p, shape->mVertices, p.mesh->mVertices, unit));
-            if (shape->mNormals && p.mesh->mNormals)
-                target["NORMAL"] = add_floats(j, vectors(p, shape->mNormals, p.mesh->mNormals, 1.0f),
-                                              TINYGLTF_TYPE_VEC3);
-        } else {
-            target["POSITION"] = add_positions(j, std::vector<float>(p.first.size() * 3));
+    for (const target_deltas &target : s.targets) {
+        std::vector<uint32_t> places;
+        std::vector<float> deltas;
+        for (size_t v = 0; v < p.vertices.size(); ++v) {
+            const auto found = target.find(p.vertices[v].point);
+            if (found == target.end()) continue;
+            const vec moved = m.pivot.direction(found->second) * m.j.unit_m;
+            places.push_back(static_cast<uint32_t>(v));
+            for (int k = 0; k < 3; ++k) deltas.push_back(static_cast<float>(moved[k]));
         }
-        out.targets.push_back(target);
+        out.targets.push_back({ { "POSITION", add_sparse(m.j, places, deltas, p.vertices.size()) } });
     }
 }
 
-static tinygltf::Primitive primitive_of(job &j, const part &p, size_t target_count)
+static tinygltf::Primitive primitive_of(const mesh_job &m, const part &p, const shapes &s, const skin *bound)
 {
-    const aiMesh &m = *p.mesh;
+    std::vector<float> positions;
     tinygltf::Primitive out;
+    for (const corner &c : p.vertices)
+        for (size_t k = 0; k < 3; ++k)
+            positions.push_back(
+                static_cast<float>(static_cast<double>(m.points[size_t{ c.point } * 3 + k]) * m.j.unit_m));
     out.mode = TINYGLTF_MODE_TRIANGLES;
-    out.material = m.mMaterialIndex < j.out.materials.size() ? static_cast<int>(m.mMaterialIndex) : -1;
-    out.indices = add_u32(j, p.indices);
-    out.attributes["POSITION"] = add_positions(j, vectors(p, m.mVertices, nullptr, static_cast<float>(j.unit)));
-    if (m.mNormals) out.attributes["NORMAL"] = add_floats(j, vectors(p, m.mNormals, nullptr, 1.0f), TINYGLTF_TYPE_VEC3);
-    if (m.mTextureCoords[0]) {
-        std::vector<float> uvs;
-        for (unsigned v : p.first) {
-            uvs.push_back(m.mTextureCoords[0][v].x);
-            uvs.push_back(1.0f - m.mTextureCoords[0][v].y); /* FBX counts from the bottom of the picture */
-        }
-        out.attributes["TEXCOORD_0"] = add_floats(j, uvs, TINYGLTF_TYPE_VEC2);
-    }
-    if (m.mColors[0]) {
-        std::vector<float> colors;
-        for (unsigned v : p.first)
-            for (unsigned k = 0; k < 4; ++k) colors.push_back(std::min(std::max(m.mColors[0][v][k], 0.0f), 1.0f));
-        out.attributes["COLOR_0"] = add_floats(j, colors, TINYGLTF_TYPE_VEC4);
-    }
-    if (!p.influences.empty()) add_influences(j, p, out);
-    add_targets(j, p, target_count, out);
+    out.indices = add_u32(m.j, p.indices);
+    out.attributes["POSITION"] = add_positions(m.j, positions);
+    if (m.has_normals)
+        out.attributes["NORMAL"] = add_floats(m.j, values_of(p, offsetof(corner, normal), 3), TINYGLTF_TYPE_VEC3);
+    if (m.has_uvs)
+        out.attributes["TEXCOORD_0"] = add_floats(m.j, values_of(p, offsetof(corner, uv), 2), TINYGLTF_TYPE_VEC2);
+    if (m.has_colors)
+        out.attributes["COLOR_0"] = add_floats(m.j, values_of(p, offsetof(corner, color), 4), TINYGLTF_TYPE_VEC4);
+    if (bound) add_influences(m.j, p, *bound, out);
+    add_targets(m, p, s, out);
     return out;
 }
-
-/* --- names of targets --- */
-
-/* Maya writes the deformer before each: "blendShape1.smile". */
-static void strip_prefix(std::vector<std::string> &names)
-{
-    const size_t dot = names.empty() ? std::string::npos : names[0].find('.');
-    if (dot == std::string::npos) return;
-    for (const std::string &name : names)
-        if (name.compare(0, dot + 1, names[0], 0, dot + 1) != 0 || name.size() == dot + 1) return;
-    for (std::string &name : names) name.erase(0, dot + 1);
-}
-
-static tinygltf::Value names_of(const aiMesh &m, size_t count)
-{
-    std::vector<std::string> names;
-    for (size_t t = 0; t < count; ++t) names.push_back(t < m.mNumAnimMeshes ? m.mAnimMeshes[t]->mName.C_Str() : "");
-    strip_prefix(names);
-    tinygltf::Value::Array values;
-    for (const std::string &name : names) values.push_back(tinygltf::Value(name));
-    return tinygltf::Value(tinygltf::Value::Object{ { "targetNames", tinygltf::Value(values) } });
-}
-
-/* --- a node's mesh --- */
 
 static int add_skin(job &j, const std::string &name, const skin &s)
 {
@@ -269,49 +235,118 @@ static int add_skin(job &j, const std::string &name, const skin &s)
     return static_cast<int>(j.out.skins.size() - 1);
 }
 
-static void read_node(job &j, const aiNode &node, int index)
+/* --- a node's mesh --- */
+
+static mat pivot_of(const scene &s, size_t model)
 {
-    tinygltf::Mesh mesh;
-    skin s;
-    size_t targets = 0;
-    const aiMesh *named = nullptr;
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-        const aiMesh *m = j.scene->mMeshes[node.mMeshes[i]];
-        if (!named || m->mNumAnimMeshes > targets) named = m;
-        targets = std::max(targets, static_cast<size_t>(m->mNumAnimMeshes));
-    }
-    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-        part p{ j.scene->mMeshes[node.mMeshes[i]], {}, {}, {} };
-        add_bones(j, p, s);
-        join_corners(j, p);
-        if (!p.indices.empty()) mesh.primitives.push_back(primitive_of(j, p, targets));
-    }
-    if (mesh.primitives.empty()) return;
-    mesh.name = node.mName.C_Str();
-    if (targets) mesh.extras = names_of(*named, targets);
-    j.out.meshes.push_back(mesh);
-    j.out.nodes[static_cast<size_t>(index)].mesh = static_cast<int>(j.out.meshes.size() - 1);
-    if (!s.joints.empty()) j.out.nodes[static_cast<size_t>(index)].skin = add_skin(j, mesh.name, s);
+    return translation(s.vector(model, "GeometricTranslation", 0.0)) *
+           rotation(euler(s.vector(model, "GeometricRotation", 0.0), 0)) *
+           scaling(s.vector(model, "GeometricScaling", 1.0));
 }
 
-void read_meshes(job &j)
+static tinygltf::Value names_of(const std::vector<std::string> &names)
 {
-    std::map<std::vector<unsigned>, int> drawn; /* instances: nodes of the same meshes without bones */
-    std::vector<std::pair<int, const aiNode *>> nodes;
-    for (const auto &of : j.node_of)
-        if (of.first->mNumMeshes) nodes.push_back({ of.second, of.first });
-    std::sort(nodes.begin(), nodes.end());
-    for (const auto &of : nodes) {
-        const std::vector<unsigned> key(of.second->mMeshes, of.second->mMeshes + of.second->mNumMeshes);
-        const auto before = drawn.find(key);
-        tinygltf::Node &node = j.out.nodes[static_cast<size_t>(of.first)];
-        if (before != drawn.end()) {
-            node.mesh = j.out.nodes[static_cast<size_t>(before->second)].mesh;
-            node.skin = j.out.nodes[static_cast<size_t>(before->second)].skin;
-            continue;
+    tinygltf::Value::Array values;
+    for (const std::string &name : names) values.push_back(tinygltf::Value(name));
+    return tinygltf::Value(tinygltf::Value::Object{ { "targetNames", tinygltf::Value(values) } });
+}
+
+static drawn_mesh write_mesh(job &j, size_t geometry, size_t model)
+{
+    const size_t object = j.in.models[model];
+    const std::vector<size_t> materials = j.in.below(object, "Material", nullptr);
+    mesh_job m = { j, geometry, model, pivot_of(j.in, object), {}, {}, {}, {}, {}, false, false, false, false, {} };
+    tinygltf::Mesh mesh;
+    drawn_mesh out;
+    skin bound;
+    read_geometry(m);
+    const size_t point_count = m.points.size() / 3;
+    const shapes s = read_shapes(j, geometry, point_count);
+    const bool is_skinned = read_skin(j, geometry, model, point_count, bound);
+    for (const auto &of : m.parts) {
+        if (of.second.indices.empty()) continue;
+        const size_t place = static_cast<size_t>(std::max(of.first, 0));
+        mesh.primitives.push_back(primitive_of(m, of.second, s, is_skinned ? &bound : nullptr));
+        mesh.primitives.back().material = place < materials.size() ? material_of(j, materials[place], object) : -1;
+    }
+    if (mesh.primitives.empty()) return out;
+    mesh.name = j.in.objects[object].name;
+    if (!s.names.empty()) {
+        std::vector<double> rest;
+        for (const shape_channel &c : s.channels) rest.push_back(c.rest);
+        mesh.extras = names_of(s.names);
+        mesh.weights = weights_of(s.channels, rest, s.targets.size());
+    }
+    j.out.meshes.push_back(mesh);
+    out.mesh = static_cast<int>(j.out.meshes.size() - 1);
+    out.target_count = s.targets.size();
+    out.channels = s.channels;
+    if (is_skinned) out.skin = add_skin(j, mesh.name, bound);
+    return out;
+}
+
+/* --- what is drawn --- */
+
+/* Programs smooth such a mesh; what is drawn is its cage. */
+static void warn_of_geometry(job &j, size_t geometry)
+{
+    const node &from = *j.in.objects[geometry].from;
+    const node *smoothness = from.child("Smoothness"), *preview = from.child("PreviewDivisionLevels");
+    if (smoothness && smoothness->whole(0) > 0 && (!preview || preview->whole(0) > 0))
+        j.in.warn(place_of(j.in, geometry), " is a subdivision surface, and only its cage is drawn: apply the "
+                                            "subdivision on export");
+    if (!j.in.below(geometry, "Deformer", "VertexCacheDeformer").empty())
+        j.in.warn(place_of(j.in, geometry), " is moved by a point cache, which was left out: export a skin or shapes");
+}
+
+static bool is_mesh(job &j, size_t object)
+{
+    const fbx::object &o = j.in.objects[object];
+    if (o.kind != "Geometry" && o.kind != "Model") return false;
+    if (o.kind == "Geometry" ? o.sub != "Mesh" && o.sub != "Shape" : o.sub.compare(0, 4, "Nurb") == 0)
+        j.in.warn(place_of(j.in, object),
+                  " is a surface or a curve, not a mesh, and was left out: convert it to polygons");
+    return o.sub != "Shape" && o.from->child("Vertices") && o.from->child("PolygonVertexIndex");
+}
+
+/* A node's mesh: connected to it, or before version 7 in it. */
+static size_t geometry_of(job &j, size_t object)
+{
+    size_t found = is_mesh(j, object) ? object : none;
+    for (const link &l : j.in.objects[object].below) {
+        if (j.in.objects[l.other].kind != "Geometry" || !is_mesh(j, l.other)) continue;
+        if (found != none)
+            j.in.warn(place_of(j.in, object), " has more than one mesh; only the first is drawn: give each a node");
+        else
+            found = l.other;
+    }
+    return found;
+}
+
+void write_meshes(job &j)
+{
+    using same = std::pair<std::vector<size_t>, std::vector<double>>; /* geometry and materials; pivot */
+    std::map<same, size_t> known;
+    for (size_t i = 0; i < j.in.models.size(); ++i) {
+        const size_t object = j.in.models[i], geometry = geometry_of(j, object);
+        if (geometry == none) continue;
+        same key;
+        key.first = j.in.below(object, "Material", nullptr);
+        key.first.push_back(geometry);
+        for (const vec &column : pivot_of(j.in, object).column)
+            key.second.insert(key.second.end(), column.at, column.at + 3);
+        const auto found = known.find(key);
+        if (found == known.end()) {
+            warn_of_geometry(j, geometry);
+            known[key] = j.drawn.size();
+            j.drawn.push_back({ i, write_mesh(j, geometry, i) });
+        } else {
+            const drawn_mesh again = j.drawn[found->second].second;
+            j.drawn.push_back({ i, again });
         }
-        read_node(j, *of.second, of.first);
-        drawn[key] = of.first;
+        const drawn_mesh &d = j.drawn.back().second;
+        j.out.nodes[i].mesh = d.mesh;
+        j.out.nodes[i].skin = d.skin;
     }
 }
 

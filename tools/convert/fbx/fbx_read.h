@@ -1,8 +1,9 @@
-/* fbx_read.h: FBX files as a model, by Assimp where the build found it.
+/* fbx_read.h: FBX files as a model: versions 6.0 to 7.7, binary (either byte order) and ASCII.
  *
- * Meshes, skins, blend shapes, materials with their pictures, and animations of nodes and of shapes. Axes and the unit
- * are the file's own: it becomes metres, Y up. Assimp runs in a process of its own and hands over a .glb, which is read
- * as any other: a damaged file that breaks Assimp off is refused, and breaks nothing else. */
+ * Meshes, skins, blend shapes with masks and in-betweens, materials with pictures, and one clip for each take, with
+ * pivots, inherit types, layers and all kinds of curves, sampled at the file's frames. Axes and the unit are the file's
+ * own: it becomes metres, Y up. What is left out or changed is a warning. The scene becomes a .glb in memory, which is
+ * read as any other. */
 #ifndef NOH_CONVERT_FBX_FBX_READ_H
 #define NOH_CONVERT_FBX_FBX_READ_H
 

@@ -1,180 +1,319 @@
-/* fbx_scene.cpp: nodes, the file's axes and its unit. */
-#include "fbx_internal.h"
+/* fbx_scene.cpp: objects, their properties and connections, settings, and the tree of nodes. */
+#include "fbx_scene.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <cstring>
 
 namespace fbx
 {
 
-/* --- bytes --- */
+static const size_t name_max = 60; /* in messages */
 
-int add_view(job &j, const void *bytes, size_t size)
+/* --- notes --- */
+
+void scene::warn(const std::string &where, const std::string &what)
 {
-    if (j.out.buffers.empty()) j.out.buffers.emplace_back();
-    std::vector<unsigned char> &data = j.out.buffers[0].data;
-    data.resize((data.size() + 3) & ~size_t{ 3 });
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = data.size();
-    view.byteLength = size;
-    const unsigned char *first = static_cast<const unsigned char *>(bytes);
-    data.insert(data.end(), first, first + size);
-    j.out.bufferViews.push_back(view);
-    return static_cast<int>(j.out.bufferViews.size() - 1);
+    for (note &known : notes)
+        if (known.what == what) {
+            ++known.count;
+            return;
+        }
+    notes.push_back({ where, what, 1 });
 }
 
-static int add_accessor(job &j, const void *bytes, size_t size, int component, int type, size_t values)
+std::string place_of(const scene &s, size_t object)
 {
-    tinygltf::Accessor a;
-    a.bufferView = add_view(j, bytes, size);
-    a.componentType = component;
-    a.type = type;
-    a.count = values / static_cast<size_t>(tinygltf::GetNumComponentsInType(static_cast<uint32_t>(type)));
-    j.out.accessors.push_back(a);
-    return static_cast<int>(j.out.accessors.size() - 1);
+    const fbx::object &o = s.objects[object];
+    std::string kind = o.kind;
+    if (o.kind == "Model") kind = "node";
+    if (o.kind == "Geometry") kind = o.sub == "Shape" ? "shape" : "mesh";
+    if (o.kind == "Deformer") kind = o.sub == "BlendShapeChannel" ? "shape" : o.sub == "Cluster" ? "bone" : "skin";
+    for (char &c : kind) c = static_cast<char>(tolower(static_cast<unsigned char>(c)));
+    size_t end = std::min(o.name.size(), name_max);
+    while (end < o.name.size() && end && (o.name[end] & 0xc0) == 0x80) --end; /* do not cut a UTF-8 sequence */
+    return kind + " '" + o.name.substr(0, end) + "'";
 }
 
-int add_floats(job &j, const std::vector<float> &values, int type)
+/* --- names --- */
+
+/* The bytes of the UTF-8 sequence at `at`, or 0 where there is none (RFC 3629). */
+static size_t sequence(const std::string &s, size_t at)
 {
-    return add_accessor(j, values.data(), values.size() * sizeof(float), TINYGLTF_COMPONENT_TYPE_FLOAT, type,
-                        values.size());
+    const auto byte = [&](size_t i) { return at + i < s.size() ? static_cast<unsigned char>(s[at + i]) : 0u; };
+    const unsigned first = byte(0), second = byte(1);
+    const size_t size = first < 0x80   ? 1
+                        : first < 0xc2 ? 0
+                        : first < 0xe0 ? 2
+                        : first < 0xf0 ? 3
+                        : first < 0xf5 ? 4
+                                       : 0;
+    for (size_t i = 1; i < size; ++i)
+        if ((byte(i) & 0xc0) != 0x80) return 0;
+    const bool overlong = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+    const bool beyond = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
+    return overlong || beyond ? 0 : size;
 }
 
-int add_u16(job &j, const std::vector<uint16_t> &values, int type)
+/* Other bytes become their codes, so that names that differ still do. */
+static std::string to_utf8(const std::string &given, bool *changed)
 {
-    return add_accessor(j, values.data(), values.size() * sizeof(uint16_t), TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT,
-                        type, values.size());
+    static const char digits[] = "0123456789ABCDEF";
+    std::string out;
+    for (size_t at = 0; at < given.size();) {
+        const size_t size = sequence(given, at);
+        const unsigned char byte = static_cast<unsigned char>(given[at]);
+        if (size)
+            out.append(given, at, size);
+        else
+            ((out += '_') += digits[byte >> 4]) += digits[byte & 15];
+        *changed = *changed || !size;
+        at += size ? size : 1;
+    }
+    return out;
 }
 
-int add_u32(job &j, const std::vector<uint32_t> &values)
+/* "name\0\1Class" in binary files, "Class::name" in ASCII ones. */
+static void split_name(const std::string &given, std::string &name, std::string &kind)
 {
-    return add_accessor(j, values.data(), values.size() * sizeof(uint32_t), TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-                        TINYGLTF_TYPE_SCALAR, values.size());
+    const size_t zero = given.find('\0'), colons = given.find("::");
+    if (zero != std::string::npos) {
+        name = given.substr(0, zero);
+        kind = given.substr(std::min(zero + 2, given.size()));
+    } else {
+        name = colons == std::string::npos ? given : given.substr(colons + 2);
+        kind = colons == std::string::npos ? "" : given.substr(0, colons);
+    }
 }
 
-void note(job &j, const std::string &text)
+std::string name_of(scene &s, const std::string &given)
 {
-    for (const std::string &said : j.notes)
-        if (said == text) return;
-    j.notes.push_back(text);
+    std::string name, kind;
+    bool changed = false;
+    split_name(given, name, kind);
+    name = to_utf8(name, &changed);
+    if (changed)
+        s.warn("the name '" + name + "'",
+               " had bytes that are not UTF-8, which became _ and their codes: rename it in its program");
+    return name;
 }
 
-/* --- axes and unit --- */
-
-static int axis_setting(const aiScene *scene, const char *name, int otherwise)
+/* Objects have numbers from version 7 on, and before only their names, by class. */
+std::string id_of(const value &v)
 {
-    int32_t value = otherwise;
-    return scene->mMetaData && scene->mMetaData->Get(name, value) && value >= -1 && value <= 2 ? value : otherwise;
+    std::string name, kind;
+    if (!std::holds_alternative<std::string>(v)) return std::to_string(whole_of(v));
+    split_name(text_of(v), name, kind);
+    return "@" + kind + "@" + name;
 }
 
-static void read_unit(job &j)
+/* --- properties --- */
+
+static properties read_properties(const node &of)
 {
-    double cm = 1.0;
-    float single = 1.0f;
-    if (j.unit > 0.0) return; /* the caller's */
-    if (j.scene->mMetaData && !j.scene->mMetaData->Get("UnitScaleFactor", cm) &&
-        j.scene->mMetaData->Get("UnitScaleFactor", single))
-        cm = static_cast<double>(single);
-    j.unit = cm > 1e-6 && cm < 1e6 ? cm / 100.0 : 0.01;
+    properties out;
+    for (const node &list : of.children) {
+        const bool is_seven = list.name == "Properties70";
+        const std::ptrdiff_t first = is_seven ? 4 : 3; /* behind name, type, (label) and flags */
+        if (!is_seven && list.name != "Properties60") continue;
+        for (const node &p : list.children)
+            if (static_cast<std::ptrdiff_t>(p.values.size()) >= first)
+                out[p.text(0)].assign(p.values.begin() + first, p.values.end());
+    }
+    return out;
 }
+
+const std::vector<value> *scene::property(size_t object, const char *name) const
+{
+    const fbx::object &o = objects[object];
+    const auto own = o.own.find(name);
+    if (own != o.own.end() && !own->second.empty()) return &own->second;
+    if (!o.defaults) return nullptr;
+    const auto usual = o.defaults->find(name);
+    return usual == o.defaults->end() || usual->second.empty() ? nullptr : &usual->second;
+}
+
+double scene::real(size_t object, const char *name, double otherwise) const
+{
+    const std::vector<value> *found = property(object, name);
+    return found ? number_of((*found)[0], otherwise) : otherwise;
+}
+
+vec scene::vector(size_t object, const char *name, double otherwise) const
+{
+    const std::vector<value> *found = property(object, name);
+    vec out;
+    for (int k = 0; k < 3; ++k) {
+        const size_t at = static_cast<size_t>(k);
+        out[k] = found && at < found->size() ? number_of((*found)[at], otherwise) : otherwise;
+    }
+    return out;
+}
+
+std::vector<size_t> scene::below(size_t object, const char *kind, const char *sub) const
+{
+    std::vector<size_t> out;
+    for (const link &l : objects[object].below) {
+        const fbx::object &o = objects[l.other];
+        if (o.kind == kind && (!sub || o.sub == sub)) out.push_back(l.other);
+    }
+    return out;
+}
+
+/* --- objects --- */
+
+static void read_templates(scene &s)
+{
+    const node *definitions = s.file.top.child("Definitions");
+    if (!definitions) return;
+    for (const node &type : definitions->children)
+        for (const node &t : type.children)
+            if (type.name == "ObjectType" && t.name == "PropertyTemplate")
+                s.templates[type.text(0)] = read_properties(t);
+}
+
+static void read_objects(scene &s)
+{
+    const node *list = s.file.top.child("Objects");
+    if (!list) fail("FBX", "the file has no objects: it is truncated or damaged, export or copy it again");
+    for (const node &n : list->children) {
+        if (n.values.empty()) continue;
+        const size_t name_at = std::holds_alternative<std::string>(n.values[0]) ? 0 : 1;
+        const auto usual = s.templates.find(n.name);
+        object o;
+        o.from = &n;
+        o.kind = n.name;
+        o.name = name_of(s, n.text(name_at));
+        o.sub = n.text(name_at + 1);
+        o.own = read_properties(n);
+        o.defaults = usual == s.templates.end() ? nullptr : &usual->second;
+        s.index[id_of(n.values[0])] = s.objects.size();
+        s.objects.push_back(std::move(o));
+    }
+}
+
+static void read_connections(scene &s)
+{
+    const node *links = s.file.top.child("Connections");
+    if (!links) return;
+    for (const node &c : links->children) {
+        if (c.values.size() < 3) continue;
+        const auto from = s.index.find(id_of(c.values[1])), to = s.index.find(id_of(c.values[2]));
+        if (from == s.index.end() || to == s.index.end()) continue;
+        s.objects[to->second].below.push_back({ from->second, c.text(3) });
+        s.objects[from->second].above.push_back({ to->second, c.text(3) });
+    }
+}
+
+/* --- settings --- */
 
 /* The rows of the turn are the file's right, up and front. */
-static void read_axes(job &j)
+static void read_axes(scene &s, const properties &p)
 {
-    const char *const names[3][2] = { { "CoordAxis", "CoordAxisSign" },
-                                      { "UpAxis", "UpAxisSign" },
-                                      { "FrontAxis", "FrontAxisSign" } };
-    aiMatrix3x3 turn(0, 0, 0, 0, 0, 0, 0, 0, 0);
-    for (unsigned row = 0; row < 3; ++row) {
-        const int axis = axis_setting(j.scene, names[row][0], static_cast<int>(row));
-        const int sign = axis_setting(j.scene, names[row][1], 1) < 0 ? -1 : 1;
-        turn[row][axis < 0 ? row : static_cast<unsigned>(axis)] = static_cast<ai_real>(sign);
+    static const char *const names[3][2] = { { "CoordAxis", "CoordAxisSign" },
+                                             { "UpAxis", "UpAxisSign" },
+                                             { "FrontAxis", "FrontAxisSign" } };
+    const auto get = [&](const char *name, int64_t otherwise) {
+        const auto found = p.find(name);
+        return found == p.end() || found->second.empty() ? otherwise : whole_of(found->second[0], otherwise);
+    };
+    mat turn;
+    for (int row = 0; row < 3; ++row) {
+        const int64_t axis = get(names[row][0], row);
+        const double sign = get(names[row][1], 1) < 0 ? -1.0 : 1.0;
+        for (int column = 0; column < 3; ++column) turn.column[column][row] = column == axis ? sign : 0.0;
     }
-    const float det = turn.Determinant();
-    if (det > 0.5f) {
-        j.to_y_up = aiQuaternion(turn);
-    } else if (det < -0.5f) {
-        note(j, "the file's axes are left-handed, so left and right are swapped: export it with right-handed axes");
-        turn[2][0] = -turn[2][0];
-        turn[2][1] = -turn[2][1];
-        turn[2][2] = -turn[2][2];
-        j.to_y_up = aiQuaternion(turn);
+    const double det = determinant(turn);
+    if (det < -0.5) {
+        s.warn("the file's axes", " are left-handed, so left and right were swapped: export it with right-handed axes");
+        for (int column = 0; column < 3; ++column) turn.column[column][2] = -turn.column[column][2];
     }
+    if (std::fabs(det) > 0.5)
+        s.to_y_up = turn;
+    else
+        s.warn("the file's axes", " are not three, and y was taken as up: export it again");
+}
+
+static void read_settings(scene &s)
+{
+    /* by TimeMode; 0 is the program's default, 14 the file's own */
+    static const double rates[] = { 24.0, 120.0,        100.0,        60.0,         50.0,         48.0,   30.0,
+                                    30.0, 30.0 / 1.001, 30.0 / 1.001, 25.0,         24.0,         1000.0, 24.0 / 1.001,
+                                    0.0,  96.0,         72.0,         60.0 / 1.001, 120.0 / 1.001 };
+    const node *objects = s.file.top.child("Objects"), *settings = s.file.top.child("GlobalSettings");
+    if (!settings && objects) settings = objects->child("GlobalSettings");
+    const properties p = settings ? read_properties(*settings) : properties();
+    const auto get = [&](const char *name, double otherwise) {
+        const auto found = p.find(name);
+        return found == p.end() || found->second.empty() ? otherwise : number_of(found->second[0], otherwise);
+    };
+    const double unit = get("UnitScaleFactor", 1.0), mode = get("TimeMode", 0.0);
+    const bool known = mode >= 0.0 && mode < static_cast<double>(sizeof rates / sizeof *rates);
+    const double rate = mode == 14.0 ? get("CustomFrameRate", 24.0) : known ? rates[static_cast<size_t>(mode)] : 30.0;
+    read_axes(s, p);
+    s.unit_cm = unit > 1e-6 && unit < 1e6 ? unit : 1.0;
+    s.rate_hz = rate >= 1.0 && rate <= 1000.0 ? rate : 30.0;
 }
 
 /* --- nodes --- */
 
-static std::vector<double> doubles(std::initializer_list<ai_real> values)
+/* Each model with the parent that it is connected to first. Without recursion: a file may be as deep as it likes. */
+static void order_models(scene &s)
 {
-    std::vector<double> out;
-    for (ai_real v : values) out.push_back(static_cast<double>(v));
-    return out;
-}
-
-static int add_node(job &j, const aiNode *node, bool root)
-{
-    aiVector3D scale, position;
-    aiQuaternion rotation;
-    node->mTransformation.Decompose(scale, rotation, position);
-    if (root) {
-        rotation = j.to_y_up * rotation;
-        position = j.to_y_up.Rotate(position);
+    std::map<size_t, size_t> parent;
+    std::vector<std::pair<size_t, size_t>> open; /* object, place of its parent */
+    size_t count = 0;
+    for (size_t i = 0; i < s.objects.size(); ++i) {
+        if (s.objects[i].kind != "Model") continue;
+        ++count;
+        for (const link &l : s.objects[i].above)
+            if (s.objects[l.other].kind == "Model" && l.property.empty()) parent.insert({ i, l.other });
     }
-    tinygltf::Node n;
-    n.name = node->mName.C_Str();
-    const ai_real unit = static_cast<ai_real>(j.unit);
-    n.translation = doubles({ position.x * unit, position.y * unit, position.z * unit });
-    n.rotation = doubles({ rotation.x, rotation.y, rotation.z, rotation.w });
-    n.scale = doubles({ scale.x, scale.y, scale.z });
-    j.out.nodes.push_back(n);
-    const int index = static_cast<int>(j.out.nodes.size() - 1);
-    j.node_of[node] = index;
-    j.node_named.insert({ n.name, index });
-    return index;
-}
-
-bool is_root(const job &j, int node)
-{
-    for (int root : j.out.scenes[0].nodes)
-        if (root == node) return true;
-    return false;
-}
-
-/* Without recursion: a file may be as deep as it likes. */
-static void add_nodes(job &j)
-{
-    const aiNode *top = j.scene->mRootNode;
-    std::vector<const aiNode *> open;
-    j.out.scenes.emplace_back();
-    j.out.defaultScene = 0;
-    if (!top) return;
-    const bool skip_top = top->mNumChildren && !top->mNumMeshes && top->mTransformation.IsIdentity();
-    if (skip_top)
-        for (unsigned i = top->mNumChildren; i-- > 0;) open.push_back(top->mChildren[i]);
-    else
-        open.push_back(top);
+    for (size_t i = s.objects.size(); i-- > 0;)
+        if (s.objects[i].kind == "Model" && !parent.count(i)) open.push_back({ i, none });
     while (!open.empty()) {
-        const aiNode *node = open.back();
+        const auto [model, above] = open.back();
+        const std::vector<link> &links = s.objects[model].below;
         open.pop_back();
-        const auto above = j.node_of.find(node->mParent);
-        const int index = add_node(j, node, above == j.node_of.end());
-        if (above == j.node_of.end())
-            j.out.scenes[0].nodes.push_back(index);
-        else
-            j.out.nodes[static_cast<size_t>(above->second)].children.push_back(index);
-        for (unsigned i = node->mNumChildren; i-- > 0;) open.push_back(node->mChildren[i]);
+        s.models.push_back(model);
+        s.parent.push_back(above);
+        for (size_t k = links.size(); k-- > 0;) {
+            const auto of_child = parent.find(links[k].other);
+            if (of_child == parent.end() || of_child->second != model) continue;
+            open.push_back({ links[k].other, s.models.size() - 1 });
+            parent.erase(of_child); /* a connection may be given twice */
+        }
+    }
+    if (s.models.size() < count) s.warn("nodes", " that are each other's parents were left out: export the file again");
+}
+
+/* --- what is not read --- */
+
+static bool is_constraint(const object &o)
+{
+    return o.kind == "Constraint" && o.sub != "Character" && o.sub != "ControlSetPlug";
+}
+
+static void find_left_out(scene &s)
+{
+    for (size_t i = 0; i < s.objects.size(); ++i) {
+        if (is_constraint(s.objects[i]))
+            s.warn(place_of(s, i), " is a constraint, which moves nothing: bake animations on export");
     }
 }
 
-void read_scene(job &j)
+void read_scene(const std::string &bytes, scene &out)
 {
-    read_unit(j);
-    read_axes(j);
-    add_nodes(j);
-    read_materials(j);
-    read_meshes(j);
-    read_animations(j);
+    out.file = read_tree(bytes);
+    if (out.file.cut) out.warn("the file", " ends without an end record: it may be truncated");
+    read_templates(out);
+    read_objects(out);
+    read_connections(out);
+    read_settings(out);
+    order_models(out);
+    find_left_out(out);
+    read_takes(out);
+    if (out.takes.empty()) read_takes6(out);
 }
 
 } // namespace fbx

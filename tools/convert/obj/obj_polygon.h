@@ -6,6 +6,10 @@
 
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The most corners of a polygon that is not convex: the time grows with their square. */
 #define OBJ_CONCAVE_MAX 16384u
 
@@ -16,4 +20,7 @@
  * Returns 0; 1 when out of memory; 2 where it is not convex and has more than OBJ_CONCAVE_MAX corners. */
 int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles);
 
+#ifdef __cplusplus
+}
+#endif
 #endif

@@ -10,8 +10,8 @@ const char *const help_formats_text[] = {
     ".gltf, .glb: glTF 2.0: meshes, morph targets, skins, materials, animations. The first input with meshes is the model.",
     ".vrm: glTF with VRM 1.0 or 0.0: bones take VRM's names (hips, leftUpperArm), expressions become the face's recipe.",
     ".obj: Wavefront OBJ with its .mtl: one mesh. --targets names a folder of .obj files with the same vertices, moved: the targets.",
-    ".fbx: meshes, skins, blend shapes, animations, read by Assimp if noh was built with it. Curves between keys are read as straight lines: "
-    "bake animations on export.",
+    ".fbx: FBX 2011 and later, and version 6, binary and ASCII: meshes, skins, blend shapes, materials; a clip for each take, with pivots, "
+    "inherit types, layers and tangents, sampled at the file's frames. Constraints, NURBS and caches are left out with a warning.",
     ".bvh: motion capture. Channels may be in any order; end sites do not become joints. --unit-cm is the length of a unit.",
     ".rcl: raw clips, joints only, as noh clip --dump writes them. Little-endian, 32-bit floats, centimetres:",
     "   char[4] \"RCL1\"; u32 joints; u32 frames; f32 rate_hz; u32 length; char name[length]",
