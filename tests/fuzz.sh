@@ -78,7 +78,7 @@ link_import() {
 import_seeds() {
     rm -rf "$work/imports"
     mkdir "$work/imports"
-    for test in gltf_read gltf_draco gltf_left_out gltf_springs influences obj_read bvh_read rcl events_read; do
+    for test in gltf_read gltf_draco gltf_left_out gltf_springs influences fbx_read obj_read bvh_read rcl events_read; do
         make --no-print-directory DEPS=0 BUILD="$build" "$build/tests/unit/convert/test_$test" >/dev/null || return 1
         NOH_SEEDS=$work/imports "$build/tests/unit/convert/test_$test" >/dev/null 2>&1 || return 1
     done

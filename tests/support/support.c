@@ -143,7 +143,7 @@ static void keep_if_read(const char *path, const void *bytes, size_t count)
 {
     static const struct {
         const char *ending, *before;
-    } kinds[] = { { ".bvh", "" }, { ".obj", "" }, { ".rcl", "" }, { ".txt", "text" } };
+    } kinds[] = { { ".bvh", "" }, { ".fbx", "" }, { ".obj", "" }, { ".rcl", "" }, { ".txt", "text" } };
     const char *dot = strrchr(path, '.');
     for (size_t i = 0; dot && i < TEST_COUNT(kinds); i++) {
         const size_t before = strlen(kinds[i].before);

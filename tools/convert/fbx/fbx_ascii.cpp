@@ -188,6 +188,7 @@ void ascii_reader::read_list(node &parent, int depth)
     for (skip_blank(); at < bytes.size() && bytes[at] != '}'; skip_blank()) {
         node child;
         child.name = token();
+        if (at >= bytes.size()) refuse("the file ends inside a name: it is truncated, export or copy it again");
         if (now() != ':') refuse("a name with a colon is missing: the file is damaged, or no FBX");
         ++at;
         read_values(child);

@@ -47,9 +47,15 @@ struct mesh_job {
     size_t geometry, model; /* object; place in models */
     mat pivot;
     std::vector<float> points; /* by three, in the file's unit, moved by the pivot */
+    shapes targets;
+    skin bound;
+    bool is_skinned = false;
+    std::vector<uint32_t> joined; /* [points] the first point that is alike */
     element normals, uvs, colors, materials;
-    bool has_normals, has_uvs, has_colors, has_materials;
+    bool has_normals = false, has_uvs = false, has_colors = false, has_materials = false;
     std::map<int, part> parts; /* by place among the node's materials */
+
+    mesh_job(job &of, size_t drawn, size_t by, const mat &moved) : j(of), geometry(drawn), model(by), pivot(moved) {}
 };
 
 /* --- corners --- */
@@ -57,7 +63,7 @@ struct mesh_job {
 static void fill_corner(const mesh_job &m, size_t place, uint32_t point, size_t polygon, corner &out)
 {
     memset(&out, 0, sizeof out);
-    out.point = point;
+    out.point = m.joined[point];
     const double *n = m.has_normals ? m.normals.at(place, point, polygon) : nullptr;
     const double *uv = m.has_uvs ? m.uvs.at(place, point, polygon) : nullptr;
     const double *color = m.has_colors ? m.colors.at(place, point, polygon) : nullptr;
@@ -141,6 +147,32 @@ static void add_polygons(mesh_job &m)
         m.j.in.warn(place_of(m.j.in, m.geometry), " ends inside a polygon, which was left out: export it again");
 }
 
+template <class T> static void append(std::string &to, const T &value)
+{
+    to.append(reinterpret_cast<const char *>(&value), sizeof value);
+}
+
+/* Points that are alike in place, influences and every target are one. */
+static void join_points(mesh_job &m)
+{
+    std::vector<std::string> looks(m.points.size() / 3);
+    std::unordered_map<std::string, uint32_t> first;
+    for (size_t p = 0; p < looks.size(); ++p) {
+        for (size_t k = 0; k < 3; ++k) append(looks[p], m.points[p * 3 + k]);
+        for (size_t i = 0; m.is_skinned && i < m.bound.points[p].size(); ++i) {
+            append(looks[p], m.bound.points[p][i].joint);
+            append(looks[p], m.bound.points[p][i].weight);
+        }
+    }
+    for (size_t t = 0; t < m.targets.targets.size(); ++t)
+        for (const auto &[point, delta] : m.targets.targets[t]) {
+            append(looks[point], t);
+            append(looks[point], delta);
+        }
+    for (size_t p = 0; p < looks.size(); ++p)
+        m.joined.push_back(first.insert({ looks[p], static_cast<uint32_t>(p) }).first->second);
+}
+
 static void read_geometry(mesh_job &m)
 {
     static const char *const normals[3] = { "LayerElementNormal", "Normals", "NormalsIndex" };
@@ -156,6 +188,9 @@ static void read_geometry(mesh_job &m)
         const vec moved = m.pivot.point({ { points[i], points[i + 1], points[i + 2] } });
         for (int k = 0; k < 3; ++k) m.points.push_back(static_cast<float>(moved[k]));
     }
+    m.targets = read_shapes(m.j, m.geometry, m.points.size() / 3);
+    m.is_skinned = read_skin(m.j, m.geometry, m.model, m.points.size() / 3, m.bound);
+    join_points(m);
     add_polygons(m);
 }
 
@@ -187,9 +222,9 @@ static void add_influences(job &j, const part &p, const skin &s, tinygltf::Primi
     }
 }
 
-static void add_targets(const mesh_job &m, const part &p, const shapes &s, tinygltf::Primitive &out)
+static void add_targets(const mesh_job &m, const part &p, tinygltf::Primitive &out)
 {
-    for (const target_deltas &target : s.targets) {
+    for (const target_deltas &target : m.targets.targets) {
         std::vector<uint32_t> places;
         std::vector<float> deltas;
         for (size_t v = 0; v < p.vertices.size(); ++v) {
@@ -203,7 +238,7 @@ static void add_targets(const mesh_job &m, const part &p, const shapes &s, tinyg
     }
 }
 
-static tinygltf::Primitive primitive_of(const mesh_job &m, const part &p, const shapes &s, const skin *bound)
+static tinygltf::Primitive primitive_of(const mesh_job &m, const part &p)
 {
     std::vector<float> positions;
     tinygltf::Primitive out;
@@ -220,8 +255,8 @@ static tinygltf::Primitive primitive_of(const mesh_job &m, const part &p, const 
         out.attributes["TEXCOORD_0"] = add_floats(m.j, values_of(p, offsetof(corner, uv), 2), TINYGLTF_TYPE_VEC2);
     if (m.has_colors)
         out.attributes["COLOR_0"] = add_floats(m.j, values_of(p, offsetof(corner, color), 4), TINYGLTF_TYPE_VEC4);
-    if (bound) add_influences(m.j, p, *bound, out);
-    add_targets(m, p, s, out);
+    if (m.is_skinned) add_influences(m.j, p, m.bound, out);
+    add_targets(m, p, out);
     return out;
 }
 
@@ -255,33 +290,29 @@ static drawn_mesh write_mesh(job &j, size_t geometry, size_t model)
 {
     const size_t object = j.in.models[model];
     const std::vector<size_t> materials = j.in.below(object, "Material", nullptr);
-    mesh_job m = { j, geometry, model, pivot_of(j.in, object), {}, {}, {}, {}, {}, false, false, false, false, {} };
+    mesh_job m{ j, geometry, model, pivot_of(j.in, object) };
     tinygltf::Mesh mesh;
     drawn_mesh out;
-    skin bound;
     read_geometry(m);
-    const size_t point_count = m.points.size() / 3;
-    const shapes s = read_shapes(j, geometry, point_count);
-    const bool is_skinned = read_skin(j, geometry, model, point_count, bound);
     for (const auto &of : m.parts) {
         if (of.second.indices.empty()) continue;
         const size_t place = static_cast<size_t>(std::max(of.first, 0));
-        mesh.primitives.push_back(primitive_of(m, of.second, s, is_skinned ? &bound : nullptr));
+        mesh.primitives.push_back(primitive_of(m, of.second));
         mesh.primitives.back().material = place < materials.size() ? material_of(j, materials[place], object) : -1;
     }
     if (mesh.primitives.empty()) return out;
     mesh.name = j.in.objects[object].name;
-    if (!s.names.empty()) {
+    if (!m.targets.names.empty()) {
         std::vector<double> rest;
-        for (const shape_channel &c : s.channels) rest.push_back(c.rest);
-        mesh.extras = names_of(s.names);
-        mesh.weights = weights_of(s.channels, rest, s.targets.size());
+        for (const shape_channel &c : m.targets.channels) rest.push_back(c.rest);
+        mesh.extras = names_of(m.targets.names);
+        mesh.weights = weights_of(m.targets.channels, rest, m.targets.targets.size());
     }
     j.out.meshes.push_back(mesh);
     out.mesh = static_cast<int>(j.out.meshes.size() - 1);
-    out.target_count = s.targets.size();
-    out.channels = s.channels;
-    if (is_skinned) out.skin = add_skin(j, mesh.name, bound);
+    out.target_count = m.targets.targets.size();
+    out.channels = m.targets.channels;
+    if (m.is_skinned) out.skin = add_skin(j, mesh.name, m.bound);
     return out;
 }
 

@@ -26,7 +26,7 @@ static std::string write_glb(job &j)
     std::ostringstream out(std::ios::binary);
     tinygltf::TinyGLTF writer;
     j.out.asset.version = "2.0";
-    if (!writer.WriteGltfSceneToStream(&j.out, out, false, true)) fail("FBX", "the file has no scene");
+    if (!writer.WriteGltfSceneToStream(&j.out, out, false, true)) fail("FBX", "the model cannot be written");
     return out.str();
 }
 
@@ -48,6 +48,8 @@ static std::string convert(const char *path, double unit_cm, std::vector<std::st
     write_nodes(j);
     write_meshes(j);
     write_clips(j);
+    if (j.out.meshes.empty() && j.out.animations.empty())
+        fail("FBX", "the file has no polygons and no animations: there is nothing to convert");
     for (const note &n : j.in.notes) notes.push_back(line_of(n));
     return write_glb(j);
 }

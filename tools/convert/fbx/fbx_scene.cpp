@@ -275,6 +275,7 @@ static void order_models(scene &s)
         const auto [model, above] = open.back();
         const std::vector<link> &links = s.objects[model].below;
         open.pop_back();
+        s.place[model] = s.models.size();
         s.models.push_back(model);
         s.parent.push_back(above);
         for (size_t k = links.size(); k-- > 0;) {

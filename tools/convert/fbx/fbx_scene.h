@@ -72,8 +72,9 @@ struct scene {
     std::deque<curve> curves;
     std::map<size_t, const curve *> curve_of;
     std::vector<take> takes;
-    std::vector<size_t> models; /* objects that are nodes: parents first, depth first */
-    std::vector<size_t> parent; /* [models] place in models, or none */
+    std::vector<size_t> models;     /* objects that are nodes: parents first, depth first */
+    std::vector<size_t> parent;     /* [models] place in models, or none */
+    std::map<size_t, size_t> place; /* in models, by object */
     double unit_cm = 1.0, rate_hz = 30.0;
     mat to_y_up;
     std::vector<note> notes;

@@ -53,8 +53,8 @@ static mat read_matrix(const node &of, const char *name)
 static int bone_of(skin_job &s, size_t cluster)
 {
     const std::vector<size_t> bones = s.j.in.below(cluster, "Model", nullptr);
-    for (size_t i = 0; i < s.j.in.models.size() && !bones.empty(); ++i)
-        if (s.j.in.models[i] == bones[0]) return static_cast<int>(i);
+    const auto found = bones.empty() ? s.j.in.place.end() : s.j.in.place.find(bones[0]);
+    if (found != s.j.in.place.end()) return static_cast<int>(found->second);
     s.j.in.warn(place_of(s.j.in, cluster), " has no bone: what it moved follows the mesh; export it again");
     return -1;
 }
