@@ -1,9 +1,10 @@
 /* common_layers.glsl: the accumulated deltas of a vertex. noh_fetch of common_vertex.glsl adds them; without it, call
  * noh_morph_fetch, which adds them, and if it returns true noh_morph_frame (shaders_es/README.md). Define
  * NOH_LAYERS_UINT if noh_gl_morph_binding.is_uint is 1, NOH_TWO_LAYERS if its layer_count is 2, NOH_DEPTH_ONLY if
- * positions are enough, NOH_VERTICES if vertices are already morphed. */
-#if defined(NOH_VERTICES)
-/* no texture */
+ * positions are enough, NOH_VERTICES if vertices are already morphed, NOH_DIRECT if this shader sums the deltas
+ * (after common_delta.glsl and common_walk.glsl). */
+#if defined(NOH_VERTICES) || defined(NOH_DIRECT)
+/* no layers */
 #elif defined(NOH_LAYERS_UINT)
 uniform highp usampler2DArray noh_layers;
 #define NOH_LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(noh_layers, ivec3(texel, layer), 0).xyz)
@@ -11,7 +12,7 @@ uniform highp usampler2DArray noh_layers;
 uniform highp sampler2DArray noh_layers;
 #define NOH_LAYER_FETCH(texel, layer) texelFetch(noh_layers, ivec3(texel, layer), 0).xyz
 #endif
-uniform highp ivec4 noh_morph; /* tile x, tile y, width log2, touched vertices */
+uniform highp ivec4 noh_morph; /* tile x, tile y, width log2, touched vertices; with NOH_DIRECT: noh_morph_sums */
 
 #ifdef NOH_STREAMS
 /* Deltas of up to four targets as vertex attributes, words as in common_delta.glsl, added in index order. noh_streams:
@@ -47,11 +48,25 @@ void noh_add_streams(inout vec3 position, inout vec3 normal, inout vec3 tangent)
 }
 #endif
 
+#ifdef NOH_DIRECT
+/* The sums of accumulation texel i. tile: the low and high 16 bits of the tile's first start; log2 of the tile's width,
+ * from bit 4 on of the width of the lists, and from bit 6 on of the starts, both less 8; touched vertices */
+noh_sums noh_morph_sums(ivec4 tile, int i)
+{
+    int across = tile.z & 15, x = i & ((1 << across) - 1), y = i >> across;
+    uint block = uint((tile.x | tile.y << 16) + (y >> 2 << (across - 2)) + (x >> 2));
+    return noh_walk(block, ivec2(x, y) & 3, 8 + (tile.z >> 4 & 3), 8 + (tile.z >> 6 & 3));
+}
+#ifdef NOH_OCCLUSION
+float noh_morph_occlusion = 0.0; /* of the vertex that noh_morph_fetch_tile fetched last */
+#endif
+#else
 /* The position of accumulation texel i of a tile in the layers. */
 ivec2 noh_morph_texel(ivec4 tile, int i)
 {
     return tile.xy + ivec2(i & ((1 << tile.z) - 1), i >> tile.z);
 }
+#endif
 
 /* Add a vertex's deltas from an instance's tile, given by the four numbers of noh_morph. Texel i of the tile belongs to
  * vertex i. Vertices that no target moves are the last ones of a mesh and have no texel: for them the result is false,
@@ -65,6 +80,14 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
     if (touched) {
 #ifdef NOH_STREAMS
         noh_add_streams(position, normal, tangent);
+#elif defined(NOH_DIRECT)
+        noh_sums sums = noh_morph_sums(tile, vertex);
+        position += sums.position;
+        normal += sums.normal;
+        tangent += sums.tangent;
+#ifdef NOH_OCCLUSION
+        noh_morph_occlusion = sums.occlusion;
+#endif
 #else
         ivec2 texel = noh_morph_texel(tile, vertex);
         position += NOH_LAYER_FETCH(texel, 0);

@@ -5,5 +5,5 @@ uniform usampler2D u_deltas;
  * the position of its tile is relative to the fragment's block, and wraps at 2048, the size of the largest texture. */
 uvec4 delta_words(uint entry)
 {
-    return texelFetch(u_deltas, ivec2(gl_FragCoord.xy) + entry_tile(entry) & 2047, 0);
+    return texelFetch(u_deltas, ivec2(gl_FragCoord.xy) + noh_entry_tile(entry) & 2047, 0);
 }

@@ -22,11 +22,13 @@ struct noh_lobe {
     float shape[NOH_TRANSFER];
 };
 
-/* The change of a vertex's occlusion by targets, stored with the positions that noh_morph_fetch_tile adds. */
+/* The change of a vertex's occlusion by targets, stored or summed with the positions that noh_morph_fetch_tile adds. */
 float noh_fetch_occlusion(ivec4 tile, int vertex)
 {
-#ifdef NOH_VERTICES
+#if defined(NOH_VERTICES)
     return 0.0;
+#elif defined(NOH_DIRECT)
+    return noh_morph_occlusion;
 #else
     if (vertex >= tile.w) {
         return 0.0;

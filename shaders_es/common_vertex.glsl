@@ -170,7 +170,14 @@ vec2 noh_uv_of(ivec4 tile)
 #ifdef NOH_UV_TARGETS
     vec2 uv = noh_uv[0].xy + noh_uv[0].zw * noh_a_uv;
     int texel = int(noh_a_uv_texel);
-    return texel < tile.w ? uv + NOH_LAYER_FETCH(noh_morph_texel(tile, texel), 0).xy * noh_uv[1].x : uv;
+    if (texel < tile.w) {
+#ifdef NOH_DIRECT
+        uv += noh_morph_sums(tile, texel).position.xy * noh_uv[1].x;
+#else
+        uv += NOH_LAYER_FETCH(noh_morph_texel(tile, texel), 0).xy * noh_uv[1].x;
+#endif
+    }
+    return uv;
 #else
     return noh_uv.xy + noh_uv.zw * noh_a_uv;
 #endif
@@ -192,10 +199,13 @@ noh_vertex noh_fetch()
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+    v.uv = noh_uv_of(tile);
+#endif
 #if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
     noh_v_rest = noh_a_rest - noh_center;
     noh_v_moved = v.model - noh_a_rest;
-    noh_wrinkle_vertex(noh_uv_of(tile));
+    noh_wrinkle_vertex(v.uv);
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_EYE
@@ -222,7 +232,6 @@ noh_vertex noh_fetch()
     v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror inverts the frame */
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    v.uv = noh_uv_of(tile);
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
 #endif
     return v;

@@ -16,12 +16,12 @@ flat out uvec4 v_entry;
 #elif defined(MORPH_MRT)
 flat out uvec4 f_entry;
 #else
-flat out uvec3 f_entry;       /* entry_of_layer */
+flat out uvec3 f_entry;       /* noh_entry_of_layer */
 #endif
 
 void main()
 {
-    uvec4 entry = texelFetch(u_records, table_texel(a_block.z, u_tables.x), 0);
+    uvec4 entry = texelFetch(u_records, noh_table_texel(a_block.z, u_tables.x), 0);
     uvec2 at = uvec2(a_block.x & 0xffffu, a_block.x >> 16);
     uvec2 place = uvec2(a_block.y & 0xffffu, a_block.y >> 16) - at; /* whole blocks */
     entry.w |= place.x >> 2 & 511u | (place.y >> 2 & 511u) << 9;
@@ -36,6 +36,6 @@ void main()
 #elif defined(MORPH_MRT)
     f_entry = entry;
 #else
-    f_entry = entry_of_layer(entry, u_layer);
+    f_entry = noh_entry_of_layer(entry, u_layer);
 #endif
 }

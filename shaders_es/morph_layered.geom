@@ -17,7 +17,7 @@ flat out uvec3 f_entry;
 void main()
 {
     int layer = gl_InvocationID;
-    uvec3 entry = entry_of_layer(v_entry[0], layer);
+    uvec3 entry = noh_entry_of_layer(v_entry[0], layer);
     for (int i = 0; i < 3; i++) {
         f_entry = entry;
         gl_Layer = layer;

@@ -17,12 +17,12 @@ void main()
     uvec3 words = texel.xyz;
     vec3 weights = uintBitsToFloat(f_entry.xyz);
 #ifdef OCCLUSION
-    o_position = vec4(delta_field(words, entry_shifts(f_entry.w, 0), weights.x), uintBitsToFloat(texel.w) * weights.x);
+    o_position = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 0), weights.x), uintBitsToFloat(texel.w) * weights.x);
 #else
-    o_position = vec4(delta_field(words, entry_shifts(f_entry.w, 0), weights.x), 0.0);
+    o_position = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 0), weights.x), 0.0);
 #endif
-    o_normal = vec4(delta_field(words, entry_shifts(f_entry.w, 1), weights.y), 0.0);
+    o_normal = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 1), weights.y), 0.0);
 #ifndef TWO_LAYERS
-    o_tangent = vec4(delta_field(words, entry_shifts(f_entry.w, 2), weights.z), 0.0);
+    o_tangent = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 2), weights.z), 0.0);
 #endif
 }

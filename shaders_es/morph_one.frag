@@ -3,7 +3,7 @@
 #include "common_delta.glsl"
 #include "common_place.glsl"
 
-flat in uvec3 f_entry;     /* entry_of_layer */
+flat in uvec3 f_entry;     /* noh_entry_of_layer */
 
 layout(location = 0) out vec4 o_delta;
 
@@ -15,5 +15,5 @@ void main()
 #ifdef OCCLUSION
     fourth = uintBitsToFloat(texel.w) * weight; /* read only in the layer of positions */
 #endif
-    o_delta = vec4(delta_field(texel.xyz, shifts, weight), fourth);
+    o_delta = vec4(noh_delta_field(texel.xyz, shifts, weight), fourth);
 }

@@ -169,10 +169,7 @@ static void set_uniforms(const web_pass *p, const noh_gl_variant *v)
     gl->Uniform4fv(v->u_world, 3, p->world);
     gl->Uniform4fv(v->u_normal, 3, rows);
     gl->Uniform4i(v->u_morph, morph->tile_x, morph->tile_y, morph->width_log2, morph->touched); /* zeros: not morphed */
-    if (p->on_gl.is_morphed && morph->texture) {
-        gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
-        gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
-    }
+    if (p->on_gl.is_morphed) noh_gl_morph_bind(gl, morph);
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);

@@ -287,6 +287,7 @@ void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, f
  *   noh_gl_morph_plan_of      the plan of an accumulator
  *   noh_gl_morph_instance     the number of an instance of a mesh
  *   noh_gl_morph_streamed     the targets that the path streams adds
+ *   noh_gl_morph_bind         bind an instance's textures for your own draw
  *   noh_gl_morph_bind_streams bind the streams for your own draw
  *   noh_morph_path_name, noh_accumulate_name
  *
@@ -305,14 +306,15 @@ void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, f
  *   gather     ES 3.0                     no blending: each fragment sums the active targets of one vertex
  *   cpu        nothing                    SIMD on the CPU; uploads the sums, or vertices (desc.vertices)
  *   streams    ES 3.0                     no accumulation: the draw adds up to four targets as vertex streams
+ *   direct     ES 3.0                     no accumulation: the draw's vertex shader sums the active targets
  *
- * Two policies choose a path: `auto` takes the cheapest on this GPU; `blend` takes layered draws if supported,
+ * Two policies choose a path: `auto` takes the cheapest on this GPU, which depends on the number of draws; `blend` takes layered draws if supported,
  * otherwise per-layer passes. Blending into the accumulation format needs an extension. Most phones have it for
  * float16, but not for float32 (EXT_float_blend).
  *
  * Threads: the context's own thread; any thread for noh_gl_morph_plan_make and the names. */
 
-/* The names "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams"; and "auto", "f32", "f16". */
+/* The names "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams", "direct"; and "auto", "f32", "f16". */
 const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
@@ -339,6 +341,8 @@ typedef struct noh_gl_morph_desc {
     const char *simd; /* name of the kernel of the path cpu (deform.h), for tests. NULL or unavailable: the fastest */
     /* With `coarse`: noh_gl_morph_blocks and noh_gl_morph_strips of the finest mesh, counted on the whole mesh */
     uint32_t later_blocks, later_strips;
+    uint32_t draws;     /* for auto: draws of an instance in a frame, shadow maps included; 0: 1 */
+    int without_direct; /* 1: auto takes no path `direct`. A renderer draws it or paths with sums, not both */
 } noh_gl_morph_desc;
 
 typedef struct noh_gl_morph noh_gl_morph;
@@ -447,6 +451,10 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
  * shapes   weights[target_count]
  * returns  the number of targets */
 uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
+
+/* Bind the textures of a binding to their units: the accumulated deltas to NOH_UNIT_LAYERS; on the path direct the three
+ * tables to NOH_UNIT_LAYERS, NOH_UNIT_LISTS and the next. */
+void noh_gl_morph_bind(const noh_gl_api *api, const noh_gl_morph_binding *binding);
 
 /* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the
  * uniform noh_streams of the program in use. Does nothing on other paths. The vertex array keeps the buffer: delete the

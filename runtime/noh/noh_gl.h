@@ -130,6 +130,7 @@ void noh_gl_light_end_shadow(const noh_gl_light *light);
 
 #define NOH_LAYERS_STREAMS 2 /* values of is_uint */
 #define NOH_LAYERS_VERTICES 3
+#define NOH_LAYERS_DIRECT 4
 
 typedef enum noh_morph_path {
     NOH_MORPH_AUTO = 0,
@@ -142,9 +143,10 @@ typedef enum noh_morph_path {
     /* Never chosen automatically. With more than four active targets, the four that move the mesh most are drawn. No
      * crowds in one draw, no change of occlusion or texture coordinates, no levels loaded later, f32 only; other
      * readers of sums, such as marks and hair, read zeros */
-    NOH_MORPH_STREAMS
+    NOH_MORPH_STREAMS,
+    NOH_MORPH_DIRECT /* no sums: the vertex shader of each draw adds the active targets; f32 only */
 } noh_morph_path;
-#define NOH_MORPH_PATH_COUNT 8
+#define NOH_MORPH_PATH_COUNT 9
 #define NOH_ATTRIBUTE_STREAMS 10u /* the first of NOH_MORPH_STREAMS_MAX attributes: uvec3 */
 
 typedef enum noh_accumulate {
@@ -154,28 +156,29 @@ typedef enum noh_accumulate {
                         * if the GPU also rounds addends (NOH_HALF_RTZ_RNE) */
 } noh_accumulate;
 
-/* Costs compared by `auto`, for one update of one instance of each mesh with the expected share of its targets active.
- * The unit is a texel blended into three layers of RGBA32F; paths that cannot run here also have a cost. Factors were
+/* Costs compared by `auto`, for a frame of one instance of each mesh with the expected share of its targets active. The
+ * unit is a texel blended into three layers of RGBA32F; paths that cannot run here also have a cost. Factors were
  * measured on a software rasteriser and one GPU ; noh_gl_morph_calibrate measures on the player's
  * GPU */
 typedef struct noh_gl_morph_costs {
-    float texels, quads, blocks, pairs; /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
-    float touched;                      /* vertices that any target moves */
-    float upload_bytes;                 /* of the lists of gather */
-    uint32_t pixel_bytes;               /* of a texel over all layers */
-    uint32_t tile_bytes;                /* of tile memory per pixel on this GPU; 0: none, or unknown */
-    float mrt, per_layer, gather, cpu;  /* cpu: apart from the upload, another processor does the work */
+    float texels, quads, blocks, pairs;        /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
+    float touched;                             /* vertices that any target moves */
+    float upload_bytes;                        /* of the lists of gather and direct */
+    uint32_t pixel_bytes;                      /* of a texel over all layers */
+    uint32_t tile_bytes;                       /* of tile memory per pixel on this GPU; 0: none, or unknown */
+    uint32_t draws;                            /* of an instance in a frame */
+    float mrt, per_layer, gather, cpu, direct; /* cpu: apart from the upload, another processor does the work */
 } noh_gl_morph_costs;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
 typedef struct noh_gl_morph_plan {
-    noh_morph_path path;                /* never AUTO or BLEND */
-    noh_accumulate accumulate;          /* never AUTO */
-    const char *reason;                 /* why this path was chosen; a string constant */
-    unsigned layer_format;              /* 0 (streams, vertices), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or
+    noh_morph_path path;       /* never AUTO or BLEND */
+    noh_accumulate accumulate; /* never AUTO */
+    const char *reason;        /* why this path was chosen; a string constant */
+    unsigned layer_format;     /* 0 (streams, vertices, direct), RGBA32F, RGBA16F, RGBA32UI (float bits), RGB32F or
                                          * RGB16F */
-    uint32_t layer_count;               /* 3; 2 without tangents */
-    uint32_t occlusion;                 /* 1: a mesh has a transfer (light.h), and the fourth component of positions
+    uint32_t layer_count;      /* 3; 2 without tangents */
+    uint32_t occlusion;        /* 1: a mesh has a transfer (light.h), and the fourth component of positions
                                          * sums changes of occlusion */
     uint32_t atlas_width, atlas_height; /* of the texture array of tiles, in texels */
     uint32_t instance_count, weight_count;
@@ -199,10 +202,10 @@ typedef struct noh_gl_morph_plan {
 /* Where an instance's accumulated deltas are. tile_x, tile_y, width_log2 and touched are the uniform noh_morph of
  * common_layers.glsl, in this order. */
 typedef struct noh_gl_morph_binding {
-    unsigned texture; /* GL_TEXTURE_2D_ARRAY */
+    unsigned texture; /* GL_TEXTURE_2D_ARRAY of the accumulated deltas; 0: none */
     int is_uint;      /* 1: float bits as RGBA32UI: build your shader with NOH_LAYERS_UINT; NOH_LAYERS_STREAMS: no
                        * texture: build it with NOH_STREAMS; NOH_LAYERS_VERTICES: nothing to add: build it with
-                       * NOH_VERTICES, or without morphing */
+                       * NOH_VERTICES, or without morphing; NOH_LAYERS_DIRECT: with NOH_DIRECT, and `tables` */
     int layer_count;  /* 2: no layer of tangents: build your shader with NOH_TWO_LAYERS */
     /* Finished vertices, for noh_gl_mesh_bind. There is then no texture, and `touched` is 0 */
     unsigned vertex_buffer;                      /* 0 without finished vertices */
@@ -214,6 +217,9 @@ typedef struct noh_gl_morph_binding {
     unsigned stream_buffer;                         /* otherwise 0 */
     uint32_t stream_offsets[NOH_MORPH_STREAMS_MAX]; /* bytes */
     float streams[NOH_MORPH_STREAMS_MAX][4]; /* weight x scale of position, normal, tangent; the widths of the fields */
+    /* With NOH_LAYERS_DIRECT: GL_TEXTURE_2D of delta texels, lists of active targets, and starts of lists. tile_x,
+     * tile_y and width_log2 then say where the instance's starts are, for common_layers.glsl only */
+    unsigned tables[3];
 } noh_gl_morph_binding;
 
 /* ======== palettes on the GPU ======== */
@@ -338,7 +344,8 @@ typedef struct noh_gl_mesh {
 #define NOH_UNIT_SHADOW 10u
 #define NOH_UNIT_ENVIRONMENT 11u
 #define NOH_UNIT_SPECULAR 12u
-#define NOH_UNIT_USER 13u /* the first unit for a game's own shaders */
+#define NOH_UNIT_LISTS 13u /* path direct: lists; starts on the next; delta texels on NOH_UNIT_LAYERS */
+#define NOH_UNIT_USER 15u  /* the first unit for a game's own shaders */
 
 #define NOH_GL_RENDERER_BYTES 4u /* the white texel */
 

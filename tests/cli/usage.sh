@@ -93,7 +93,7 @@ for value in 0x512 512 512x 512x0 9000x10 -1x5 axb; do
 done
 noh render "$pack" -o "$work/out.png" --path fastest
 expect 2 'an unknown path'
-says "--path must be auto, blend, layered, mrt, per-layer, gather, cpu or streams, not 'fastest'"
+says "--path must be auto, blend, layered, mrt, per-layer, gather, direct, cpu or streams, not 'fastest'"
 noh render "$pack" -o "$work/out.png" --accumulate f64
 expect 2 'an unknown accumulator'
 says '--accumulate must be'

@@ -36,7 +36,7 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
     awk -F'"' '/"path":/ { path = $4 } /"accumulate":/ { format = $4 } /"available": true/ { on = 1 }
         /"available": false/ { on = 0 } /"differing":/ { gsub(/[^0-9]/, "", $3); if (on) print path, format, $3 }' "$work/out" >"$work/ran"
     check "$name: float32 is equal in every bit" sh -c 'grep -q " f32 0$" "$1" && ! grep " f32 " "$1" | grep -v " 0$"' - "$work/ran"
-    for path in layered mrt per-layer gather cpu streams; do
+    for path in layered mrt per-layer gather direct cpu streams; do
         here=0
         grep -q "^$path f32 " "$work/ran" && here=1
         case " $lacking " in

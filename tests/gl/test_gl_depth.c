@@ -139,7 +139,8 @@ static uint32_t covered(const uint32_t *bits)
 /* ---- a tube ---- */
 
 typedef struct tube_kind {
-    uint32_t palette, dual, uniform, is_uint; /* joints per palette, 0 all; the rest 0 or 1 */
+    uint32_t palette, dual, uniform; /* joints per palette, 0 all; the rest 0 or 1 */
+    uint32_t is_uint;                /* as in noh_gl_morph_binding: 0, 1 or NOH_LAYERS_DIRECT */
 } tube_kind;
 
 static noh_gl_renderer renderer_of(const tube *t, const tube_kind *k, noh_gl_passes passes, noh_gl_ledger *ledger)
@@ -217,9 +218,12 @@ static void check(const tube_kind *k)
     fixture_levels_open(&levels, &pack, 2, 0.12f);
     mesh = test_mesh(&levels.pack, 0);
     assert_int_equal((mesh.header->flags & NOH_MESH_DUAL_QUATERNION) != 0, k->dual);
-    if (k->is_uint) caps.render_f32 = caps.blend_f32 = 0;
+    if (k->is_uint == 1u) caps.render_f32 = caps.blend_f32 = 0;
     tube_open_with(&t, &mesh, k->uniform ? NOH_PALETTE_UNIFORM : NOH_PALETTE_TEXTURE,
-                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, 0, &caps);
+                   k->is_uint == 1u                  ? NOH_MORPH_GATHER
+                   : k->is_uint == NOH_LAYERS_DIRECT ? NOH_MORPH_DIRECT
+                                                     : NOH_MORPH_CPU,
+                   0, &caps);
     for (int kind = RIGID; kind <= (k->uniform ? FEWER : CROWD); kind++) {
         for (uint32_t level = 0; level < 2; level++) {
             expect_same(&t, k, (draw_kind)kind, &wholes[level], 1);
@@ -261,6 +265,14 @@ static void so_with_integer_layers(void **state)
     (void)state;
     if (!fixture_gpu()->caps.render_u32) test_skip("no renderable RGBA32UI here");
     check(&k);
+}
+
+static void so_where_draws_sum(void **state)
+{
+    static const tube_kind kinds[] = { { 0, 0, 0, NOH_LAYERS_DIRECT }, { 6, 1, 1, NOH_LAYERS_DIRECT } };
+    (void)state;
+    fixture_gpu();
+    for (size_t i = 0; i < TEST_COUNT(kinds); i++) check(&kinds[i]);
 }
 
 /* ---- what is fetched ---- */
@@ -510,6 +522,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(so_with_palettes_in_a_block),
     cmocka_unit_test(so_with_dual_quaternions_and_small_palettes),
     cmocka_unit_test(so_with_integer_layers),
+    cmocka_unit_test(so_where_draws_sum),
     cmocka_unit_test(depth_fetches_positions_alone),
     cmocka_unit_test(only_renderers_with_a_depth_pass_compile_for_it),
     cmocka_unit_test(materials_are_cut_and_blended_ones_left_out),

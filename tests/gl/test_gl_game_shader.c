@@ -16,7 +16,7 @@
 /* ---- the library's own text, as a game's ---- */
 
 typedef struct tube_kind {
-    uint32_t dual, uniform, is_uint; /* each 0 or 1 */
+    uint32_t dual, uniform, is_uint; /* each 0 or 1; is_uint also NOH_LAYERS_DIRECT */
     noh_debug_view view;
 } tube_kind;
 
@@ -37,9 +37,12 @@ static void open_tube(tube *t, uint8_t **bytes, noh_pack *pack, const tube_kind 
     model_free(m);
     *pack = test_open(*bytes, count);
     mesh = test_mesh(pack, 0);
-    if (k->is_uint) caps.render_f32 = caps.blend_f32 = 0;
+    if (k->is_uint == 1u) caps.render_f32 = caps.blend_f32 = 0;
     tube_open_with(t, &mesh, k->uniform ? NOH_PALETTE_UNIFORM : NOH_PALETTE_TEXTURE,
-                   k->is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU, 0, &caps);
+                   k->is_uint == 1u                  ? NOH_MORPH_GATHER
+                   : k->is_uint == NOH_LAYERS_DIRECT ? NOH_MORPH_DIRECT
+                                                     : NOH_MORPH_CPU,
+                   0, &caps);
 }
 
 static noh_gl_renderer_desc desc_of(const tube *t, const tube_kind *k, const noh_gl_shader_desc *shaders)
@@ -144,6 +147,7 @@ static void check_own(const tube_kind *k, int texts)
 static void the_text_of_the_library_draws_its_pictures(void **state)
 {
     const tube_kind kinds[] = { { 0, 0, 0, NOH_VIEW_LIT },
+                                { 0, 0, NOH_LAYERS_DIRECT, NOH_VIEW_LIT },
                                 { 1, 0, 0, NOH_VIEW_TANGENT },
                                 { 0, 1, 0, NOH_VIEW_NORMAL } };
     (void)state;

@@ -311,7 +311,7 @@ static void levels_come_and_go(void **state)
     uint32_t made = 0;
     (void)state;
     for (uint32_t w = 0; w < FIXTURE_WAYS; w++) {
-        const int in_turn = w == 0 || w == 7 || w == 8; /* layered f32, gather f16, cpu f32 */
+        const int in_turn = w == 0 || w == 7 || w == 8 || w == 10; /* layered f32, gather f16, cpu f32, direct */
         const int is_left_out = test_is_sanitized() ? w != 4 : !in_turn;
         if (getenv("NOH_LONG") || !is_left_out) levels_come_and_go_on(fixture_ways[w], &made);
     }
@@ -353,7 +353,8 @@ static void open_null(gpu *g)
 static const fixture_way null_ways[] = { { NOH_MORPH_MRT, NOH_ACCUMULATE_F32 },
                                          { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 },
                                          { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 } };
+                                         { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 },
+                                         { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32 } };
 
 /* Load a kind frame by frame; returns the bytes. */
 static uint64_t load_alone(act *a, uint32_t kind, uint32_t bound)
@@ -385,7 +386,8 @@ static void each_frame_keeps_the_bound(void **state)
         for (uint32_t b = 0; b < TEST_COUNT(bounds); b++) {
             const uint32_t bound = bounds[b] < 256u ? 256u : bounds[b];
             uint64_t sum = 0;
-            if (bounds[b] < 5000u && null_ways[w].path == NOH_MORPH_GATHER) continue; /* two walks for each piece */
+            const int by_block = null_ways[w].path == NOH_MORPH_GATHER || null_ways[w].path == NOH_MORPH_DIRECT;
+            if (bounds[b] < 5000u && by_block) continue; /* two walks for each piece */
             open_null(&g);
             memset(&a, 0, sizeof a);
             make_desc(&a, LATER);

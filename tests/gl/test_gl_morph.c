@@ -85,7 +85,8 @@ static noh_gl_morph_stats update(fixture_morph *m)
 
 static uint32_t passes_of(const fixture_morph *m)
 {
-    return m->plan.path == NOH_MORPH_CPU ? 0 : m->plan.path == NOH_MORPH_PER_LAYER ? m->plan.layer_count : 1;
+    const int has_passes = m->plan.path != NOH_MORPH_CPU && m->plan.path != NOH_MORPH_DIRECT;
+    return !has_passes ? 0 : m->plan.path == NOH_MORPH_PER_LAYER ? m->plan.layer_count : 1;
 }
 
 static void set_all_random(fixture_morph *m, test_random *r)
@@ -262,7 +263,7 @@ static void check_zero(fixture_morph *m)
     }
     stats = update(m);
     assert_int_equal(stats.targets, 0);
-    if (m->plan.path != NOH_MORPH_GATHER) { /* gather writes zeros by drawing */
+    if (m->plan.path != NOH_MORPH_GATHER) { /* it writes zeros by drawing */
         assert_int_equal(stats.draws + stats.rects + stats.texels + stats.pairs, 0);
     }
     fixture_expect_all(m);
@@ -435,9 +436,31 @@ static void a_set_without_any_target_works(void **state)
     }
 }
 
+/* direct: each block of an instance's texels has a start of its own. */
+static void check_starts(fixture_morph *m)
+{
+    uint32_t end = 0;
+    for (uint32_t i = 0; i < m->plan.instance_count; i++) {
+        const noh_mesh_header *h = fixture_mesh_of(m, i)->header;
+        noh_gl_morph_binding b = noh_gl_morph_binding_of(m->morph, i);
+        const uint32_t first = (uint32_t)(b.tile_x | b.tile_y << 16);
+        assert_true(b.is_uint == NOH_LAYERS_DIRECT && !b.texture && b.tables[0] && b.tables[1] && b.tables[2]);
+        assert_int_equal(b.width_log2, h->morph_width_log2); /* and tables of 256 texels across */
+        assert_int_equal(b.touched, h->touched_count);
+        if (!h->touched_count) continue;
+        assert_int_equal(first, end);
+        end += (h->morph_height + 3u) / 4u << (h->morph_width_log2 - 2u);
+    }
+}
+
 static void check_tiles(fixture_morph *m)
 {
-    uint8_t *owner = test_zeros((size_t)m->plan.atlas_width * m->plan.atlas_height);
+    uint8_t *owner;
+    if (m->plan.path == NOH_MORPH_DIRECT) {
+        check_starts(m);
+        return;
+    }
+    owner = test_zeros((size_t)m->plan.atlas_width * m->plan.atlas_height);
     for (uint32_t i = 0; i < m->plan.instance_count; i++) {
         const noh_mesh_header *h = fixture_mesh_of(m, i)->header;
         noh_gl_morph_binding b = noh_gl_morph_binding_of(m->morph, i);
@@ -618,6 +641,7 @@ static void automatic_falls_to_the_next_path(void **state)
         strcpy(caps.renderer, "a GPU"); /* not a software rasteriser */
         clear_cap(&caps, cases[i].cleared);
         desc.expected_active = cases[i].active;
+        desc.without_direct = 1;
         fixture_morph_open(&m, &desc, &caps);
         if (m.plan.path != cases[i].path || m.plan.layer_format != cases[i].format) {
             fail_msg("without '%s', %g active: %s (%s)", cases[i].cleared, (double)cases[i].active,
@@ -721,12 +745,106 @@ static void automatic_weighs_blending_against_lists(void **state)
         desc.mesh_count = 1;
         desc.instance_counts = NULL;
         desc.expected_active = cases[i].active;
+        desc.without_direct = 1;
         assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
         if (plan.path != cases[i].path || (plan.costs.gather <= plan.costs.mrt) != (plan.path == NOH_MORPH_GATHER)) {
             fail_msg("case %u: %s; mrt %g, gather %g", (unsigned)i, plan.reason, (double)plan.costs.mrt,
                      (double)plan.costs.gather);
         }
     }
+}
+
+/* AUTO sums in the draws where that costs less than a pass with what draws then fetch: few draws, few entries for a
+ * block, or a pass for a single instance. It may be told not to, and in halves it cannot. */
+static void automatic_weighs_draws_against_a_pass(void **state)
+{
+    static const uint32_t one[1] = { 1 }, many[1] = { 400 };
+    static const struct {
+        uint32_t draws;
+        const uint32_t *instances;
+        float active;
+        noh_accumulate accumulate;
+        int without, direct;
+    } cases[] = { { 0, one, 0.5f, NOH_ACCUMULATE_AUTO, 0, 1 },    { 1, one, 0.05f, NOH_ACCUMULATE_AUTO, 0, 1 },
+                  { 1, one, 0.05f, NOH_ACCUMULATE_AUTO, 1, 0 },   { 1, one, 0.05f, NOH_ACCUMULATE_F16, 0, 0 },
+                  { 1000, one, 0.5f, NOH_ACCUMULATE_AUTO, 0, 0 }, { 1, many, 0.05f, NOH_ACCUMULATE_AUTO, 0, 1 },
+                  { 3, many, 1.0f, NOH_ACCUMULATE_AUTO, 0, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        noh_gl_morph_desc desc = { .meshes = &set.meshes[2], .mesh_count = 1, .draws = cases[i].draws };
+        noh_gl_morph_plan plan;
+        noh_gl_caps caps;
+        float other;
+        noh_gl_caps_nominal(&caps);
+        desc.instance_counts = cases[i].instances;
+        desc.expected_active = cases[i].active;
+        desc.accumulate = cases[i].accumulate;
+        desc.without_direct = cases[i].without;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+        other = plan.costs.gather < plan.costs.mrt ? plan.costs.gather : plan.costs.mrt;
+        if ((plan.path == NOH_MORPH_DIRECT) != cases[i].direct ||
+            (!cases[i].without && !cases[i].accumulate && (plan.costs.direct < other) != cases[i].direct)) {
+            fail_msg("case %u: %s; direct %g, gather %g, mrt %g", (unsigned)i, plan.reason, (double)plan.costs.direct,
+                     (double)plan.costs.gather, (double)plan.costs.mrt);
+        }
+        assert_int_equal(plan.costs.draws, cases[i].draws ? cases[i].draws : 1);
+        assert_true(plan.path != NOH_MORPH_DIRECT || !plan.layer_bytes);
+    }
+}
+
+/* No accumulator: what a GPU holds for direct are deltas and lists, and the CPU holds no more than for gather. */
+static void direct_holds_no_accumulator(void **state)
+{
+    static const uint32_t counts[] = { 1, 2, 100 };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(counts); i++) {
+        const uint32_t instances[FIXTURE_MESHES] = { counts[i], counts[i], counts[i] };
+        noh_gl_morph_desc desc = desc_of((fixture_way){ NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 });
+        noh_gl_morph_plan gather, direct;
+        noh_gl_caps caps;
+        noh_gl_caps_nominal(&caps);
+        desc.instance_counts = instances;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &gather, NULL), NOH_OK);
+        desc.path = NOH_MORPH_DIRECT;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &direct, NULL), NOH_OK);
+        assert_int_equal(direct.layer_bytes, 0);
+        assert_int_equal(direct.delta_bytes, gather.delta_bytes);
+        assert_true(direct.cpu_bytes <= gather.cpu_bytes && direct.gpu_bytes < gather.gpu_bytes);
+    }
+}
+
+/* Lists of all instances are in one table: more of them than it holds are refused, and AUTO does not take them. */
+static void direct_refuses_too_many_instances(void **state)
+{
+    noh_gl_morph_desc desc = desc_of((fixture_way){ NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32 });
+    const uint32_t instances[FIXTURE_MESHES] = { NOH_MORPH_INSTANCES_MAX - 2u, 1, 1 };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_mesh_header header = *set.meshes[0].header;
+    noh_target targets[7];
+    static noh_rect rects[7 * 256];
+    noh_gl_morph_plan plan;
+    noh_gl_caps caps;
+    (void)state;
+    noh_gl_caps_nominal(&caps);
+    caps.texture_size_max = 65536;
+    memcpy(targets, set.meshes[0].targets, sizeof targets);
+    for (uint32_t t = 0; t < 7; t++) {
+        targets[t].first_rect = 256 * t;
+        targets[t].rect_count = 256;
+        for (uint32_t r = 0; r < 256; r++) rects[256 * t + r] = (noh_rect){ 0, 0, 1, 1 };
+    }
+    desc.instance_counts = instances;
+    noh_mesh meshes[FIXTURE_MESHES] = { set.meshes[0], set.meshes[1], set.meshes[2] };
+    meshes[0].header = &header;
+    meshes[0].targets = targets;
+    meshes[0].rects = rects;
+    desc.meshes = meshes;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, &error), NOH_ERR_LIMIT);
+    assert_non_null(strstr(error.what, "direct"));
+    desc.path = NOH_MORPH_AUTO;
+    desc.expected_active = 0.0001f;
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, &error), NOH_OK);
+    assert_int_not_equal(plan.path, NOH_MORPH_DIRECT);
 }
 
 static struct {
@@ -872,6 +990,7 @@ static void automatic_spares_mali_the_blending(void **state)
     (void)state;
     caps.mrt3 = caps.blend_f32 = caps.render_f32 = caps.blend_f16 = 1;
     desc.expected_active = 0.01f;
+    desc.without_direct = 1;
     strcpy(caps.renderer, "Mali-G78 MC20");
     assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
     assert_int_equal(plan.path, NOH_MORPH_GATHER);
@@ -904,7 +1023,7 @@ static void a_third_is_saved_without_tangents(void **state)
         noh_gl_caps caps = g->caps;
         noh_gl_morph_plan three, two;
         if (i % 2) clear_cap(&caps, "render_f32"); /* RGBA32UI */
-        if (noh_gl_morph_plan_make(&desc, &caps, &three, NULL) != NOH_OK) {
+        if (noh_gl_morph_plan_make(&desc, &caps, &three, NULL) != NOH_OK || !three.layer_bytes) {
             continue;
         }
         desc.without_tangents = 1;
@@ -972,6 +1091,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(automatic_falls_to_the_next_path),
     cmocka_unit_test(blending_is_layered_or_per_layer),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
+    cmocka_unit_test(automatic_weighs_draws_against_a_pass),
+    cmocka_unit_test(direct_holds_no_accumulator),
+    cmocka_unit_test(direct_refuses_too_many_instances),
     cmocka_unit_test(updates_send_what_the_plan_says),
     cmocka_unit_test(calibration_takes_the_fastest_path),
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),

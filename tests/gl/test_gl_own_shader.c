@@ -54,13 +54,15 @@ static GLuint own_vertex(const noh_gl_api *gl, noh_gl_variant_key key, int whole
     const char *files[] = { "#version 300 es\n",
                             defines,
                             "precision highp float;\nprecision highp int;\n",
+                            noh_gl_shader_text("common_delta.glsl"),
+                            noh_gl_shader_text("common_walk.glsl"),
                             noh_gl_shader_text("common_layers.glsl"),
                             noh_gl_shader_text("common_attributes.glsl"),
                             noh_gl_shader_text("common_skin.glsl"),
                             own };
     GLuint shader;
     noh_gl_variant_defines(key, defines);
-    shader = compile(gl, GL_VERTEX_SHADER, whole ? one : files, whole ? 3 : 7);
+    shader = compile(gl, GL_VERTEX_SHADER, whole ? one : files, whole ? 3 : 9);
     free(prefix);
     free(own);
     return shader;
@@ -93,6 +95,9 @@ static GLuint own_program(const noh_gl_api *gl, noh_gl_variant_key key, int whol
     assert_true(ok);
     gl->UseProgram(program);
     gl->Uniform1i(gl->GetUniformLocation(program, "noh_layers"), (GLint)NOH_UNIT_LAYERS);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_deltas"), (GLint)NOH_UNIT_LAYERS);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_lists"), (GLint)NOH_UNIT_LISTS);
+    gl->Uniform1i(gl->GetUniformLocation(program, "noh_starts"), (GLint)NOH_UNIT_LISTS + 1);
     gl->Uniform1i(gl->GetUniformLocation(program, "noh_palettes"), (GLint)NOH_UNIT_PALETTES);
     gl->Uniform1i(gl->GetUniformLocation(program, "noh_base_color_texture"), (GLint)NOH_UNIT_BASE_COLOR);
     block = gl->GetUniformBlockIndex(program, "noh_palette_block");
@@ -151,7 +156,7 @@ static void open_skin(stage *st, noh_palette_mode mode)
     noh_gl_skin_update(st->skin);
 }
 
-static void open_stage(stage *st, int jointed, noh_palette_mode mode, int is_uint)
+static void open_stage(stage *st, int jointed, noh_palette_mode mode, int layers)
 {
     const skin_cylinder tube = { 12, 9, 4, 2, 3, 1, 2.0f, 0.3f };
     const test_model_desc grid = { 1, 9, 3, TEST_TANGENTS, 96 };
@@ -162,7 +167,7 @@ static void open_stage(stage *st, int jointed, noh_palette_mode mode, int is_uin
     memset(st, 0, sizeof *st);
     st->g = fixture_gpu();
     caps = st->g->caps;
-    if (is_uint) caps.render_f32 = caps.blend_f32 = 0;
+    if (layers == 1) caps.render_f32 = caps.blend_f32 = 0;
     st->bytes = jointed ? skin_pack_of(m, NULL, 0.5f, &count, NULL) : test_pack(&grid, &count);
     if (m) model_free(m);
     st->pack = test_open(st->bytes, count);
@@ -170,7 +175,7 @@ static void open_stage(stage *st, int jointed, noh_palette_mode mode, int is_uin
     assert_int_equal(noh_gl_mesh_create(&st->g->gl, &st->ledger, &st->mesh, &st->gl_mesh, NULL), NOH_OK);
     st->morph_desc.meshes = &st->mesh;
     st->morph_desc.mesh_count = 1;
-    st->morph_desc.path = is_uint ? NOH_MORPH_GATHER : NOH_MORPH_CPU;
+    st->morph_desc.path = layers == 1 ? NOH_MORPH_GATHER : layers ? NOH_MORPH_DIRECT : NOH_MORPH_CPU;
     fixture_morph_open(&st->morph, &st->morph_desc, &caps);
     fixture_set_random(&st->morph, 0, &r);
     noh_gl_morph_update(st->morph.morph, NULL);
@@ -212,8 +217,7 @@ static float *draw(const stage *st, int whole)
     gl->Uniform4fv(gl->GetUniformLocation(own.program, "noh_normal"), 3, identity);
     gl->Uniform4i(gl->GetUniformLocation(own.program, "noh_morph"), morph.tile_x, morph.tile_y, morph.width_log2,
                   morph.touched);
-    gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph.texture);
+    noh_gl_morph_bind(gl, &morph);
     gl->GenBuffers(1, &buffer);
     gl->BindBufferBase(GL_TRANSFORM_FEEDBACK_BUFFER, 0, buffer);
     gl->BufferData(GL_TRANSFORM_FEEDBACK_BUFFER, (GLsizeiptr)bytes, NULL, GL_STREAM_READ);
@@ -291,6 +295,13 @@ static void it_morphs_with_integer_layers(void **state)
     check(0, NOH_PALETTE_AUTO, 1);
 }
 
+static void it_morphs_where_draws_sum(void **state)
+{
+    (void)state;
+    check(0, NOH_PALETTE_AUTO, NOH_LAYERS_DIRECT);
+    check(1, NOH_PALETTE_TEXTURE, NOH_LAYERS_DIRECT);
+}
+
 static void it_skins_by_a_block(void **state)
 {
     (void)state;
@@ -349,6 +360,7 @@ int main(int argument_count, char **arguments)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_morphs),
         cmocka_unit_test(it_morphs_with_integer_layers),
+        cmocka_unit_test(it_morphs_where_draws_sum),
         cmocka_unit_test(it_skins_by_a_block),
         cmocka_unit_test(it_skins_by_a_texture),
         cmocka_unit_test(other_names_have_no_text),

@@ -88,8 +88,7 @@ static float *captured(const tube *t, const fixture_morph *sums, draw_kind kind,
     gl->Uniform4fv(v.u_world, 3, placed);
     gl->Uniform4fv(v.u_normal, 3, placed); /* a rotation is its own inverse transpose */
     gl->Uniform4i(v.u_morph, morph.tile_x, morph.tile_y, morph.width_log2, morph.touched);
-    gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph.texture);
+    noh_gl_morph_bind(gl, &morph);
     gl->BindVertexArray(t->gl.vertex_array);
     if (kind != RIGID) noh_gl_variant_skin(gl, &v, &t->mesh, &skin, 0);
     gl->GenBuffers(1, &buffer);
@@ -242,7 +241,7 @@ static int open_sums(fixture_morph *sums, const tube *t, noh_gl_morph_desc *desc
 /* The occlusion of one way equals the CPU's: to the bit in 32 bits, where this driver blends so. */
 static void check_way(const tube *t, fixture_way way, const noh_gl_caps *caps, const float *right, const float *cpu)
 {
-    const int blended = way.path != NOH_MORPH_CPU && way.path != NOH_MORPH_GATHER;
+    const int blended = way.path != NOH_MORPH_CPU && way.path != NOH_MORPH_GATHER && way.path != NOH_MORPH_DIRECT;
     const int exact = way.accumulate == NOH_ACCUMULATE_F32 && (!blended || caps->blend_f32_exact);
     noh_lighting lighting;
     noh_gl_morph_desc desc;
@@ -320,8 +319,8 @@ static void every_way_sums_the_same_occlusion(void **state)
  * made. Without the transfer it takes less. */
 static void stages_take_what_they_plan(void **state)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
-                                            NOH_MORPH_LAYERED };
+    static const noh_morph_path paths[] = { NOH_MORPH_CPU,       NOH_MORPH_GATHER,  NOH_MORPH_MRT,
+                                            NOH_MORPH_PER_LAYER, NOH_MORPH_LAYERED, NOH_MORPH_DIRECT };
     static __attribute__((aligned(16))) uint32_t texels[2 * 6 * 32 * 32];
     static __attribute__((aligned(16))) uint8_t scratch[3 * 4 * 2 * 6 * 32 * 32];
     const noh_reflection_desc baked = { 32, noh_reflection_of_environment, noh_environment_at(0) };

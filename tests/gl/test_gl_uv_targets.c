@@ -129,16 +129,15 @@ static model *tube_model(void)
     return m;
 }
 
-static void each_of_a_crowd_has_its_own(void **state)
+static void check_crowd(noh_morph_path path)
 {
     model *m = tube_model();
     lod_pack p;
     tube t;
     readback back;
     readback_vertex *got;
-    (void)state;
     make(m, 1, &p);
-    tube_open(&t, &p.mesh, NOH_PALETTE_TEXTURE);
+    tube_open_with(&t, &p.mesh, NOH_PALETTE_TEXTURE, path, 0, NULL);
     got = test_zeros(sizeof *got * COPIES * p.mesh.header->vertex_count);
     for (uint32_t crowd = 0; crowd <= COPIES; crowd += COPIES) {
         for (uint32_t i = 0; i < COPIES; i++) {
@@ -227,6 +226,13 @@ static void a_mesh_with_them_beside_one_without(void **state)
     model_free(m);
     model_free(plain);
     fixture_expect_no_errors();
+}
+
+static void each_of_a_crowd_has_its_own(void **state)
+{
+    (void)state;
+    check_crowd(NOH_MORPH_CPU);
+    check_crowd(NOH_MORPH_DIRECT);
 }
 
 static void streams_refuse_them(void **state)

@@ -162,7 +162,8 @@ static void every_path_keeps_the_order(void **state)
         { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16, 0, 0, 0 }, { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 0, 0, 0 },
         { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32, 1, 0, 0 },    { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0, 0 },
         { NOH_MORPH_CPU, NOH_ACCUMULATE_F16, 0, 0, 0 },       { NOH_MORPH_MRT, NOH_ACCUMULATE_F32, 0, 1, 0 },
-        { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0, 1 },       { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 1, 1 }
+        { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 0, 1 },       { NOH_MORPH_CPU, NOH_ACCUMULATE_F32, 0, 1, 1 },
+        { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32, 0, 0, 0 },    { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32, 0, 1, 0 }
     };
     const test_model_desc desc = { 3, 7, 9, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 11 };
     pack_file file;
@@ -242,7 +243,7 @@ static void load_and_draw_levels(const pack_file *file, noh_morph_path path, int
 static void levels_keep_the_order(void **state)
 {
     const test_model_desc desc = { 3, 7, 9, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 11 };
-    const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER, NOH_MORPH_CPU, NOH_MORPH_CPU };
+    const noh_morph_path paths[] = { NOH_MORPH_MRT, NOH_MORPH_GATHER, NOH_MORPH_CPU, NOH_MORPH_CPU, NOH_MORPH_DIRECT };
     size_t count;
     uint8_t *bytes = test_pack(&desc, &count);
     const noh_pack pack = test_open(bytes, count);

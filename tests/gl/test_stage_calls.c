@@ -399,8 +399,8 @@ static void play(game *g, uint32_t count)
 
 static void calls_in_any_order(void **state)
 {
-    static const uint32_t paths[] = { NOH_MORPH_AUTO,   NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
-                                      NOH_MORPH_GATHER, NOH_MORPH_CPU, NOH_MORPH_CPU };
+    static const uint32_t paths[] = { NOH_MORPH_AUTO, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
+                                      NOH_MORPH_CPU,  NOH_MORPH_CPU, NOH_MORPH_DIRECT };
     const uint32_t count = getenv("NOH_LONG") ? 40000u : test_is_sanitized() ? 600u : 1500u;
     game *steady = test_zeros(sizeof *steady), *losing = test_zeros(sizeof *losing);
     (void)state;

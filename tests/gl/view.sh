@@ -31,8 +31,10 @@ start_display
 noh view "$mask" --frames 2 --size 900x600 --screenshot "$work/shot.png"
 expect 0 'some frames and a screenshot'
 check 'of the size of the window' test "$(png_size shot.png)" = 900x600
-for path in layered mrt per-layer gather cpu; do
-    noh view "$mask" --path $path --accumulate f16 --clip speak --frames 3 --size 700x400
+for path in layered mrt per-layer gather cpu direct; do
+    format=f16
+    [ $path != direct ] || format=f32 # it has no halves
+    noh view "$mask" --path $path --accumulate $format --clip speak --frames 3 --size 700x400
     if [ $code != 0 ] && grep -q "^noh: $mask: " "$work/err"; then
         skip "path $path" "$(head -n 1 "$work/err")"
     else

@@ -12,7 +12,8 @@ const fixture_way fixture_ways[FIXTURE_WAYS] = {
     { NOH_MORPH_MRT, NOH_ACCUMULATE_F32 },       { NOH_MORPH_MRT, NOH_ACCUMULATE_F16 },
     { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32 }, { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F16 },
     { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 },    { NOH_MORPH_GATHER, NOH_ACCUMULATE_F16 },
-    { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 },       { NOH_MORPH_CPU, NOH_ACCUMULATE_F16 }
+    { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 },       { NOH_MORPH_CPU, NOH_ACCUMULATE_F16 },
+    { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32 }
 };
 
 const char *fixture_way_name(fixture_way way)
@@ -199,7 +200,7 @@ float *fixture_reference(const fixture_morph *m, uint32_t instance, int *exact)
 {
     const noh_mesh view = fixture_view_of(m, instance), *mesh = &view;
     noh_morph_layers layers = test_layers(mesh);
-    int blended = m->plan.path != NOH_MORPH_CPU && m->plan.path != NOH_MORPH_GATHER;
+    int blended = m->plan.path != NOH_MORPH_CPU && m->plan.path != NOH_MORPH_GATHER && m->plan.path != NOH_MORPH_DIRECT;
     noh_half_mode mode = blended                         ? m->caps.f16_blend_mode
                          : m->plan.path == NOH_MORPH_CPU ? NOH_HALF_RNE
                                                          : m->caps.f16_store_mode;

@@ -27,7 +27,7 @@ typedef struct fixture_way {
     noh_morph_path path;
     noh_accumulate accumulate;
 } fixture_way;
-#define FIXTURE_WAYS 10
+#define FIXTURE_WAYS 11
 extern const fixture_way fixture_ways[FIXTURE_WAYS];
 
 /* "mrt f16" */

@@ -19,7 +19,9 @@ const char *noh_gl_shader_text(const char *name)
 {
     static const struct {
         const char *name, *text;
-    } texts[] = { { "common_layers.glsl", noh_shader_common_layers_glsl },
+    } texts[] = { { "common_delta.glsl", noh_shader_common_delta_glsl },
+                  { "common_walk.glsl", noh_shader_common_walk_glsl },
+                  { "common_layers.glsl", noh_shader_common_layers_glsl },
                   { "common_attributes.glsl", noh_shader_common_attributes_glsl },
                   { "common_skin.glsl", noh_shader_common_skin_glsl },
                   { "common_face.glsl", noh_shader_common_face_glsl },

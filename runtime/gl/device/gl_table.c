@@ -74,8 +74,8 @@ static void upload_block(const noh_gl_api *api, const noh_gl_table *t, uint32_t 
 
 /* Texels first to first + count - 1 form at most three rectangles: the rest of one row, whole rows, and the start of a
  * last row. */
-void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
-                         const void *data)
+void noh_gl_table_put(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
+                      const void *data)
 {
     NOH_ASSERT(table->texture.name && (data || !count));
     NOH_ASSERT((uint64_t)first + count <= (uint64_t)table->height << table->width_log2);
@@ -83,15 +83,21 @@ void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint3
     uint32_t head = x ? (count < width - x ? count : width - x) : 0; /* the rest of the first row */
     uint32_t rows = (count - head) >> table->width_log2;
     const uint8_t *bytes = (const uint8_t *)data;
-    noh_gl_pixels kept;
-    api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, table->texture.name);
-    noh_gl_unpack_begin(api, &kept);
     upload_block(api, table, x, y, head, 1, bytes);
     bytes += (size_t)head * table->texel_bytes;
     y += head ? 1u : 0u;
     upload_block(api, table, 0, y, width, rows, bytes);
     bytes += ((size_t)rows << table->width_log2) * table->texel_bytes;
     upload_block(api, table, 0, y + rows, count - head - (rows << table->width_log2), 1, bytes);
+}
+
+void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
+                         const void *data)
+{
+    noh_gl_pixels kept;
+    api->ActiveTexture(GL_TEXTURE0);
+    noh_gl_unpack_begin(api, &kept);
+    noh_gl_table_put(api, table, first, count, data);
     noh_gl_unpack_end(api, &kept);
 }

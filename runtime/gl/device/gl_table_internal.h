@@ -35,4 +35,7 @@ noh_result noh_gl_table_create(const noh_gl_api *api, noh_gl_ledger *ledger, GLe
 void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
                          const void *data);
 
+/* The same, between noh_gl_unpack_begin and _end, with unit 0 active. */
+void noh_gl_table_put(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count, const void *data);
+
 #endif

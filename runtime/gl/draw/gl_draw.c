@@ -151,10 +151,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
         r->gl->Uniform3f(v->u_center, 0.5f * (h->bounds_min[0] + h->bounds_max[0]),
                          0.5f * (h->bounds_min[1] + h->bounds_max[1]), 0.5f * (h->bounds_min[2] + h->bounds_max[2]));
     }
-    if (morph && morph->texture) {
-        r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
-        r->gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
-    }
+    if (morph) noh_gl_morph_bind(r->gl, morph);
     r->gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
@@ -515,10 +512,14 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
                                     NOH_UNIT_SURFACE,
                                     NOH_UNIT_EMISSIVE,
                                     NOH_UNIT_SPECULAR,
-                                    NOH_UNIT_BASE_COLOR };
+                                    NOH_UNIT_BASE_COLOR,
+                                    NOH_UNIT_LISTS,
+                                    NOH_UNIT_LISTS + 1u,
+                                    NOH_UNIT_LAYERS };
+    const unsigned count = sizeof units / sizeof units[0] - (r->layers_uint == NOH_LAYERS_DIRECT ? 0 : 3u);
     r->gl->BindVertexArray(0);
     r->gl->UseProgram(0);
-    for (unsigned i = 0; i < sizeof units / sizeof units[0]; i++) {
+    for (unsigned i = 0; i < count; i++) {
         r->gl->ActiveTexture(GL_TEXTURE0 + units[i]);
         r->gl->BindTexture(GL_TEXTURE_2D, 0);
     }

@@ -134,6 +134,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.layers_uint == 1u, "#define NOH_LAYERS_UINT\n" },
                   { key.layers_uint == NOH_LAYERS_STREAMS, "#define NOH_STREAMS\n" },
                   { key.layers_uint == NOH_LAYERS_VERTICES, "#define NOH_VERTICES\n" },
+                  { key.layers_uint == NOH_LAYERS_DIRECT, "#define NOH_DIRECT\n" },
                   { key.encode_srgb, "#define NOH_ENCODE_SRGB\n" },
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
@@ -170,6 +171,8 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
     uint32_t count = 0;
     pieces[count++] = precision;
     if (stage == GL_VERTEX_SHADER) {
+        pieces[count++] = noh_shader_common_delta_glsl;
+        pieces[count++] = noh_shader_common_walk_glsl;
         pieces[count++] = noh_shader_common_layers_glsl;
         pieces[count++] = noh_shader_common_attributes_glsl;
         pieces[count++] = noh_shader_common_skin_glsl;
@@ -342,10 +345,13 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
                                                                       "noh_wrinkle_weights_2",
                                                                       "noh_shadow_map",
                                                                       "noh_environment",
-                                                                      "noh_specular_texture" };
+                                                                      "noh_specular_texture",
+                                                                      "noh_lists",
+                                                                      "noh_starts" };
     char defines[NOH_GL_DEFINES_BYTES];
     whole_source vertex, fragment;
     noh_gl_input inputs[INPUTS_MAX];
+    if (v->key.layers_uint == NOH_LAYERS_DIRECT) samplers[NOH_UNIT_LAYERS] = "noh_deltas";
     noh_gl_variant_defines(v->key, defines);
     make_source(&vertex, GL_VERTEX_SHADER, &noh_shader_mesh_vert, own->vertex, own->defines);
     make_source(&fragment, GL_FRAGMENT_SHADER, &noh_shader_mesh_frag, own->fragment, own->defines);

@@ -50,15 +50,16 @@ static void label_objects(const noh_gl_morph *m)
 
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    const int streams = m->plan.path == NOH_MORPH_STREAMS;
+    const int streams = m->plan.path == NOH_MORPH_STREAMS, direct = m->plan.path == NOH_MORPH_DIRECT;
     noh_result result = streams               ? noh_gl_morph_init_streams(m, error)
                         : m->plan.vertex_ring ? noh_gl_morph_init_vertices(m, error)
+                        : direct              ? noh_gl_morph_init_direct(m, error)
                                               : create_layers(m, error);
     if (!result && m->plan.path != NOH_MORPH_CPU && !streams) {
         result = noh_gl_morph_make_tiles(m, error);
         if (!result && m->plan.path == NOH_MORPH_GATHER) {
             result = noh_gl_morph_init_gather(m, log, log_bytes, error);
-        } else if (!result) {
+        } else if (!result && !direct) {
             result = noh_gl_morph_init_blend(m, log, log_bytes, error);
         }
     }
@@ -232,6 +233,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     binding.width_log2 = (int32_t)h->morph_width_log2;
     binding.touched = (int32_t)h->touched_count;
     if (morph->plan.path == NOH_MORPH_STREAMS) noh_gl_morph_set_streams(morph, instance, &binding);
+    if (morph->plan.path == NOH_MORPH_DIRECT) noh_gl_morph_set_direct(morph, instance, &binding);
     if (morph->plan.vertex_ring) noh_gl_morph_set_vertices(morph, instance, &binding);
     return binding;
 }
@@ -330,6 +332,8 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats)
         noh_gl_morph_update_cpu(morph, s);
     } else if (morph->plan.path == NOH_MORPH_GATHER) {
         noh_gl_morph_update_gather(morph, s);
+    } else if (morph->plan.path == NOH_MORPH_DIRECT) {
+        noh_gl_morph_update_direct(morph, s);
     } else if (morph->plan.path == NOH_MORPH_STREAMS) {
         noh_gl_morph_update_streams(morph, s);
     } else {

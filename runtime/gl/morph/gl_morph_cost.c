@@ -1,14 +1,17 @@
 /* gl_morph_cost.c: a cost model of paths on a GPU, for `auto`.
  *
- * The unit is one texel blended into three layers of RGBA32F. All terms are of one update of one instance of each mesh,
- * with the expected share of its targets active.
+ * The unit is one texel blended into three layers of RGBA32F. All terms are of one instance of each mesh in a frame:
+ * its update, with the expected share of its targets active, and what its draws add for it.
  *   mrt     its texels; a quad costs as much as 4 of them, or on a software rasteriser, which shades whole blocks, all
  *           16 of each block instead; twice all that if the layers do not fit a known tile memory; a third of it
  *           for halves, which GPUs blend at a higher rate; the clear
  *   gather  16 texels of each block at a factor, and 0.3 for each texel written once; the upload
+ *   both    a pass, shared by all instances of an update, and a fetch of each moved vertex in each draw
+ *   direct  in each draw, a turn for each moved vertex and active target of its block, and one for its start; the upload
  *   cpu     pairs and vertices, and the upload: sums, or finished vertices
- * The factors for software, and for one GPU, an NVIDIA H100, were measured (runtime/gl/LOG.md); for other GPUs, tilers
- * above all, they are estimates: a game should calibrate (noh_gl_morph_calibrate). */
+ * The factors for software, and for one GPU, an NVIDIA H100, were measured (runtime/deform/LOG.md); for other GPUs,
+ * tilers above all, they are estimates: a game should calibrate (noh_gl_morph_calibrate). A turn of direct on a GPU was
+ * not measured: it is taken for a turn of a loop over active targets, which fetches as often. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -23,6 +26,11 @@
 #define GATHER_GPU 0.3f
 #define HALF_BLEND_GPU 0.35f /* a blended texel of halves */
 #define WRITE 0.3f           /* a texel written once */
+#define FETCH_SOFTWARE 2.5f  /* the layers of a vertex, fetched by a draw */
+#define FETCH_GPU 0.3f
+#define TURN_SOFTWARE 1.0f /* an entry of direct, added to a vertex */
+#define TURN_GPU 0.36f
+#define PASS_GPU 13000.0f    /* 18 us */
 #define UPLOADED_BYTES 32.0f /* that cost as much as one texel; estimated */
 #define CPU_PAIR 0.17f       /* 1.4 ns; a blended texel takes 8 ns on the same processor */
 #define CPU_VERTEX 0.12f     /* 1 ns, to write to the texture */
@@ -54,14 +62,28 @@ static uint32_t strips_of(const noh_gl_morph_desc *desc, uint32_t mesh)
     return desc->coarse ? desc->later_strips : noh_gl_morph_strips(&desc->meshes[mesh]);
 }
 
+/* What paths with sums cost beside the sums; and the path direct. */
+static void weigh_draws(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, int software,
+                        noh_gl_morph_costs *c)
+{
+    const float turns = 16.0f * c->blocks + c->touched;
+    const float fetches = (software ? FETCH_SOFTWARE : FETCH_GPU) * c->touched * (float)c->draws;
+    const float pass = software ? 0.0f : PASS_GPU * (float)desc->mesh_count / (float)plan->instance_count;
+    c->mrt += pass + fetches;
+    c->per_layer += pass * (float)plan->layer_count + fetches;
+    c->gather += pass + fetches;
+    c->cpu += fetches;
+    c->direct = (software ? TURN_SOFTWARE : TURN_GPU) * turns * (float)c->draws + c->upload_bytes / UPLOADED_BYTES;
+}
+
 void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan)
 {
     const int software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) != NULL;
     const float share = desc->expected_active > 0.0f ? desc->expected_active : 0.5f;
     noh_gl_morph_costs *c = &plan->costs;
-    float uploaded;
     memset(c, 0, sizeof *c);
     c->tile_bytes = tile_bytes(caps->renderer);
+    c->draws = desc->draws ? desc->draws : 1u;
     c->pixel_bytes = (plan->accumulate == NOH_ACCUMULATE_F16 ? 8u : 16u) * plan->layer_count;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         const noh_mesh_header *h = desc->meshes[i].header;
@@ -78,10 +100,10 @@ void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, 
     if (!software && plan->accumulate == NOH_ACCUMULATE_F16) c->mrt *= HALF_BLEND_GPU;
     c->mrt += c->touched;
     c->per_layer = c->mrt + (software ? 0.0f : QUAD_TEXELS * c->quads * (float)(plan->layer_count - 1u));
-    uploaded = 16.0f * c->blocks + 1.25f * c->touched; /* entries and starts of lists */
+    c->upload_bytes = 16.0f * c->blocks + 0.25f * c->touched; /* entries and starts of lists */
     c->gather = 16.0f * c->blocks * (software ? GATHER_SOFTWARE : GATHER_GPU) + WRITE * c->touched +
-                uploaded / UPLOADED_BYTES;
+                c->upload_bytes / UPLOADED_BYTES;
     c->cpu = CPU_PAIR * c->pairs + CPU_VERTEX * c->touched +
              (software ? 0.0f : cpu_upload(desc, plan) / UPLOADED_BYTES);
-    c->upload_bytes = 16.0f * c->blocks + 1.25f * c->touched;
+    weigh_draws(desc, plan, software, c);
 }

@@ -41,6 +41,8 @@ typedef struct noh_gl_morph_mesh {
     uint32_t first_tile, tile_count; /* of the delta tiles */
     uint32_t first_target;           /* into target_tiles */
     uint32_t first_byte;             /* finished vertices of its instances, in each buffer of the ring */
+    /* direct: entries of lists of each instance, and where those and the starts of the first one begin */
+    uint32_t list_count, first_list, first_start;
 } noh_gl_morph_mesh;
 
 /* The blocks of 4 x 4 accumulation texels of a tile that a rectangle touches: x0..x1-1, y0..y1-1. */
@@ -50,9 +52,10 @@ typedef struct noh_gl_blocks {
 
 /* Upper bounds of the data sent for one draw. */
 typedef struct noh_gl_batch {
-    uint32_t entries;              /* points, quads, or entries of gather's lists */
-    uint32_t positions, instances; /* gather: lists, and their instances */
-    uint64_t bytes;                /* blended paths: vertices of all batches of an update */
+    uint32_t entries;                 /* points, quads, or entries of lists */
+    uint32_t positions, instances;    /* lists, and for gather their instances */
+    uint64_t bytes;                   /* blended paths: vertices of all batches of an update */
+    uint64_t list_count, start_count; /* direct: of all instances, in the tables */
 } noh_gl_batch;
 
 struct noh_gl_morph {
@@ -74,7 +77,7 @@ struct noh_gl_morph {
     noh_morph_kernel kernel; /* for the path cpu */
     noh_gl_batch batch;
     uint32_t *target_tiles; /* per owner, [target_count]: a target's first tile, in the order of targets */
-    uint32_t *slots;        /* [block_count] (gather): position of the tile, in the order of blocks: x | y << 9 */
+    uint32_t *slots;        /* [block_count] (lists): position of the tile, in the order of blocks: x | y << 9 */
 
     /* Finished vertices (gl_morph_vertices.c). A slot is an instance's part of one buffer of the ring. */
     float *slot_weights;   /* [ring][weight_count] weights of each written slot */
@@ -90,8 +93,8 @@ struct noh_gl_morph {
     noh_gl_texture layers;
     noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
     uint32_t tiles_across_log2;
-    noh_gl_table record_table;     /* records of active targets, or gather's lists */
-    noh_gl_table starts;           /* where gather's lists begin, by block */
+    noh_gl_table record_table;     /* records of active targets, or lists */
+    noh_gl_table starts;           /* where lists begin, by block */
     noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
@@ -175,11 +178,35 @@ int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const 
 void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept);
 void noh_gl_morph_end(const noh_gl_morph *m, const noh_gl_offscreen *kept);
 
+/* Lists of active targets for one upload, in the staging memory (gl_morph_lists.c). */
+typedef struct noh_gl_lists {
+    uint32_t (*entries)[4], (*tiles)[4], *starts, *cursors; /* tiles: of gather's instances */
+    uint32_t entry_count, start_count, tile_count;
+    uint32_t first_entry; /* index of entries[0] in the table; entry 0 of the table is the empty list */
+} noh_gl_lists;
+
+static inline int noh_gl_morph_has_lists(noh_morph_path path)
+{
+    return path == NOH_MORPH_GATHER || path == NOH_MORPH_DIRECT;
+}
+
+noh_gl_lists noh_gl_morph_lists_of(const noh_gl_morph *m);
+/* The list of blocks without an active target. */
+void noh_gl_morph_put_empty(uint32_t entry[4]);
+/* Count the active targets of each block in the cursors; return their sum. */
+uint32_t noh_gl_morph_count_lists(const noh_mesh *mesh, const float *weights, noh_gl_lists *l);
+/* Append the lists of an instance, whose targets were counted. Its tiles may belong to a finer LOD level: a target's
+ * rectangles at a coarser level are its first ones at a finer level. */
+void noh_gl_morph_put_lists(noh_gl_morph *m, uint32_t instance, noh_gl_lists *l, noh_gl_morph_stats *stats);
+
 /* The paths: make their GL objects, and do one update. */
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);
 void noh_gl_morph_update_gather(noh_gl_morph *m, noh_gl_morph_stats *stats);
+noh_result noh_gl_morph_init_direct(noh_gl_morph *m, noh_error *error);
+void noh_gl_morph_update_direct(noh_gl_morph *m, noh_gl_morph_stats *stats);
+void noh_gl_morph_set_direct(const noh_gl_morph *m, uint32_t instance, noh_gl_morph_binding *binding);
 void noh_gl_morph_update_cpu(noh_gl_morph *m, noh_gl_morph_stats *stats);
 noh_result noh_gl_morph_init_vertices(noh_gl_morph *m, noh_error *error);
 void noh_gl_morph_delete_vertices(noh_gl_morph *m, const noh_gl_api *gl);

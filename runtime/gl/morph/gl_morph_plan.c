@@ -19,8 +19,8 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 
-static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto",   "layered", "mrt",   "per-layer",
-                                                              "gather", "cpu",     "blend", "streams" };
+static const char *const path_names[NOH_MORPH_PATH_COUNT] = { "auto", "layered", "mrt",     "per-layer", "gather",
+                                                              "cpu",  "blend",   "streams", "direct" };
 
 const char *noh_morph_path_name(noh_morph_path path)
 {
@@ -46,8 +46,8 @@ static const char *missing(noh_morph_path path, noh_accumulate accumulate, const
     if (path == NOH_MORPH_CPU) {
         return NULL;
     }
-    if (path == NOH_MORPH_STREAMS) {
-        return half ? "the path streams sums in f32 in the vertex shader: it does not support f16" : NULL;
+    if (path == NOH_MORPH_STREAMS || path == NOH_MORPH_DIRECT) {
+        return half ? "the paths streams and direct sum in f32 in the vertex shader: they do not support f16" : NULL;
     }
     if (path == NOH_MORPH_GATHER) {
         if (!caps->mrt3) {
@@ -116,6 +116,7 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
 }
 
 static uint32_t has_occlusion(const noh_gl_morph_desc *desc);
+static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
 
 static int has_uv_targets(const noh_gl_morph_desc *desc)
 {
@@ -129,6 +130,20 @@ static const char *missing_of_streams(const noh_gl_morph_desc *desc)
     if (desc->coarse) return "the path streams cannot load levels later: pass all levels";
     if (has_uv_targets(desc)) return "the path streams does not support targets that move texture coordinates";
     return has_occlusion(desc) ? "the path streams does not support changes of occlusion (transfer)" : NULL;
+}
+
+/* Whether the draws themselves should sum, in place of the cheapest path with sums. */
+static int direct_is_cheaper(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
+{
+    const noh_gl_morph_costs *c = &plan->costs;
+    const float other = plan->path == NOH_MORPH_GATHER ? c->gather
+                        : plan->path == NOH_MORPH_MRT  ? c->mrt
+                        : plan->path == NOH_MORPH_CPU  ? c->cpu
+                                                       : c->per_layer;
+    const noh_gl_batch lists = lists_batch(desc, plan);
+    return !desc->without_direct && !missing(NOH_MORPH_DIRECT, plan->accumulate, NULL) &&
+           lists.list_count <= NOH_GL_TABLE_TEXELS_MAX && lists.start_count <= NOH_GL_TABLE_TEXELS_MAX &&
+           c->direct < other;
 }
 
 static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
@@ -150,6 +165,10 @@ static noh_result choose_path(const noh_gl_morph_desc *desc, const noh_gl_caps *
             plan->reason = software->reason;
         } else {
             plan->path = cheapest_on_gpu(plan, caps, &plan->reason);
+            if (direct_is_cheaper(desc, plan)) {
+                plan->path = NOH_MORPH_DIRECT;
+                plan->reason = "direct: cheaper to add the expected targets in each draw than in a pass";
+            }
         }
     } else if (desc->path == NOH_MORPH_BLEND) {
         plan->path = blending_path(plan->accumulate, caps, &plan->reason);
@@ -179,7 +198,7 @@ static uint32_t vertex_ring(const noh_gl_morph_desc *desc, const noh_gl_caps *ca
 static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *caps)
 {
     int half = plan->accumulate == NOH_ACCUMULATE_F16;
-    if (plan->path == NOH_MORPH_STREAMS || plan->vertex_ring) return 0;
+    if (plan->path == NOH_MORPH_STREAMS || plan->path == NOH_MORPH_DIRECT || plan->vertex_ring) return 0;
     if (plan->path == NOH_MORPH_CPU) {
         if (plan->occlusion) return half ? GL_RGBA16F : GL_RGBA32F;
         return half ? GL_RGB16F : GL_RGB32F; /* never rendered to, so three components are enough */
@@ -366,7 +385,7 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
                                noh_gl_morph_plan *plan, noh_error *error)
 {
     const table_sums sums = place_tables(desc, meshes);
-    uint64_t weights = 0;
+    uint64_t weights = 0, lists = 1, starts = 0; /* the first list is empty */
     plan->instance_count = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         const noh_mesh_header *h = desc->meshes[i].header;
@@ -377,6 +396,11 @@ noh_result noh_gl_morph_layout(const noh_gl_morph_desc *desc, uint32_t texture_s
             m->instance_count = count;
             m->first_instance = plan->instance_count;
             m->first_weight = (uint32_t)weights;
+            m->list_count = h->touched_count ? blocks_of(desc, i) : 0;
+            m->first_list = (uint32_t)lists;
+            m->first_start = (uint32_t)starts;
+            lists += (uint64_t)count * m->list_count;
+            starts += h->touched_count ? (uint64_t)count * noh_gl_morph_positions(h) : 0;
         }
         plan->instance_count += count;
         weights += (uint64_t)count * h->target_count;
@@ -412,12 +436,14 @@ static uint64_t primitives_of(const noh_gl_morph_desc *desc, const noh_gl_morph_
     return count;
 }
 
-static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc)
+/* gather draws many instances at once; direct sends the lists of one after the other. */
+static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
-    uint64_t entries = 0, positions = 0, instances = 0, most = 0, widest = 0;
-    noh_gl_batch batch;
+    const uint64_t least = plan->path == NOH_MORPH_GATHER ? NOH_BATCH_ENTRIES : 0;
+    uint64_t entries = 1, positions = 0, instances = 0, most = 0, widest = 1;
+    noh_gl_batch batch = { 0, 0, 0, 0, 0, 0 };
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        const uint64_t own = noh_gl_morph_positions(desc->meshes[i].header), all = blocks_of(desc, i) + own;
+        const uint64_t own = noh_gl_morph_positions(desc->meshes[i].header), all = blocks_of(desc, i);
         const uint32_t count = instances_of(desc, i);
         if (!count || !desc->meshes[i].header->touched_count) continue;
         entries += count * all;
@@ -426,22 +452,24 @@ static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc)
         most = all > most ? all : most;
         widest = own > widest ? own : widest;
     }
-    entries = entries < NOH_BATCH_ENTRIES ? entries : NOH_BATCH_ENTRIES;
-    entries = entries > most ? entries : most;
-    positions = positions < entries ? positions : entries;
-    batch.entries = (uint32_t)(entries ? entries : 1u);
-    batch.positions = (uint32_t)(positions ? positions : 1u);
-    batch.bytes = 0;
-    batch.instances = (uint32_t)(instances < batch.positions ? instances ? instances : 1u : batch.positions);
+    batch.list_count = entries;
+    batch.start_count = positions ? positions : 1u;
+    entries = entries < least ? entries : least;
+    positions = positions < least ? positions : least;
+    batch.entries = (uint32_t)(entries > most ? entries : most + 1u);
+    batch.positions = (uint32_t)(positions > widest ? positions : widest);
+    if (plan->path == NOH_MORPH_GATHER) {
+        batch.instances = (uint32_t)(instances < batch.positions ? instances ? instances : 1u : batch.positions);
+    }
     return batch;
 }
 
 noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     const uint64_t most = plan->points ? NOH_BATCH_POINTS : NOH_BATCH_QUADS;
-    noh_gl_batch batch = { 0, 0, 0, 0 };
+    noh_gl_batch batch = { 0, 0, 0, 0, 0, 0 };
     uint64_t all;
-    if (plan->path == NOH_MORPH_GATHER) return lists_batch(desc);
+    if (noh_gl_morph_has_lists(plan->path)) return lists_batch(desc, plan);
     if (plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_STREAMS) return batch;
     all = primitives_of(desc, plan);
     all += !all; /* GL has no empty buffers */
@@ -508,11 +536,11 @@ static size_t staging_size(const noh_gl_morph_desc *desc, const noh_gl_morph_pla
         }
     } else {
         const noh_gl_batch batch = noh_gl_morph_batch(desc, plan);
-        const int gather = plan->path == NOH_MORPH_GATHER;
-        const size_t positions = gather ? 4u * most_positions(desc) : 0;
+        const int lists = noh_gl_morph_has_lists(plan->path);
+        const size_t positions = lists ? 4u * most_positions(desc) : 0;
         const size_t load = positions + 256u * (size_t)NOH_TILE_CHUNK;
-        bytes = batch.entries * (size_t)(gather ? 16u : plan->points ? 12u : 48u);
-        if (gather) bytes += 16u * (size_t)batch.instances + 4u * (size_t)batch.positions + positions;
+        bytes = batch.entries * (size_t)(lists ? 16u : plan->points ? 12u : 48u);
+        if (lists) bytes += 16u * (size_t)batch.instances + 4u * (size_t)batch.positions + positions;
         bytes = load > bytes ? load : bytes;
     }
     return bytes;
@@ -522,16 +550,15 @@ void noh_gl_morph_carve(noh_arena *arena, const noh_gl_morph_desc *desc, const n
 {
     noh_gl_morph dummy;
     noh_gl_morph *to = m ? m : &dummy;
+    const int lists = noh_gl_morph_has_lists(plan->path);
     memset(&dummy, 0, sizeof dummy);
     to->table_count = desc->mesh_count + (desc->coarse != NULL);
     to->meshes = (noh_gl_morph_mesh *)noh_arena_carve(arena, sizeof *to->meshes * to->table_count, 16);
     to->batch = noh_gl_morph_batch(desc, plan);
     to->records = blends(plan->path) ? (uint32_t *)noh_arena_carve(arena, 16u * (size_t)plan->weight_count, 16) : NULL;
     to->target_tiles = (uint32_t *)noh_arena_carve(
-        arena, blends(plan->path) || plan->path == NOH_MORPH_GATHER ? 4u * (size_t)place_tables(desc, NULL).targets : 0,
-        4);
-    to->slots = (uint32_t *)noh_arena_carve(arena, plan->path == NOH_MORPH_GATHER ? 4u * (size_t)plan->block_count : 0,
-                                            4);
+        arena, blends(plan->path) || lists ? 4u * (size_t)place_tables(desc, NULL).targets : 0, 4);
+    to->slots = (uint32_t *)noh_arena_carve(arena, lists ? 4u * (size_t)plan->block_count : 0, 4);
     to->staging_bytes = staging_size(desc, plan);
     to->staging = noh_arena_carve(arena, to->staging_bytes, 16);
     if (plan->vertex_ring) carve_vertices(arena, desc, plan, to);
@@ -550,8 +577,9 @@ static uint64_t update_bytes(const noh_gl_morph_desc *desc, const noh_gl_morph_p
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         const noh_mesh_header *h = desc->meshes[i].header;
         const uint64_t count = instances_of(desc, i), positions = noh_gl_morph_positions(h);
-        if (plan->path == NOH_MORPH_GATHER && h->touched_count) {
-            bytes += count * (16u + 20u * positions + 16u * (uint64_t)blocks_of(desc, i));
+        if (noh_gl_morph_has_lists(plan->path) && h->touched_count) {
+            const uint64_t own = plan->path == NOH_MORPH_GATHER ? 32u : 0; /* a tile, at most an empty list */
+            bytes += count * (own + 4u * positions + 16u * (uint64_t)blocks_of(desc, i));
         }
         if (plan->vertex_ring) {
             bytes += count * noh_gl_morph_vertex_end(h) * noh_morph_finished_stride(&desc->meshes[i]);
@@ -585,6 +613,9 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
         if (plan->path == NOH_MORPH_GATHER) {
             plan->stream_bytes = 16u * (uint64_t)batch.instances + noh_gl_table_bytes(GL_RGBA32UI, batch.entries) +
                                  noh_gl_table_bytes(GL_R32UI, batch.positions);
+        } else if (plan->path == NOH_MORPH_DIRECT) {
+            plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, (uint32_t)batch.list_count) +
+                                 noh_gl_table_bytes(GL_R32UI, (uint32_t)batch.start_count);
         } else {
             plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count) + batch.bytes +
                                  (plan->points ? 0u : 12u) * (uint64_t)batch.entries;
@@ -615,6 +646,15 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     p.wide = p.occlusion || noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
     p.points = p.path != NOH_MORPH_LAYERED && blends(p.path) && caps->block_points &&
                noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
+    if (p.path == NOH_MORPH_DIRECT) {
+        const noh_gl_batch lists = lists_batch(desc, &p);
+        const uint64_t most = lists.list_count > lists.start_count ? lists.list_count : lists.start_count;
+        if (most > NOH_GL_TABLE_TEXELS_MAX) {
+            return noh_fail(error, NOH_ERR_LIMIT,
+                            "the lists of the path direct do not fit a texture: use fewer instances, or another path",
+                            NOH_GL_TABLE_TEXELS_MAX, most);
+        }
+    }
     set_gpu_bytes(desc, &p);
     if (p.path == NOH_MORPH_STREAMS && p.delta_bytes > UINT32_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "the streams of all targets take more than 4 GiB", UINT32_MAX,

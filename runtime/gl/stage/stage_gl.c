@@ -28,6 +28,7 @@ typedef struct measure {
     noh_stage_list *list; /* NULL: not wanted */
     uint64_t gpu_bytes;
     uint32_t morph_path;
+    int without_direct;
 } measure;
 
 #define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
@@ -101,6 +102,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     }
     noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
     d = noh_gl_site_morph(m->desc, &tiles); /* counts blocks and strips; the room below has no counts */
+    d.without_direct = m->without_direct;
     for (uint32_t i = 0; later && model && i < tiles.count; i++) {
         tiles.meshes[i] = noh_mesh_at_lod(&model->room, tiles.meshes[i].header->level);
     }
@@ -274,6 +276,7 @@ static noh_result visit(measure *m, noh_error *error)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     noh_result result = NOH_OK;
+    m->without_direct = noh_gl_mixes_paths(m->desc, m->plan, m->caps);
     carve_head(m);
     carve_light(m);
     if (m->gl && m->desc->light) {
@@ -292,7 +295,7 @@ static noh_result visit(measure *m, noh_error *error)
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                 uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
 {
-    measure m = { desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0 };
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0 };
     const noh_result result = visit(&m, error);
     *cpu_bytes = m.arena.used;
     *gpu_bytes = m.gpu_bytes;
@@ -303,7 +306,7 @@ static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_
 static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                        noh_stage_list *list)
 {
-    measure m = { desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0 };
+    measure m = { desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0 };
     (void)visit(&m, NULL);
 }
 
@@ -381,7 +384,7 @@ static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
 
 static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
 {
-    measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0 };
+    measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
@@ -545,6 +548,7 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
     }
     noh_gl_tiles_of(&d, plan, first, &tiles);
     morph = noh_gl_site_morph(&d, &tiles);
+    morph.without_direct = noh_gl_mixes_paths(&d, plan, caps);
     return noh_gl_morph_plan_make(&morph, caps, out, error);
 }
 

@@ -181,4 +181,8 @@ noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);
 noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
 
+/* Whether auto would take the path direct for some meshes at most. One renderer draws the whole stage, so it is then
+ * taken for none. */
+int noh_gl_mixes_paths(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps);
+
 #endif

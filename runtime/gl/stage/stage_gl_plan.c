@@ -169,8 +169,27 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
         d.later_strips = noh_gl_morph_strips(&tiles->meshes[finest]);
     }
     d.path = (noh_morph_path)desc->morph_path;
+    d.draws = desc->light && desc->light->shadow_px ? 2u : 1u;
     d.without_tangents = !desc->tangents;
     d.vertices = tiles->vertices;
     d.accumulate = desc->halves > 0 ? NOH_ACCUMULATE_F16 : desc->halves < 0 ? NOH_ACCUMULATE_F32 : NOH_ACCUMULATE_AUTO;
     return d;
+}
+
+int noh_gl_mixes_paths(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps)
+{
+    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    while (!desc->morph_path && noh_gl_next_site(plan, desc->kind_count, &site)) {
+        noh_gl_morph_desc d;
+        noh_gl_morph_plan p;
+        noh_gl_tiles tiles;
+        if (!is_same(noh_gl_owner(desc, plan, site), site) ||
+            !noh_gl_site_mesh(desc, plan, site).header->touched_count) {
+            continue;
+        }
+        noh_gl_tiles_of(desc, plan, site, &tiles);
+        d = noh_gl_site_morph(desc, &tiles);
+        if (noh_gl_morph_plan_make(&d, caps, &p, NULL) || p.path != NOH_MORPH_DIRECT) return 1;
+    }
+    return 0;
 }

@@ -144,13 +144,20 @@ static noh_result give_up_vertices(const planner *p, noh_error *error)
     return result;
 }
 
+/* Where there are no sums, halves win nothing, and a chosen path may not have them. */
 static noh_result give_up_halves(const planner *p, noh_error *error)
 {
+    const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
     if (!p->desc->gpu || p->desc->halves || p->plan->halves || fits(p->desc, p->plan)) {
         return NOH_OK;
     }
     p->plan->halves = 1;
-    return changed(p, halves_text, NOH_NONE, 1, 0.0f, error);
+    if (measure(p, NULL) != NOH_OK || p->plan->cpu_bytes + p->plan->gpu_bytes >= cpu + gpu) {
+        p->plan->halves = 0;
+        return measure(p, error);
+    }
+    concede(p->plan, halves_text, NOH_NONE, 1, cpu, gpu, 0.0f);
+    return NOH_OK;
 }
 
 /* Halve the segments of the bank that holds the most, again and again, while they are above a share of all. */

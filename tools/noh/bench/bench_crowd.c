@@ -161,8 +161,8 @@ static int bench_path(crowd *c)
 
 int bench_crowd(bench_job *job)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
-                                            NOH_MORPH_CPU };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
+                                            NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_DIRECT };
     crowd c;
     int status = 0;
     memset(&c, 0, sizeof c);

@@ -2,7 +2,7 @@
 /* bench_mesh.vert: one mesh, morphed in the ways that `noh bench` compares; without a
  * BENCH_* define, not at all: the floor. All give the same outputs.
  *
- *   BENCH_LAYERS    ours: three accumulated layers, fetched by texel
+ *   BENCH_LAYERS    ours: three accumulated layers, fetched by texel, or summed here from lists
  *   BENCH_DENSE     every target's position and normal for every vertex, summed here;
  *                   with BENCH_HOISTED the texels' place is found once, not for every target
  *   BENCH_FILAMENT  the same with the normal as a packed frame
@@ -15,6 +15,8 @@ precision highp sampler2DArray;
 precision highp isampler2DArray;
 #include "../../../shaders_es/common_attributes.glsl"
 #if defined(BENCH_LAYERS)
+#include "../../../shaders_es/common_delta.glsl"
+#include "../../../shaders_es/common_walk.glsl"
 #include "../../../shaders_es/common_layers.glsl"
 #endif
 

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7
-#define METHODS_MAX 19 /* one floor, four baselines, twelve paths and formats, and one that is not here */
+#define METHODS_MAX 20 /* one floor, four baselines, 13 paths and formats, and one that is not here */
 #define FLOOR 0        /* methods[FLOOR] is the mesh that is not morphed */
 
 typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
@@ -59,8 +59,8 @@ static int take(morph_job *j, int status)
 
 static int open_methods(morph_job *j)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
-                                            NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
+                                            NOH_MORPH_DIRECT,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
     int status = take(j, bench_open_unmorphed(&j->methods[FLOOR], &j->stage));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 0));
     if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
@@ -107,6 +107,12 @@ static int measure(morph_job *j, const bench_weights *weights, work_kind kind, c
     return status;
 }
 
+/* What a row is compared with: baselines, and for draws that sum, the pass that does it for them. */
+static int is_compared(const bench_method *m, const bench_method *with)
+{
+    return with->is_baseline || (strcmp(m->name, "direct-f32") == 0 && strcmp(with->name, "gather-f32") == 0);
+}
+
 /* Every method against every baseline but itself; the floor is a baseline of whole frames only. */
 static void add_rows(morph_job *j, const measured *m, const char *prefix, int with_floor)
 {
@@ -115,7 +121,7 @@ static void add_rows(morph_job *j, const measured *m, const char *prefix, int wi
         if (j->methods[i].most_targets && j->methods[i].most_targets < j->active) continue;
         snprintf(name, sizeof name, "%s/%s", prefix, j->methods[i].name);
         for (int b = with_floor ? FLOOR : FLOOR + 1; b < j->method_count; b++) {
-            if (b != i && j->methods[b].is_baseline) {
+            if (b != i && is_compared(&j->methods[i], &j->methods[b])) {
                 bench_add_row(&j->job->rows, name, b == FLOOR ? "unmorphed" : j->methods[b].name, m->cost[b],
                               m->cost[i], "us", m->runs);
             }

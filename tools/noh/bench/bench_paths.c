@@ -1,4 +1,4 @@
-/* bench_paths.c: our six paths, and the unmorphed mesh. */
+/* bench_paths.c: our seven paths, and the unmorphed mesh. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,8 +32,7 @@ static void bind(void *self, bench_pass pass)
     const path_method *p = (const path_method *)self;
     const noh_gl_api *gl = &p->stage->g->gl;
     const noh_gl_morph_binding *b = &p->binding;
-    gl->ActiveTexture(GL_TEXTURE0);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
+    noh_gl_morph_bind(gl, b);
     gl->Uniform4i(p->u_morph[pass], b->tile_x, b->tile_y, b->width_log2, b->touched);
     noh_gl_morph_bind_streams(gl, p->u_streams[pass], b);
 }
@@ -58,7 +57,8 @@ int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_ac
 {
     static const char *const defines[] = { "#define BENCH_LAYERS\n", "#define BENCH_LAYERS\n#define NOH_LAYERS_UINT\n",
                                            "#define BENCH_LAYERS\n#define NOH_STREAMS\n",
-                                           "#define BENCH_LAYERS\n#define NOH_VERTICES\n" };
+                                           "#define BENCH_LAYERS\n#define NOH_VERTICES\n",
+                                           "#define BENCH_LAYERS\n#define NOH_DIRECT\n" };
     noh_gl_morph_desc desc;
     noh_gl_morph_plan plan;
     path_method *p;

@@ -72,6 +72,7 @@ static int list_storage(bench_job *job, storage_row rows[STORAGE_MAX])
     for (int path = NOH_MORPH_LAYERED; path <= NOH_MORPH_GATHER; path++) {
         add_path_storage(job, rows, &count, (noh_morph_path)path, pairs);
     }
+    add_path_storage(job, rows, &count, NOH_MORPH_DIRECT, pairs);
     add_storage(rows, &count, "three.js", 32.0 * dense, pairs);
     add_storage(rows, &count, "filament", 24.0 * dense, pairs);
     add_storage(rows, &count, "playcanvas", 16.0 * (double)h->touched_count * h->target_count, pairs);

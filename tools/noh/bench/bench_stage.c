@@ -132,28 +132,29 @@ static int lit_source_make(lit_source *lit)
 
 static int create_program(bench_stage *s, bench_method *m, const char *defines, bench_pass pass)
 {
-    static const char *const samplers[3][2] = { { "noh_layers", "" },
-                                                { "u_targets", "u_positions" },
-                                                { "u_sums", "u_frames" } };
     static const char *const varyings[] = { "v_model", "v_normal" };
-    const char *names[2] = { samplers[0][0], NULL };
+    const char *names[NOH_UNIT_USER];
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
     lit_source lit = { 0 };
     int status = lit_source_make(&lit);
     memset(&desc, 0, sizeof desc);
-    names[0] = strstr(defines, "DENSE")      ? samplers[1][0]
-               : strstr(defines, "FILAMENT") ? samplers[1][1]
-               : strstr(defines, "QUADS")    ? samplers[2][0]
-                                             : samplers[0][0];
-    names[1] = samplers[2][1];
+    for (uint32_t i = 0; i < NOH_UNIT_USER; i++) names[i] = "";
+    names[NOH_UNIT_LAYERS] = strstr(defines, "BENCH_DENSE")      ? "u_targets"
+                             : strstr(defines, "BENCH_FILAMENT") ? "u_positions"
+                             : strstr(defines, "BENCH_QUADS")    ? "u_sums"
+                             : strstr(defines, "NOH_DIRECT")     ? "noh_deltas"
+                                                                 : "noh_layers";
+    names[1] = "u_frames";
+    names[NOH_UNIT_LISTS] = "noh_lists";
+    names[NOH_UNIT_LISTS + 1u] = "noh_starts";
     desc.name = m->name;
     desc.vertex = &noh_shader_bench_mesh_vert;
     desc.fragment = pass == BENCH_COLOR ? &lit.source : &noh_shader_bench_depth_frag;
     desc.defines = defines;
     desc.samplers = names;
-    desc.sampler_count = 2;
+    desc.sampler_count = NOH_UNIT_USER;
     desc.varyings = varyings;
     desc.varying_count = pass == BENCH_CHECK ? 2 : 0;
     if (!status && noh_gl_program_create(&s->g->gl, &desc, &m->programs[pass], log, sizeof log, &error)) {

@@ -98,7 +98,7 @@
 #define OPTION_PATH(T, m, ...)                                                \
     {                                                                         \
         .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m),          \
-        .value = "auto|blend|layered|mrt|per-layer|gather|cpu|streams",       \
+        .value = "auto|blend|layered|mrt|per-layer|gather|direct|cpu|streams",       \
         .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ \
     }
 

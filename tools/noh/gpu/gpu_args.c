@@ -14,8 +14,9 @@ int parse_path(const char *text, noh_morph_path *path)
             return 0;
         }
     }
-    return text ? tool_usage("--path must be auto, blend, layered, mrt, per-layer, gather, cpu or streams, not '%s'",
-                             text)
+    return text ? tool_usage(
+                      "--path must be auto, blend, layered, mrt, per-layer, gather, direct, cpu or streams, not '%s'",
+                      text)
                 : 0;
 }
 

@@ -66,23 +66,27 @@ static void target_close(const noh_gl_api *gl, bit_target *t)
     gl->DeleteRenderbuffers(3, t->renderbuffers);
 }
 
-static int create_program(gpu *g, const noh_gl_source *vertex, const noh_gl_source *fragment, int is_uint,
-                          int two_layers, GLuint *program)
+static int create_program(gpu *g, int is_uint, int two_layers, GLuint *program)
 {
-    static const char *const defines[2][2] = { { NULL, "#define NOH_LAYERS_UINT\n" },
+    static const char *const defines[2][3] = { { NULL, "#define NOH_LAYERS_UINT\n", "#define NOH_DIRECT\n" },
                                                { "#define NOH_TWO_LAYERS\n",
-                                                 "#define NOH_LAYERS_UINT\n#define NOH_TWO_LAYERS\n" } };
-    static const char *const samplers[] = { "noh_layers" };
+                                                 "#define NOH_LAYERS_UINT\n#define NOH_TWO_LAYERS\n",
+                                                 "#define NOH_DIRECT\n#define NOH_TWO_LAYERS\n" } };
+    const char *samplers[NOH_UNIT_USER] = { NULL };
     noh_gl_program_desc desc;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
     memset(&desc, 0, sizeof desc);
     desc.name = "readback";
-    desc.vertex = vertex;
-    desc.fragment = fragment;
-    desc.defines = defines[two_layers][is_uint != 0];
+    desc.vertex = &noh_shader_read_layers_vert;
+    desc.fragment = &noh_shader_read_layers_frag;
+    desc.defines = defines[two_layers][is_uint == NOH_LAYERS_DIRECT ? 2 : is_uint != 0];
+    for (uint32_t i = 0; i < NOH_UNIT_USER; i++) samplers[i] = "";
+    samplers[NOH_UNIT_LAYERS] = is_uint == NOH_LAYERS_DIRECT ? "noh_deltas" : "noh_layers";
+    samplers[NOH_UNIT_LISTS] = "noh_lists";
+    samplers[NOH_UNIT_LISTS + 1u] = "noh_starts";
     desc.samplers = samplers;
-    desc.sampler_count = 1;
+    desc.sampler_count = NOH_UNIT_USER;
     if (noh_gl_program_create(&g->gl, &desc, program, log, sizeof log, &error)) {
         fputs(log, stderr);
         return tool_fail_error("readback", &error);
@@ -96,8 +100,7 @@ int readback_open(readback *r, gpu *g, int is_uint)
     memset(r, 0, sizeof *r);
     r->g = g;
     r->is_uint = is_uint;
-    status = create_program(g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, is_uint, 0,
-                            &r->layers_programs[0]);
+    status = create_program(g, is_uint, 0, &r->layers_programs[0]);
     g->gl.GenVertexArrays(1, &r->vertex_array);
     return status;
 }
@@ -110,20 +113,22 @@ void readback_close(readback *r)
     r->g->gl.DeleteVertexArrays(1, &r->vertex_array);
 }
 
-static void use(readback *r, GLuint program, const noh_gl_morph_binding *b)
+static void use(readback *r, GLuint program, const noh_gl_morph_binding *b, const bit_target *t)
 {
     const noh_gl_api *gl = &r->g->gl;
     gl->UseProgram(program);
+    gl->Uniform2i(gl->GetUniformLocation(program, "u_size"), (GLint)t->width, (GLint)t->height);
     gl->Uniform4i(gl->GetUniformLocation(program, "noh_morph"), b->tile_x, b->tile_y, b->width_log2, b->touched);
-    gl->ActiveTexture(GL_TEXTURE0);
-    gl->BindTexture(GL_TEXTURE_2D_ARRAY, b->texture);
+    noh_gl_morph_bind(gl, b);
 }
 
 static int finish(readback *r, bit_target *t, int status)
 {
     const noh_gl_api *gl = &r->g->gl;
     GLenum error = gl->GetError();
+    gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     target_close(gl, t);
@@ -144,17 +149,16 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
         return 0;
     }
     if (!r->layers_programs[two]) {
-        status = create_program(r->g, &noh_shader_full_screen_vert, &noh_shader_read_layers_frag, r->is_uint, two,
-                                &r->layers_programs[two]);
+        status = create_program(r->g, r->is_uint, two, &r->layers_programs[two]);
     }
     if (status) {
         return status;
     }
     status = target_open(&r->g->gl, &t, width, height);
     if (!status) {
-        use(r, r->layers_programs[two], binding);
+        use(r, r->layers_programs[two], binding, &t);
         r->g->gl.BindVertexArray(r->vertex_array);
-        r->g->gl.DrawArrays(GL_TRIANGLES, 0, 3);
+        r->g->gl.DrawArraysInstanced(GL_POINTS, 0, (GLsizei)texels, 1);
         for (unsigned i = 0; i < 3 && !status; i++) {
             status = target_read(&r->g->gl, &t, i, texels, out + 3 * texels * i);
         }

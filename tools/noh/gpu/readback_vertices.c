@@ -39,8 +39,7 @@ static void set_up(gpu *g, const noh_gl_variant *v, const noh_gl_mesh *mesh, con
     gl->Uniform4fv(v->u_normal, 3, rows);
     if (morph) {
         gl->Uniform4i(v->u_morph, morph->tile_x, morph->tile_y, morph->width_log2, morph->touched);
-        gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
-        gl->BindTexture(GL_TEXTURE_2D_ARRAY, morph->texture);
+        noh_gl_morph_bind(gl, morph);
     }
     gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
@@ -59,6 +58,7 @@ static void tear_down(gpu *g)
     gl->BindTexture(GL_TEXTURE_2D, 0);
     gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_LAYERS);
     gl->BindTexture(GL_TEXTURE_2D_ARRAY, 0);
+    gl->BindTexture(GL_TEXTURE_2D, 0);
 }
 
 /* Draw all vertices with one palette, and keep in `out` those that use it (NOH_NONE: all). */

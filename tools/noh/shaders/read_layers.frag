@@ -1,9 +1,11 @@
 #version 300 es
-/* read_layers.frag: the accumulated deltas of one tile, as bits, through the same
- * fetch that a mesh's vertex shader uses. Works for every layer format. */
+/* read_layers.frag: writes the bits of read_layers.vert. */
 precision highp float;
 precision highp int;
-#include "../../../shaders_es/common_layers.glsl"
+
+flat in uvec3 f_position;
+flat in uvec3 f_normal;
+flat in uvec3 f_tangent;
 
 layout(location = 0) out uvec4 o_position;
 layout(location = 1) out uvec4 o_normal;
@@ -11,10 +13,7 @@ layout(location = 2) out uvec4 o_tangent;
 
 void main()
 {
-    ivec2 p = ivec2(gl_FragCoord.xy);
-    vec3 position = vec3(0.0), normal = vec3(0.0), tangent = vec3(0.0);
-    noh_morph_fetch((p.y << noh_morph.z) + p.x, position, normal, tangent);
-    o_position = uvec4(floatBitsToUint(position), 0u);
-    o_normal = uvec4(floatBitsToUint(normal), 0u);
-    o_tangent = uvec4(floatBitsToUint(tangent), 0u);
+    o_position = uvec4(f_position, 0u);
+    o_normal = uvec4(f_normal, 0u);
+    o_tangent = uvec4(f_tangent, 0u);
 }

@@ -63,7 +63,7 @@ static void keep_streamed(const noh_mesh *mesh, float *weights)
 
 static half_range half_range_of(const verify_job *job, const noh_gl_morph_plan *plan, const float *weights)
 {
-    const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER;
+    const int once = plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_GATHER || plan->path == NOH_MORPH_DIRECT;
     const noh_half_mode mode = plan->path == NOH_MORPH_CPU      ? NOH_HALF_RNE
                                : plan->path == NOH_MORPH_GATHER ? job->g.caps.f16_store_mode
                                                                 : job->g.caps.f16_blend_mode;
@@ -381,7 +381,7 @@ static int verify_path(verify_job *job, noh_morph_path path, noh_accumulate accu
         return status;
     }
     row->gpu_used = noh_gl_ledger_bytes(&job->g.ledger) - before;
-    status = readback_open(&r, &job->g, plan.layer_format == GL_RGBA32UI);
+    status = readback_open(&r, &job->g, noh_gl_morph_binding_of(m.morph, 0).is_uint);
     for (uint32_t i = 0; i < desc.mesh_count && !status; i++) {
         status = verify_mesh(job, &m, &r, i, &gl_meshes[i], row);
     }
@@ -453,8 +453,8 @@ static int verify_skins(verify_job *job, const noh_gl_mesh *gl_meshes)
 
 int verify_paths(verify_job *job)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
-                                            NOH_MORPH_GATHER,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
+    static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
+                                            NOH_MORPH_DIRECT,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
     uint32_t count = job->file.pack.runs[NOH_CHUNK_MESH].count;
     noh_gl_mesh *gl_meshes = calloc(count + 1u, sizeof *gl_meshes);
     noh_error error = { NOH_OK, "", 0, 0 };
