@@ -34,7 +34,7 @@ static uint32_t *picture(figure *f, gpu *g, const char *camera)
     bounds box;
     canvas c;
     assert_int_equal(figure_pose(f), 0);
-    box = figure_bounds(f, view_wants_face(&o));
+    box = figure_bounds(f, view_frame_of(&o));
     assert_int_equal(view_camera(&o, &box, &at), 0);
     assert_int_equal(canvas_open(&c, g, SIDE, SIDE), 0);
     assert_int_equal(figure_look(f, &at, SIDE), 0);
@@ -198,7 +198,7 @@ static void without_a_gpu_it_is_posed(void **state)
     assert_int_equal(figure_open(&f, &d, NULL), 0);
     assert_int_equal(figure_pose(&f), 0);
     figure_anchor(&f, anchor);
-    box = figure_bounds(&f, 0);
+    box = figure_bounds(&f, FRAME_FULL);
     assert_int_equal(figure_clip_seconds(&f, "walk", &seconds), 0);
     assert_true(seconds > 0.2);
     assert_int_equal(figure_play(&f, "walk", &play), 0);

@@ -165,7 +165,7 @@ fi
 figure
 rest=$shot
 check 'F11 saves the figure' test -f "$rest"
-"$build/noh" render "$mask" -o "$work/render.png" --size "$(png_size "$rest")" >/dev/null
+"$build/noh" render "$mask" -o "$work/render.png" --size "$(png_size "$rest")" --camera full --pose rest >/dev/null
 check 'which is what noh render draws' same "$rest" "$work/render.png"
 drag 610 300 500 350
 check 'a drag turns the camera' differ "$rest" "$shot"

@@ -176,7 +176,7 @@ static inline void parts_camera(const parts *p, const char *camera, uint32_t sid
     bounds box;
     assert_int_equal(figure_open(&f, &desc, NULL), 0);
     assert_int_equal(figure_pose(&f), 0);
-    box = figure_bounds(&f, 0);
+    box = figure_bounds(&f, FRAME_FULL);
     figure_close(&f);
     assert_int_equal(view_camera(&view, &box, out), 0);
 }

@@ -60,5 +60,5 @@ png_size() { # FILE: "640x480"
 draw() { # OUT LIKE FILE OPTIONS: as noh render has it, of the size of the picture LIKE
     drawn=$1 like=$2 drawn_file=$3
     shift 3
-    "$build/noh" render "$drawn_file" -o "$work/$drawn" --size "$(png_size "$like")" "$@" >/dev/null
+    "$build/noh" render "$drawn_file" -o "$work/$drawn" --size "$(png_size "$like")" --camera full --pose rest "$@" >/dev/null
 }

@@ -163,7 +163,7 @@ static int pose_scene(scene *s)
     int status = figure_hold_all(f, EXPRESSION);
     if (!status) status = figure_pose(f);
     if (!status) {
-        const bounds box = picture_bounds(&s->picture, 1);
+        const bounds box = picture_bounds(&s->picture, FRAME_FACE);
         status = view_camera(&view, &box, &s->camera);
     }
     if (!status) s->view_count = figure_views(f, &s->camera, BENCH_FRAME_SIZE, s->views);

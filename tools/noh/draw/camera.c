@@ -78,9 +78,31 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera)
     }
 }
 
-int view_wants_face(const view_options *o)
+static const struct {
+    const char *word;
+    view_frame frame;
+} frames[] = {
+    { "auto", FRAME_AUTO }, { "full", FRAME_FULL }, { "body", FRAME_FULL }, { "upper", FRAME_UPPER }, { "face", FRAME_FACE }
+};
+
+/* The frame that the text begins with, and what follows its word; NULL: it begins with none. */
+static const char *after_frame(const char *text, view_frame *frame)
 {
-    return o->camera && strcmp(o->camera, "face") == 0;
+    for (size_t i = 0; i < sizeof frames / sizeof frames[0]; i++) {
+        const size_t length = strlen(frames[i].word);
+        if (strncmp(text, frames[i].word, length) == 0 && (!text[length] || text[length] == ',')) {
+            *frame = frames[i].frame;
+            return text + length;
+        }
+    }
+    return NULL;
+}
+
+view_frame view_frame_of(const view_options *o)
+{
+    view_frame frame = FRAME_FULL;
+    if (o->camera) (void)after_frame(o->camera, &frame);
+    return frame;
 }
 
 /* "AZ,EL,DIST": three numbers; the distance may be left out. */
@@ -113,6 +135,28 @@ static int parse_orbit(const char *text, orbit *o)
     return count < 2 || fabs(values[1]) > 89.9 || o->distance <= 0.0;
 }
 
+void orbit_frame(orbit *o, const bounds *box, double margin)
+{
+    const double half_view = tan(ORBIT_VIEW_RAD / 2.0) * (1.0 - 2.0 * margin);
+    double axes[3][3], half[3], distance = 0.0, radius = 0.0;
+    for (int c = 0; c < 3; c++) {
+        o->center[c] = (box->low[c] + box->high[c]) / 2.0;
+        half[c] = (box->high[c] - box->low[c]) / 2.0;
+        radius += half[c] * half[c];
+    }
+    o->radius = fmax(sqrt(radius), 1e-6);
+    orbit_axes(o, axes[0], axes[1], axes[2]);
+    for (int corner = 0; corner < 8; corner++) {
+        double at[3] = { 0.0, 0.0, 0.0 };
+        for (int c = 0; c < 3; c++) {
+            const double side = corner >> c & 1 ? half[c] : -half[c];
+            for (int a = 0; a < 3; a++) at[a] += side * axes[a][c];
+        }
+        distance = fmax(distance, at[2] + fmax(fabs(at[1]), fabs(at[0]) / o->aspect) / half_view);
+    }
+    o->distance = fmax(distance, o->radius * 1.02);
+}
+
 orbit orbit_fit(const bounds *box, double aspect)
 {
     orbit at = { 0.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
@@ -127,15 +171,22 @@ orbit orbit_fit(const bounds *box, double aspect)
     return at;
 }
 
+/* Without a direction of their own: from the side and a little above, where a face shows its shape. */
+#define AUTO_DIRECTION "15,4"
+
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
 {
     orbit at = orbit_fit(box, (double)o->width / (double)o->height);
-    if (o->camera && strcmp(o->camera, "face") != 0 && strcmp(o->camera, "body") != 0 && parse_orbit(o->camera, &at)) {
-        return tool_usage(
-            "--camera must be face, body or AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over "
-            "0), not '%s'",
-            o->camera);
+    view_frame frame = FRAME_FULL;
+    const char *rest = o->camera ? after_frame(o->camera, &frame) : "";
+    const char *direction = !rest ? o->camera : *rest ? rest + 1 : frame == FRAME_AUTO ? AUTO_DIRECTION : NULL;
+    const double fitted = at.distance;
+    if (direction && (parse_orbit(direction, &at) || (rest && at.distance != fitted))) {
+        return tool_usage("--camera must be face, upper or full, each alone or with ,AZIMUTH,ELEVATION, or "
+                          "AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
+                          o->camera);
     }
+    if (rest && direction) orbit_frame(&at, box, ORBIT_MARGIN);
     if (o->around) at.radius *= 8.0;
     orbit_camera(&at, camera);
     return 0;

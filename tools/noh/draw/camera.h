@@ -10,8 +10,16 @@ typedef struct bounds {
 
 bounds bounds_union(bounds a, bounds b);
 
+/* What a camera frames. */
+typedef enum view_frame {
+    FRAME_FULL,
+    FRAME_UPPER, /* of a body, from the waist */
+    FRAME_FACE,  /* with its hair */
+    FRAME_AUTO   /* the face of a head, otherwise all */
+} view_frame;
+
 typedef struct view_options {
-    const char *camera; /* "face", "body" or "AZ,EL,DIST" in degrees and model units; NULL: body */
+    const char *camera; /* OPTION_CAMERA; NULL: full */
     uint32_t width, height;
     int around; /* 1: also frames the surroundings of the box */
 } view_options;
@@ -27,6 +35,10 @@ typedef struct orbit {
 
 /* An orbit from the front that frames the box. */
 orbit orbit_fit(const bounds *box, double aspect);
+/* margin: the share of the picture that stays free at each border; as orbit_fit: 0.024 */
+#define ORBIT_MARGIN 0.024
+/* Look at the middle of the box from where the orbit looks; all of it is in the picture. */
+void orbit_frame(orbit *o, const bounds *box, double margin);
 /* Its unit axes in the world; `back` points from the centre to the eye. */
 void orbit_axes(const orbit *o, double right[3], double up[3], double back[3]);
 /* A perspective camera, lit from over the left shoulder. */
@@ -34,7 +46,7 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera);
 
 /* The camera of the options, framing the box. 0, or EXIT_USAGE after printing. */
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
-/* 1 if the options frame the face. */
-int view_wants_face(const view_options *o);
+/* What the options frame. */
+view_frame view_frame_of(const view_options *o);
 
 #endif

@@ -186,6 +186,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     }
     if (!status) {
         figure_want_fall(f);
+        figure_add_rest(f);
         status = figure_add_hair(f);
     }
     if (!status) {
@@ -403,7 +404,7 @@ uint32_t figure_views(figure *f, const noh_gl_camera *camera, uint32_t height, n
     if (!light->desc.shadow_px) {
         return 1;
     }
-    const bounds box = figure_bounds(f, 0);
+    const bounds box = figure_bounds(f, FRAME_FULL);
     views[1] = lighting_shadow_view(light, &box);
     return 2;
 }

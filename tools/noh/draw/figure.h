@@ -8,6 +8,7 @@
  *   figure_pose            a frame without a view, for the functions below
  *   figure_find_faces      find the eyes; figure_feel, figure_live: live faces
  *   figure_fall            push it: it falls, and gets up
+ *   figure_idle_clip       how it stands without a clip
  *   figure_bounds          bounds of the pose; figure_anchor, figure_joints, figure_deform
  *   figure_look            a frame with a camera; figure_draw draws it; figure_view
  *   figure_views           the views of such a frame; figure_frame, figure_shade: the same in steps
@@ -78,6 +79,7 @@ typedef struct figure_desc {
     noh_accumulate accumulate;
     noh_debug_view view;
     figure_body *body; /* NULL: it looks ahead and stands as in its clips. Must outlive the figure, at one address */
+    int lowers_arms;   /* 1: arms that the pose spreads hang down */
     int hair;          /* 1: with the pack's hair, if any */
     float wind[3];     /* wind in the hair, as in noh_hair_carrier */
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
@@ -96,8 +98,10 @@ typedef struct figure {
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
     drawn_hair hair;
-    noh_modifier hair_parts[NOH_MODIFIERS_MAX]; /* of its kind: the others, then the hair */
-    uint32_t *nodes;                            /* of all kinds, one after another */
+    noh_reach_rig arms[NOH_STAGE_KINDS_MAX];                         /* of desc.lowers_arms */
+    noh_modifier rest_parts[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX]; /* of a kind: the others, then its arms */
+    noh_modifier hair_parts[NOH_MODIFIERS_MAX];                      /* of its kind: the others, then the hair */
+    uint32_t *nodes;                                                 /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
     gpu *g; /* NULL: nothing is drawn */
@@ -206,6 +210,11 @@ noh_result figure_restore_decals(figure *f, char *log, size_t log_bytes, noh_err
 int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32_t height);
 int figure_draw_decals(figure *f);
 
+/* The first clip of joints with "idle" in its name; NULL: none. */
+const char *figure_idle_clip(const noh_pack *pack);
+/* Arms that hang down (figure_desc.lowers_arms), called while its kinds are made. */
+void figure_add_rest(figure *f);
+
 /* The hair of a figure: planned, opened on a driver, updated after a frame. */
 int figure_add_hair(figure *f);
 /* In addition to the stage; 0 without hair. */
@@ -223,9 +232,9 @@ void figure_want_fall(figure *f);
  * begin with get_up. */
 int figure_fall(figure *f, const float impulse[3], double seconds);
 
-/* The world bounds of all meshes as posed, of their coarsest levels, whichever is shown: pictures of all levels can be
- * compared, also with a stripped pack. face: only vertices that targets move. */
-bounds figure_bounds(const figure *f, int face);
+/* The world bounds of the part of the pose that a camera frames, by the coarsest levels, whichever is shown: pictures of
+ * all levels can be compared, also with a stripped pack. A face is what targets move, with room for its hair. */
+bounds figure_bounds(const figure *f, view_frame frame);
 /* The first joint's place over the ground, which a camera follows. 0 without joints. */
 void figure_anchor(const figure *f, double anchor[3]);
 /* The joints of a kind: matrices[joint_count][12], by malloc; NULL: it has none. */

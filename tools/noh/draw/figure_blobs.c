@@ -15,7 +15,7 @@ static int find_floor(figure *f)
     const int status = figure_pose(f);
     bounds box;
     if (status) return status;
-    box = figure_bounds(f, 0);
+    box = figure_bounds(f, FRAME_FULL);
     f->floor = fabs(box.low[1]) < LEVEL * (box.high[1] - box.low[1]) ? 0.0f : (float)box.low[1];
     return 0;
 }

@@ -125,7 +125,7 @@ static int strike(figure *f, const figure_mark *mark, const noh_stage_view *view
 
 int figure_strike(figure *f, const noh_gl_camera *camera, uint32_t width, uint32_t height)
 {
-    const bounds box = figure_bounds(f, 0);
+    const bounds box = figure_bounds(f, FRAME_FULL);
     const noh_stage_view view = figure_view(camera, height);
     int status = figure_frame(f, &view, 1);
     for (uint32_t i = 0; i < f->desc.mark_count && !status; i++) {

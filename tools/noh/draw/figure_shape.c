@@ -166,7 +166,8 @@ static void grow_mesh(bounds *b, const noh_mesh *mesh, const noh_vertex *vertice
     }
 }
 
-bounds figure_bounds(const figure *f, int face)
+/* face: only what targets move; low above high where nothing is */
+static bounds measure(const figure *f, int face)
 {
     bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
@@ -178,11 +179,44 @@ bounds figure_bounds(const figure *f, int face)
             free(vertices);
         }
     }
-    if (b.low[0] > b.high[0]) { /* no target moves anything: frame everything */
-        if (face) {
-            return figure_bounds(f, 0);
-        }
-        memset(&b, 0, sizeof b);
-    }
     return b;
+}
+
+#define FACE_IS_ALL 0.4 /* of the figure's height: a face as high is a head alone */
+#define HAIR_OVER 0.1   /* of the figure's height: hair may reach over its meshes by as much */
+
+/* The face with its hair and ears, within the figure. room: of its height, below, above and at the sides */
+static bounds around_face(const figure *f, const bounds *all, bounds face)
+{
+    const double high = face.high[1] - face.low[1];
+    const double hair = f->hair.is_there ? HAIR_OVER * (all->high[1] - all->low[1]) : 0.0;
+    const double below[3] = { 0.35, 0.12, 0.35 }, above[3] = { 0.35, 0.5, 0.35 };
+    for (int c = 0; c < 3; c++) {
+        face.low[c] = fmax(face.low[c] - below[c] * high, all->low[c] - (c == 0 ? hair : 0.0));
+        face.high[c] = fmin(face.high[c] + above[c] * high, all->high[c] + (c < 2 ? hair : 0.0));
+    }
+    return face;
+}
+
+#define UPPER_SHARE 0.45 /* of the height of a body */
+
+static bounds upper_of(bounds box)
+{
+    const double high = UPPER_SHARE * (box.high[1] - box.low[1]), middle = 0.5 * (box.low[0] + box.high[0]);
+    box.low[1] = box.high[1] - high;
+    box.low[0] = fmax(box.low[0], middle - 0.5 * high);
+    box.high[0] = fmin(box.high[0], middle + 0.5 * high);
+    return box;
+}
+
+bounds figure_bounds(const figure *f, view_frame frame)
+{
+    const bounds all = measure(f, 0), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
+    if (all.low[0] > all.high[0]) return none;
+    if (frame == FRAME_FULL) return all;
+    const bounds face = measure(f, 1);
+    const int has_face = face.low[0] <= face.high[0];
+    const int is_head = has_face && face.high[1] - face.low[1] > FACE_IS_ALL * (all.high[1] - all.low[1]);
+    if (frame == FRAME_FACE ? has_face : is_head) return around_face(f, &all, face);
+    return frame == FRAME_UPPER ? upper_of(all) : all;
 }

@@ -182,28 +182,6 @@ int framing_clip(framing *f, const char *clip, bounds *box)
 
 /* ---- the camera ---- */
 
-void orbit_frame(orbit *o, const bounds *box, double margin)
-{
-    const double half_view = tan(ORBIT_VIEW_RAD / 2.0) * (1.0 - 2.0 * margin);
-    double axes[3][3], half[3], distance = 0.0, radius = 0.0;
-    for (int c = 0; c < 3; c++) {
-        o->center[c] = (box->low[c] + box->high[c]) / 2.0;
-        half[c] = (box->high[c] - box->low[c]) / 2.0;
-        radius += half[c] * half[c];
-    }
-    o->radius = fmax(sqrt(radius), 1e-6);
-    orbit_axes(o, axes[0], axes[1], axes[2]);
-    for (int corner = 0; corner < 8; corner++) {
-        double at[3] = { 0.0, 0.0, 0.0 };
-        for (int c = 0; c < 3; c++) {
-            const double side = corner >> c & 1 ? half[c] : -half[c];
-            for (int a = 0; a < 3; a++) at[a] += side * axes[a][c];
-        }
-        distance = fmax(distance, at[2] + fmax(fabs(at[1]), fabs(at[0]) / o->aspect) / half_view);
-    }
-    o->distance = fmax(distance, o->radius * 1.02);
-}
-
 double orbit_sees(const figure *f, const noh_gl_camera *camera)
 {
     const float *m = camera->view_projection;

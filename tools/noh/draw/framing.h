@@ -2,7 +2,6 @@
  *
  *   framing_open / framing_close
  *   framing_clip    the box that a clip fills around the camera's target
- *   orbit_frame     the nearest distance at which an orbit sees a box, from its direction
  *   orbit_sees      the share of a figure's vertices that a camera sees
  *
  * A figure is measured by outline points: of each joint, the vertices that it moves most and that lie farthest out in
@@ -25,11 +24,6 @@ void framing_close(framing *f);
 /* The box of all of a clip, relative to figure_anchor at each moment. Returns 0 where the clip moves no joint, or
  * cannot be played. */
 int framing_clip(framing *f, const char *clip, bounds *box);
-
-/* margin: the share of the picture that stays free at each border; as orbit_fit: 0.024 */
-#define ORBIT_MARGIN 0.024
-/* Look at the middle of the box from where the orbit looks; all of it is in the picture. */
-void orbit_frame(orbit *o, const bounds *box, double margin);
 
 /* 0..1, of the vertices of the coarsest levels. */
 double orbit_sees(const figure *f, const noh_gl_camera *camera);

@@ -66,11 +66,11 @@ int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint)
     return status ? status : overlay_open(&p->overlay, g);
 }
 
-bounds picture_bounds(const picture *p, int face)
+bounds picture_bounds(const picture *p, view_frame frame)
 {
     bounds box = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     if (!p->shows_bones) {
-        return figure_bounds(&p->figure, face);
+        return figure_bounds(&p->figure, frame);
     }
     for (uint32_t k = 0; k < p->figure.stage_desc.kind_count; k++) {
         noh_skeleton skeleton;

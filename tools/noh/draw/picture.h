@@ -33,7 +33,7 @@ void picture_close(picture *p);
 int picture_debug(picture *p, gpu *g, debug_kind kind, const char *joint);
 
 /* The world bounds of the picture's contents, as posed. */
-bounds picture_bounds(const picture *p, int face);
+bounds picture_bounds(const picture *p, view_frame frame);
 
 /* Draw the figure into the canvas, as it is. */
 int picture_paint(picture *p, const noh_gl_camera *camera);

@@ -138,7 +138,7 @@ static int dump_meshes(byte_buffer *out, const figure *f, readback *r)
 /* Actors that no view sees are not sent to the GPU. */
 static int look_at_all(figure *f)
 {
-    const bounds box = figure_bounds(f, 0);
+    const bounds box = figure_bounds(f, FRAME_FULL);
     const orbit at = orbit_fit(&box, 1.0);
     noh_gl_camera camera;
     orbit_camera(&at, &camera);

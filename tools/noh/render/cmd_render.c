@@ -13,7 +13,8 @@
 #include "cli/verbs.h"
 
 typedef struct render_args {
-    const char *pack, *output, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind, *decal_kind;
+    const char *pack, *output, *pose, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind,
+        *decal_kind;
     uint32_t size[2];
     double time_s, lod, turn, swing;
     int show_bones;
@@ -25,6 +26,8 @@ typedef struct render_args {
     body_options body_wants;
     figure_desc figure;
     figure_body body;
+    char own_output[256];
+    int rests; /* 1: no clip was asked for */
 } render_args;
 
 static int check_body(render_args *a)
@@ -45,6 +48,30 @@ static int parse_wind(const char *text, float wind[3])
         return 0;
     }
     return tool_usage("--wind must be X,Y,Z, each -100 to 100, not '%s'", text);
+}
+
+/* The picture's name without -o: the pack's, in the working folder. */
+static void name_output(render_args *a)
+{
+    const char *name = strrchr(a->pack, '/'), *dot;
+    name = name ? name + 1 : a->pack;
+    dot = strrchr(name, '.');
+    if (a->output) return;
+    snprintf(a->own_output, sizeof a->own_output, "%.*s.png", (int)(dot ? dot - name : 200), name);
+    a->output = a->own_output;
+}
+
+/* How it stands that no clip poses. */
+static int choose_pose(render_args *a, const noh_pack *pack)
+{
+    const int rest = strcmp(a->pose, "rest") == 0;
+    if (!rest && strcmp(a->pose, "auto") != 0) return tool_usage("--pose must be auto or rest, not '%s'", a->pose);
+    a->rests = !a->clips.count;
+    if (rest || !a->rests || a->body.has_ground || a->show_bones || !figure_draws(pack)) return 0;
+    const char *idle = figure_idle_clip(pack);
+    if (idle) a->clips.items[a->clips.count++] = idle;
+    a->figure.lowers_arms = !idle;
+    return 0;
 }
 
 static int check_args(render_args *a)
@@ -90,7 +117,7 @@ static int strike(picture *p, const render_args *a)
     noh_gl_camera camera;
     int status = a->figure.mark_count ? figure_pose(&p->figure) : 0;
     if (status || !a->figure.mark_count) return status;
-    const bounds box = picture_bounds(p, view_wants_face(&a->view));
+    const bounds box = picture_bounds(p, view_frame_of(&a->view));
     status = view_camera(&a->view, &box, &camera);
     return status ? status : figure_strike(&p->figure, &camera, a->size[0], a->size[1]);
 }
@@ -100,7 +127,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->body.has_ground;
-    const int hangs = !lives && !a->clips.count && p->figure.hair.is_there;
+    const int hangs = !lives && a->rests && p->figure.hair.is_there;
     int status = p->shows_bones ? 0 : strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
@@ -108,7 +135,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
-        const bounds box = picture_bounds(p, view_wants_face(&a->view));
+        const bounds box = picture_bounds(p, view_frame_of(&a->view));
         status = view_camera(&a->view, &box, &camera);
     }
     return status ? status : picture_read(p, &camera, rgba);
@@ -170,7 +197,9 @@ static int run(void *args)
     if (!status) {
         status = pack_file_open(&file, a->pack);
         if (!status) {
-            status = render(a, &file);
+            name_output(a);
+            status = choose_pose(a, &file.pack);
+            if (!status) status = render(a, &file);
             pack_file_close(&file);
         }
     }
@@ -184,21 +213,29 @@ static const option options[] = {
     { .name = "-o",
       .kind = OPTION_OUTPUT,
       .at = offsetof(render_args, output),
-      .required = 1,
       .value = "OUT.png",
-      .what = "the picture",
+      .what = "the picture; default: the pack's name with .png, in the working folder",
       .example = "face.png" },
     { .name = "--size",
       .kind = OPTION_SIZE,
       .at = offsetof(render_args, size),
       .value = "WxH",
-      .initial = "512x512",
+      .initial = "1024x1024",
       .what = "size of the picture, pixels, 1 to 8192 each",
       .example = "1280x720" },
     OPTION_WEIGHT(render_args, weights, .excludes = "--bones"),
     OPTION_CLIP(render_args, clips, .needs = NULL),
     OPTION_TIME(render_args, time_s, .needs = "--clip"),
     OPTION_ANIMS(render_args, anims, .needs = "--clip"),
+    { .name = "--pose",
+      .kind = OPTION_TEXT,
+      .at = offsetof(render_args, pose),
+      .value = "auto|rest",
+      .initial = "auto",
+      .what =
+          "how a figure stands without --clip: auto, as in the first frame of a clip named idle, otherwise with its "
+          "arms lowered; rest, as it was modelled",
+      .example = "rest" },
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions),
     OPTION_SPRINGS(render_args, springs),
@@ -227,7 +264,7 @@ static const option options[] = {
       .what = "how long hair moves before the picture, seconds, if no clip plays",
       .example = "0.5" },
     OPTIONS_DECALS(render_args, decals, decal_kind, "--bones"),
-    OPTION_CAMERA(render_args, view.camera, "body"),
+    OPTION_CAMERA(render_args, view.camera, "auto"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),
     { .name = "--bones",
@@ -258,7 +295,8 @@ const verb verb_render = {
     .name = "render",
     .files = "PACK",
     .what = "draw a picture of a pack",
-    .example = "face.noh -o face.png --weight smile=1 --camera face\nbody.noh -o walk.png --clip walk --time 0.5",
+    .example =
+        "face.noh\nface.noh -o face.png --weight smile=1 --camera face,20,5\nbody.noh -o walk.png --clip walk --time 0.5",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

@@ -69,7 +69,7 @@ static void find_anchor(const sheet *s, const picture *p, double anchor[3])
     if (s->tiles.push) memset(anchor, 0, 3 * sizeof *anchor);
 }
 
-static int measure_tiles(sheet *s, picture *p, int face)
+static int measure_tiles(sheet *s, picture *p, view_frame frame)
 {
     int status = 0;
     for (uint32_t tile = 0; tile < s->tile_count && !status; tile += 1 + s->tile_count / 40) {
@@ -78,7 +78,7 @@ static int measure_tiles(sheet *s, picture *p, int face)
         status = sheet_tiles_pose(&s->tiles, &p->figure, tile);
         if (status) break;
         find_anchor(s, p, anchor);
-        box = move_box(picture_bounds(p, face), anchor, -1.0);
+        box = move_box(picture_bounds(p, frame), anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
     return status;
@@ -134,7 +134,7 @@ static int draw_sheet(sheet *s, const pack_file *file)
     status = picture_open(&p, &g, &s->figure, s->show_bones, s->tile, s->tile);
     if (!status) {
         status = sheet_tiles_measure(&s->tiles, &p.figure);
-        if (!status) status = measure_tiles(s, &p, view_wants_face(&o));
+        if (!status) status = measure_tiles(s, &p, view_frame_of(&o));
         if (!status) status = strike(s, &p);
         if (!status) status = draw_tiles(s, &p);
         picture_close(&p);

@@ -205,7 +205,7 @@ static int place_camera(grid *g)
     }
     status = figure_pose(&f);
     if (!status) {
-        const bounds box = figure_bounds(&f, view_wants_face(&view));
+        const bounds box = figure_bounds(&f, view_frame_of(&view));
         status = view_camera(&view, &box, &g->camera);
         g->tile_pixels_per_unit = pixels_per_unit(&g->camera, &box, o->tile);
     }

@@ -77,7 +77,7 @@ static int show(figure *f)
     if (status) {
         return status;
     }
-    box = figure_bounds(f, 0);
+    box = figure_bounds(f, FRAME_FULL);
     at = orbit_fit(&box, 1.0);
     orbit_camera(&at, &camera);
     return figure_look(f, &camera, 512);

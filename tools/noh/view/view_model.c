@@ -306,7 +306,7 @@ static bounds joint_bounds(const view_model *m)
 
 bounds view_model_bounds(const view_model *m)
 {
-    return m->show_bones ? joint_bounds(m) : figure_bounds(m->figure, 0);
+    return m->show_bones ? joint_bounds(m) : figure_bounds(m->figure, FRAME_FULL);
 }
 
 noh_place view_model_place(const view_model *m)
