@@ -64,10 +64,27 @@ float noh_key_shadow(vec3 position, vec3 normal)
     return inside ? sum / float(NOH_SHADOW_TAPS) : 1.0;
 }
 
+/* Khronos PBR Neutral Tone Mapper, 2024: colours up to 0.8 less the reflection of a dielectric stay, peaks above are
+ * compressed, and lose saturation the brighter they were. */
+vec3 noh_neutral(vec3 c)
+{
+    float least = min(c.r, min(c.g, c.b)), offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
+    c -= offset;
+    float peak = max(c.r, max(c.g, c.b));
+    if (peak < 0.76) {
+        return c;
+    }
+    float compressed = 1.0 - 0.0576 / (peak - 0.52);
+    return mix(vec3(compressed), c * (compressed / peak), 1.0 / (0.15 * (peak - compressed) + 1.0));
+}
+
 /* A linear colour after exposure and tone map. */
 vec3 noh_expose(vec3 c)
 {
     c *= noh_lighting[13].x;
+    if (noh_lighting[13].y > 1.5) {
+        return noh_neutral(c);
+    }
     vec3 filmic = c * 0.6; /* K. Narkowicz: ACES filmic tone mapping curve, 2015 */
     filmic = (filmic * (2.51 * filmic + 0.03)) / (filmic * (2.43 * filmic + 0.59) + 0.14);
     return noh_lighting[13].y > 0.5 ? filmic : c;

@@ -37,6 +37,7 @@ static void tell(void)
     if (!is_lit()) return;
     noh_lighting_make(&web.light.all, rotation, web.light.shadow == WEB_SHADOW_MAP, &web.light.told);
     web.light.told.tonemap = (noh_tonemap)web.light.tonemap;
+    web.light.told.exposure = noh_light_exposure(&web.light.all, rotation);
     noh_stage_set_lighting(web.stage, &web.light.told);
 }
 

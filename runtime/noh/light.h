@@ -24,6 +24,7 @@ extern "C" {
  *   noh_light_rotate                           rotated light
  *   noh_light_irradiance                       light reflected by a white matte surface, by its normal
  *   noh_light_key                              split into one directional light and the rest
+ *   noh_light_exposure                         exposure for faces
  *
  * An environment is an ambient radiance, up to eight lamps and up to two windows. A lamp is round: its radiance at the
  * angle a from its direction is colour * s^power, s = (cos a - edge) / (1 - edge), and 0 where s is not above 0. Its
@@ -101,6 +102,13 @@ void noh_light_irradiance(const noh_light *light, const float normal[3], float r
  * ranges     light's order at least 2
  * source     Sloan: Stupid spherical harmonics (SH) tricks, GDC 2008, Extracting conventional lights from SH */
 void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh_light *rest);
+
+/* The exposure at which a face that looks towards +Z shows its own colours under this light: 1.1 divided by the
+ * luminance that a white matte face reflects, or by 0.6 times the luminance of one that faces the key light, if that is
+ * larger. For noh_lighting.exposure with NOH_TONEMAP_NEUTRAL; 1 in darkness.
+ * rotation  as in noh_lighting_make; NULL: not rotated
+ * ranges    light's order at least 2 */
+float noh_light_exposure(const noh_light *light, const float rotation[9]);
 
 /* ======== reflections ========
  * Reflections of an environment by surfaces of any roughness: a cube map with a level for each roughness.

@@ -59,8 +59,9 @@ extern "C" {
  * Threads: the context's own thread; any thread for noh_lighting_* and noh_gl_light_bytes. */
 
 typedef enum noh_tonemap {
-    NOH_TONEMAP_NONE,  /* radiance 1 is white; brighter values are clamped */
-    NOH_TONEMAP_FILMIC /* a curve with a shoulder: K. Narkowicz, ACES filmic tone mapping curve, 2015 */
+    NOH_TONEMAP_NONE,   /* radiance 1 is white; brighter values are clamped */
+    NOH_TONEMAP_FILMIC, /* a curve with a shoulder: K. Narkowicz, ACES filmic tone mapping curve, 2015 */
+    NOH_TONEMAP_NEUTRAL /* keeps hue and most colours as they are: Khronos PBR Neutral Tone Mapper, 2024 */
 } noh_tonemap;
 
 /* Lighting values. Plain data: change any field between draws. */
@@ -70,7 +71,7 @@ typedef struct noh_lighting {
     float key[3];           /* its light reflected by a white matte surface facing it; zeros: none */
     float key_gloss; /* its share of specular light: 0 if the reflection already contains it, 1 for your own lamp */
     float turn[9];   /* rows: world to the reflection's space */
-    float exposure;  /* factor before the tone map */
+    float exposure;  /* factor before the tone map; for faces: noh_light_exposure */
     noh_tonemap tonemap;
     float shadow[16];   /* world to the shadow map's clip space, column-major */
     float shadow_texel; /* size of a shadow texel, world; 0: no shadow */

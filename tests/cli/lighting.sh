@@ -10,7 +10,7 @@ done
 check 'environments differ' sh -c '! cmp -s "$1" "$2" && ! cmp -s "$1" "$3"' - "$work/studio.png" "$work/room.png" "$work/sky.png"
 noh render "$pack" -o "$work/again.png" --light room --size 128x128
 check 'the same picture again' cmp "$work/room.png" "$work/again.png"
-for more in '--rotate 90' '--tonemap none' '--shadow off' '--shadow blob' '--background gradient' '--background plain' '--debug light'; do
+for more in '--rotate 90' '--tonemap none' '--tonemap filmic' '--shadow off' '--shadow blob' '--background gradient' '--background plain' '--debug light'; do
     noh render "$pack" -o "$work/more.png" --light room --size 128x128 $more
     expect 0 "render --light room $more"
     check "$more changes the picture" sh -c '! cmp -s "$1" "$2"' - "$work/room.png" "$work/more.png"
@@ -42,7 +42,7 @@ expect 2 'an unknown environment'
 says "--light must be auto, none, white, studio, room, sky or a file (.hdr, .png), not 'rooom'"
 noh render "$pack" -o "$work/cut.png" --light room --tonemap bright
 expect 2 'an unknown tone map'
-says "--tonemap must be filmic or none, not 'bright'"
+says "--tonemap must be neutral, filmic or none, not 'bright'"
 noh render "$pack" -o "$work/cut.png" --light room --shadow soft
 expect 2 'an unknown shadow'
 noh render "$pack" -o "$work/cut.png" --light room --background red

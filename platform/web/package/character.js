@@ -369,7 +369,7 @@ export class Character extends EventTarget {
 
     tellLighting() {
         const c = this.chosen;
-        this.program._web_set_lighting(c.degrees, Math.max(0, shadows.indexOf(c.shadow)), c.tonemap ? 1 : 0, Math.max(0, backgrounds.indexOf(c.background)));
+        this.program._web_set_lighting(c.degrees, Math.max(0, shadows.indexOf(c.shadow)), c.tonemap ? 2 : 0, Math.max(0, backgrounds.indexOf(c.background)));
         this.program._web_set_floor(c.floor ? 1 : 0);
     }
 

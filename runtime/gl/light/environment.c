@@ -9,7 +9,8 @@
 #include "core/base/name_internal.h"
 
 /* white: the furnace. studio: a large soft box, a fill, a rim, a dark floor. room: a window to the left, a ceiling
- * that reflects it, a lamp behind, warm walls and floor. sky: blue with a bright zenith, sun, grass. */
+ * that reflects it, a lamp behind, warm walls and floor. sky: blue with a bright zenith, sun, ground. Colours are
+ * balanced so that skin in each reflects more red than green and more green than blue, also in shadow. */
 static const noh_environment environments[NOH_ENVIRONMENT_COUNT] = {
     { .name = "white", .ambient = { 1.0f, 1.0f, 1.0f } },
     { .name = "studio",
@@ -21,21 +22,21 @@ static const noh_environment environments[NOH_ENVIRONMENT_COUNT] = {
       .window_count = 1,
       .windows = { { { -0.48f, 0.6f, 0.64f }, { 0.42f, 0.42f }, { 1, 1 }, 0.0f, { 7.8f, 7.5f, 7.1f } } } },
     { .name = "room",
-      .ambient = { 0.16f, 0.14f, 0.12f },
+      .ambient = { 0.155f, 0.14f, 0.128f },
       .lamp_count = 4,
       .lamps = { { { 0.0f, 1.0f, 0.0f }, 0.0f, 1, { 0.75f, 0.72f, 0.66f } },
-                 { { 0.6f, 0.64f, -0.48f }, 0.93f, 1, { 7.0f, 5.6f, 3.8f } },
-                 { { 0.0f, -1.0f, 0.0f }, 0.1f, 1, { 0.22f, 0.15f, 0.09f } },
-                 { { 0.8f, 0.0f, 0.6f }, 0.3f, 2, { 0.45f, 0.38f, 0.3f } } },
+                 { { 0.6f, 0.64f, -0.48f }, 0.93f, 1, { 7.0f, 5.8f, 4.6f } },
+                 { { 0.0f, -1.0f, 0.0f }, 0.1f, 1, { 0.22f, 0.16f, 0.11f } },
+                 { { 0.8f, 0.0f, 0.6f }, 0.3f, 2, { 0.45f, 0.40f, 0.36f } } },
       .window_count = 1,
-      .windows = { { { -0.64f, 0.48f, 0.6f }, { 0.42f, 0.55f }, { 2, 3 }, 0.12f, { 10.2f, 11.0f, 12.2f } } } },
+      .windows = { { { -0.64f, 0.48f, 0.6f }, { 0.42f, 0.55f }, { 2, 3 }, 0.12f, { 11.2f, 11.0f, 10.9f } } } },
     { .name = "sky",
-      .ambient = { 0.2f, 0.27f, 0.38f },
+      .ambient = { 0.26f, 0.29f, 0.345f },
       .lamp_count = 4,
-      .lamps = { { { 0.0f, 1.0f, 0.0f }, 0.0f, 1, { 0.35f, 0.55f, 0.85f } },
-                 { { 0.48f, 0.64f, 0.6f }, 0.96f, 1, { 38.0f, 34.0f, 27.0f } },
-                 { { 0.48f, 0.64f, 0.6f }, 0.5f, 2, { 0.9f, 0.8f, 0.6f } },
-                 { { 0.0f, -1.0f, 0.0f }, 0.0f, 0, { 0.02f, -0.01f, -0.2f } } } },
+      .lamps = { { { 0.0f, 1.0f, 0.0f }, 0.0f, 1, { 0.30f, 0.43f, 0.66f } },
+                 { { 0.48f, 0.64f, 0.6f }, 0.96f, 1, { 37.0f, 34.0f, 29.5f } },
+                 { { 0.48f, 0.64f, 0.6f }, 0.5f, 2, { 0.9f, 0.79f, 0.66f } },
+                 { { 0.0f, -1.0f, 0.0f }, 0.0f, 0, { 0.05f, 0.0f, -0.12f } } } },
 };
 
 uint32_t noh_environment_find(const char *name)
@@ -256,4 +257,25 @@ void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh
         rgb[c] = sum * 0.318309886f;
         for (uint32_t i = 0; i < NOH_SH_COUNT(light->order); i++) rest->coefs[i][c] -= sum * basis[i];
     }
+}
+
+/* The brightest part counts with this share, so that faces lit from behind are not burnt out at their rims. */
+#define KEY_SHARE 0.6f
+#define EXPOSED 1.1f
+
+float noh_light_exposure(const noh_light *light, const float rotation[9])
+{
+    static const float luminance[3] = { 0.2126f, 0.7152f, 0.0722f }, face[3] = { 0.0f, 0.33f, 0.944f };
+    noh_light turned, rest;
+    float rgb[3], direction[3], key[3], ahead, most;
+    NOH_ASSERT(light && light->order >= 2u);
+    turned = *light;
+    if (rotation) noh_light_rotate(light, rotation, &turned);
+    noh_light_irradiance(&turned, face, rgb);
+    ahead = noh_dot3(luminance, rgb);
+    noh_light_key(&turned, direction, key, &rest);
+    noh_light_irradiance(&turned, direction, rgb);
+    most = KEY_SHARE * noh_dot3(luminance, rgb);
+    ahead = ahead > most ? ahead : most;
+    return ahead > 1e-6f ? EXPOSED / ahead : 1.0f;
 }

@@ -274,7 +274,7 @@ static void bits_are_the_same_everywhere(void **state)
         const noh_reflection r = make(32, noh_reflection_of_environment, noh_environment_at(i));
         crc = noh_crc32c(crc, r.texels, noh_reflection_size(32));
     }
-    assert_int_equal(crc, 0x7c9c82b8u);
+    assert_int_equal(crc, 0x70813f7cu);
 }
 
 int main(void)

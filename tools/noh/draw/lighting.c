@@ -74,13 +74,13 @@ static int read_light(lighting *l, const char *name)
 
 int lighting_open(lighting *l, const light_options *o)
 {
-    static const char *const tonemaps[] = { "filmic", "none" }, *const switches[] = { "on", "off", "blob" };
+    static const char *const tonemaps[] = { "neutral", "filmic", "none" }, *const switches[] = { "on", "off", "blob" };
     static const char *const backgrounds[] = { "light", "gradient", "plain" };
     int tonemap, shadow, transfer, background;
     int status;
     memset(l, 0, sizeof *l);
     l->name = o->light;
-    status = choose("--tonemap", o->tonemap, tonemaps, 2, &tonemap);
+    status = choose("--tonemap", o->tonemap, tonemaps, 3, &tonemap);
     if (!status) status = choose("--shadow", o->shadow, switches, 3, &shadow);
     if (!status) status = choose("--transfer", o->transfer, switches, 2, &transfer);
     if (!status) status = choose("--background", o->background, backgrounds, 3, &background);
@@ -93,7 +93,7 @@ int lighting_open(lighting *l, const light_options *o)
     l->has_blobs = shadow == 2;
     l->without_transfer = transfer;
     l->background = background == 0 ? BACKGROUND_LIGHT : background == 1 ? BACKGROUND_GRADIENT : BACKGROUND_PLAIN;
-    l->told.tonemap = tonemap ? NOH_TONEMAP_NONE : NOH_TONEMAP_FILMIC;
+    l->told.tonemap = tonemap == 0 ? NOH_TONEMAP_NEUTRAL : tonemap == 1 ? NOH_TONEMAP_FILMIC : NOH_TONEMAP_NONE;
     l->desc.reflection = &l->reflection;
     l->desc.shadow_px = l->has_shadow ? LIGHTING_SHADOW_PX : 0;
     lighting_turn(l, o->rotate);
@@ -114,6 +114,7 @@ void lighting_turn(lighting *l, double degrees)
     l->degrees = degrees;
     noh_lighting_make(&l->light, rotation, l->has_shadow, &l->told);
     l->told.tonemap = tonemap;
+    l->told.exposure = noh_light_exposure(&l->light, rotation);
 }
 
 noh_stage_view lighting_shadow_view(lighting *l, const bounds *box)

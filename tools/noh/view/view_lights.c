@@ -37,11 +37,12 @@ const char *view_lights_shown(const view_lights *l)
 static int open_as(lighting *l, const char *name, const lighting *before)
 {
     static const char *const backgrounds[] = { "plain", "gradient", "light" };
+    static const char *const tonemaps[] = { "none", "filmic", "neutral" };
     light_options o = { .light = name };
     if (before) {
         o.rotate = before->degrees;
         o.background = backgrounds[before->background];
-        o.tonemap = before->told.tonemap == NOH_TONEMAP_FILMIC ? "filmic" : "none";
+        o.tonemap = tonemaps[before->told.tonemap];
         o.shadow = before->has_shadow ? "on" : before->has_blobs ? "blob" : "off";
         o.transfer = before->without_transfer ? "off" : "on";
     }

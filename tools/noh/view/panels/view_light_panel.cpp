@@ -63,15 +63,15 @@ void light_section(view_app *a)
         return;
     }
     float degrees = static_cast<float>(light->degrees);
-    int background = static_cast<int>(light->background), filmic = light->told.tonemap == NOH_TONEMAP_FILMIC;
+    int background = static_cast<int>(light->background), tonemap = light->told.tonemap != NOH_TONEMAP_NONE;
     if (ui::slider("##turn", &degrees, -180.0f, 180.0f, "turned by %.0f degrees")) {
         lighting_turn(light, static_cast<double>(degrees));
     }
     if (ui::choose("background", &background, backgrounds, 3)) {
         light->background = static_cast<lighting_background>(background);
     }
-    if (ui::checkbox("filmic", &filmic)) {
-        light->told.tonemap = filmic ? NOH_TONEMAP_FILMIC : NOH_TONEMAP_NONE;
+    if (ui::checkbox("tone map", &tonemap)) {
+        light->told.tonemap = tonemap ? NOH_TONEMAP_NEUTRAL : NOH_TONEMAP_NONE;
     }
 }
 
