@@ -121,17 +121,22 @@ void web_light_floor(void)
     noh_stage_floor_draw(&web.light.ground, noh_stage_light_of(web.stage), &web.light.told, &web.view, disc);
 }
 
+#define CONTACT 0.6f /* darkness of the spots where the shadow falls, too */
+
 /* Soft spots under the figures. */
 void web_light_spots(void)
 {
     const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, web.light.floor };
     const noh_world world = { .planes = &plane, .plane_count = 1 };
     const noh_ground ground = { &world, NULL, NULL };
-    if (!is_lit() || web.light.shadow != WEB_SHADOW_SPOTS) return;
+    const int spots = web.light.shadow == WEB_SHADOW_SPOTS;
+    const int contact = web.light.shadow == WEB_SHADOW_MAP && web.light.on_floor && web.light.ground.drawable.gl;
+    if (!is_lit() || (!spots && !contact)) return;
     for (uint32_t i = 0; i < web.figure_count; i++) {
         noh_blob blobs[NOH_BLOBS_MAX];
         const web_figure *f = &web.figures[i];
         const uint32_t count = noh_actor_blobs(web.stage, f->actor, &web.light.rigs[f->kind], &ground, blobs);
+        for (uint32_t n = 0; n < count && !spots; n++) blobs[n].darkness *= CONTACT;
         noh_stage_blob_draw(&web.light.blob, &web.view, blobs, count);
     }
 }

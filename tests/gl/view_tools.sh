@@ -111,9 +111,9 @@ click surface/normal
 frames 1
 save normal.png
 HAND
-draw wires_render.png rest.png "$puppet" --debug wireframe
+draw wires_render.png rest.png "$puppet" --light studio --debug wireframe
 check 'wires equal noh render --debug wireframe' same wires.png wires_render.png
-draw bones_render.png rest.png "$puppet" --debug bones
+draw bones_render.png rest.png "$puppet" --light studio --debug bones
 check 'bones equal --debug bones' same bones.png bones_render.png
 check 'also after a lost context' same bones.png lost.png
 draw joints_render.png rest.png "$puppet" --debug joints

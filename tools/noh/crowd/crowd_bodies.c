@@ -141,13 +141,13 @@ static noh_result enter(crowd *c, uint32_t body, noh_error *error)
 {
     const noh_place place = place_of(body);
     const noh_clip_set *set = NULL;
-    noh_actor actor;
-    noh_result result = noh_stage_spawn(c->stage, 0, &place, &actor, error);
+    noh_actor *actor = &c->actors[body];
+    noh_result result = noh_stage_spawn(c->stage, 0, &place, actor, error);
     if (!result) {
-        (void)noh_actor_controller(c->stage, actor, &set);
-        result = play(c, actor, body, BODY, nth_clip(set, body, 1), set, error);
+        (void)noh_actor_controller(c->stage, *actor, &set);
+        result = play(c, *actor, body, BODY, nth_clip(set, body, 1), set, error);
     }
-    if (!result) result = play(c, actor, body, FACE, nth_clip(set, body / 3u, 0), set, error);
+    if (!result) result = play(c, *actor, body, FACE, nth_clip(set, body / 3u, 0), set, error);
     return result;
 }
 
@@ -167,6 +167,15 @@ static noh_result open_shader(crowd *c, char *log, size_t log_bytes, noh_error *
     return noh_stage_shader_create(c->stage, c->shader_memory, bytes, &desc, log, log_bytes, &c->shader, error);
 }
 
+static noh_result open_spots(crowd *c, const noh_gl_device *device, noh_error *error)
+{
+    c->actors = calloc(c->options.count, sizeof *c->actors);
+    if (!c->actors) return noh_fail(error, NOH_ERR_MEMORY, "out of memory", 0, 0);
+    if (!c->options.spots || c->options.view != NOH_VIEW_LIT) return NOH_OK;
+    const noh_result result = noh_blob_rig_make(&c->kind, &c->rig, error);
+    return result ? result : noh_stage_blob_create(device, &c->blob, error);
+}
+
 static noh_result open_stage(crowd *c, gpu *g, noh_error *error)
 {
     char log[4096] = "";
@@ -183,6 +192,7 @@ static noh_result open_stage(crowd *c, gpu *g, noh_error *error)
         c->stage = NULL;
     } else {
         result = open_shader(c, log, sizeof log, error);
+        if (!result) result = open_spots(c, &device, error);
     }
     if (result) fputs(log, stderr);
     return result;
@@ -219,9 +229,11 @@ void crowd_close(crowd *c)
 {
     drawn_hair_close(&c->hair);
     if (c->shader) noh_stage_shader_delete(c->shader);
+    noh_stage_blob_delete(&c->blob);
     if (c->stage) noh_stage_delete(c->stage);
     free(c->shader_memory);
     free(c->memory);
+    free(c->actors);
     memset(c, 0, sizeof *c);
 }
 
@@ -244,10 +256,24 @@ void crowd_frame(crowd *c, uint32_t ticks, const noh_stage_view *view)
 {
     (void)noh_stage_frame(c->stage, ticks, view, on_key, &c->events, NULL); /* a camera of ours is finite */
     drawn_hair_frame(&c->hair, c->stage, ticks);
+    c->seen = *view;
+}
+
+static void draw_spots(crowd *c)
+{
+    const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
+    const noh_world world = { .planes = &plane, .plane_count = 1 };
+    const noh_ground ground = { &world, NULL, NULL };
+    for (uint32_t i = 0; i < c->options.count; i++) {
+        noh_blob blobs[NOH_BLOBS_MAX];
+        noh_stage_blob_draw(&c->blob, &c->seen, blobs,
+                            noh_actor_blobs(c->stage, c->actors[i], &c->rig, &ground, blobs));
+    }
 }
 
 void crowd_draw(crowd *c)
 {
+    if (c->blob.drawable.gl) draw_spots(c);
     (void)noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, c->shader, NULL); /* a frame with a view was before */
     drawn_hair_update(&c->hair);
     drawn_hair_draw(&c->hair, c->stage, 0, NOH_PASS_COLOR);

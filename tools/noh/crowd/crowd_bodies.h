@@ -17,6 +17,7 @@
 #include "gpu/gpu.h"
 #include "draw/drawn_hair.h"
 #include "noh/gl_device.h"
+#include "noh/marks.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 
@@ -30,6 +31,7 @@ typedef struct crowd_options {
     uint32_t width, height;            /* of the view, pixels; default (0) 1280 x 720 */
     uint32_t near_count, middle_count; /* as in noh_kind_desc */
     noh_debug_view view;
+    int spots; /* 1: soft spots under the bodies */
 } crowd_options;
 
 typedef struct crowd_events {
@@ -47,6 +49,10 @@ typedef struct crowd {
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's, lit */
     void *memory, *shader_memory;
+    noh_actor *actors;   /* [options.count] */
+    noh_stage_blob blob; /* of options.spots */
+    noh_blob_rig rig;
+    noh_stage_view seen; /* of the last frame */
     crowd_events events; /* so far */
 } crowd;
 

@@ -9,6 +9,7 @@
 
 #define FRAME_TICKS NOH_CROWD_STEP_TICKS
 #define HIT_HEIGHT_M 1.2f /* above the ground */
+#define FLOOR_RADII 3.0f  /* of the place */
 
 static void fill_desc(place_scene *s)
 {
@@ -56,7 +57,9 @@ static int open_stage(place_scene *s, gpu *g)
     }
     noh_stage_set_lighting(s->stage, &s->light.told);
     if (noh_backdrop_create(&device, 0, &s->backdrop, &error)) return tool_fail_error("backdrop", &error);
-    return s->place->ground ? open_terrain(s, &device) : 0;
+    if (s->place->ground) return open_terrain(s, &device);
+    if (s->options->scenery) return 0;
+    return noh_stage_floor_create(&device, 0, &s->floor, &error) ? tool_fail_error("floor", &error) : 0;
 }
 
 static int open_walkers(place_scene *s)
@@ -145,7 +148,9 @@ static int open_all(place_scene *s, gpu *g)
 {
     const place_draw_options *o = s->options;
     light_options light = o->light;
-    int status = lighting_wanted(&light, 1) ? 0 : tool_usage("--light none cannot draw a place: choose another light");
+    int status = lighting_wanted(&light, NULL, 1)
+                     ? 0
+                     : tool_usage("--light none cannot draw a place: choose another light");
     if (!status) status = lighting_open(&s->light, &light);
     if (!status && o->scenery) status = pack_file_open(&s->scenery, o->scenery);
     if (!status) status = place_life_open(s->place, o->agents, o->seed, &s->life);
@@ -200,6 +205,7 @@ void place_scene_close(place_scene *s)
 {
     drawn_hair_close(&s->hair);
     noh_backdrop_delete(&s->backdrop);
+    noh_stage_floor_delete(&s->floor);
     noh_stage_terrain_delete(&s->terrain);
     free(s->terrain_memory);
     if (s->stage) noh_stage_delete(s->stage);
@@ -314,6 +320,8 @@ int place_scene_draw(place_scene *s, const noh_stage_view *view)
     noh_backdrop_draw(&s->backdrop,
                       s->light.background == BACKGROUND_LIGHT ? NOH_BACKDROP_LIGHT : NOH_BACKDROP_GRADIENT,
                       noh_stage_light_of(s->stage), &s->light.told, view);
+    const float *middle = s->light.sphere, disc[4] = { middle[0], 0.0f, middle[2], FLOOR_RADII * middle[3] };
+    if (s->floor.drawable.gl) noh_stage_floor_draw(&s->floor, noh_stage_light_of(s->stage), &s->light.told, view, disc);
     if (s->terrain.drawable.gl) noh_stage_terrain_draw(&s->terrain, s->stage, view);
     if (noh_stage_draw(s->stage, NOH_PASS_COLOR, 0, NULL, &error)) status = tool_fail_error(s->file->path, &error);
     drawn_hair_draw(&s->hair, s->stage, 0, NOH_PASS_COLOR);

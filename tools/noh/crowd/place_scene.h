@@ -60,6 +60,7 @@ typedef struct place_scene {
     noh_walkers *walkers;
     void *memory, *walkers_memory;
     noh_backdrop backdrop;
+    noh_stage_floor floor;     /* where the place has neither scenery nor ground */
     noh_stage_terrain terrain; /* drawn where the place has a ground */
     void *terrain_memory;
     drawn_hair hair;

@@ -45,10 +45,12 @@ void orbit_axes(const orbit *o, double right[3], double up[3], double back[3])
     memcpy(back, b, sizeof b);
 }
 
+#define FLOOR_RADII 8.0 /* shadows on a floor reach so far */
+
 void orbit_camera(const orbit *o, noh_gl_camera *camera)
 {
     double right[3], up[3], back[3], view[16] = { 0 }, projection[16] = { 0 };
-    double near = fmax(o->distance - 2.0 * o->radius, o->distance * 0.02), far = o->distance + 2.0 * o->radius;
+    double near = fmax(o->distance - 2.0 * o->radius, o->distance * 0.02), far = o->distance + FLOOR_RADII * o->radius;
     double f = 1.0 / tan(ORBIT_VIEW_RAD / 2.0), key_length = 0.0;
     orbit_axes(o, right, up, back);
     for (int c = 0; c < 3; c++) {
@@ -81,9 +83,11 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera)
 static const struct {
     const char *word;
     view_frame frame;
-} frames[] = {
-    { "auto", FRAME_AUTO }, { "full", FRAME_FULL }, { "body", FRAME_FULL }, { "upper", FRAME_UPPER }, { "face", FRAME_FACE }
-};
+} frames[] = { { "auto", FRAME_AUTO },
+               { "full", FRAME_FULL },
+               { "body", FRAME_FULL },
+               { "upper", FRAME_UPPER },
+               { "face", FRAME_FACE } };
 
 /* The frame that the text begins with, and what follows its word; NULL: it begins with none. */
 static const char *after_frame(const char *text, view_frame *frame)
@@ -172,7 +176,7 @@ orbit orbit_fit(const bounds *box, double aspect)
 }
 
 /* Without a direction of their own: from the side and a little above, where a face shows its shape. */
-#define AUTO_DIRECTION "15,4"
+#define AUTO_DIRECTION "15,6"
 
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
 {

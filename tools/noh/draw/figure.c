@@ -306,8 +306,8 @@ int figure_open(figure *f, const figure_desc *desc, gpu *g)
     if (!status && desc->body) status = figure_body_open_gl(desc->body, g);
     if (!status) status = figure_open_hair(f);
     if (!status) status = open_actors(f);
-    if (!status) status = figure_open_blobs(f);
     if (!status) status = figure_open_floor(f);
+    if (!status) status = figure_open_blobs(f);
     if (!status) status = figure_open_decals(f);
     if (status) figure_close(f);
     return status;
@@ -455,8 +455,8 @@ int figure_draw(figure *f)
     noh_result result;
     draw_backdrop(f);
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
-    if (f->blob.drawable.gl) figure_draw_blobs(f);
     if (f->shows_floor) figure_draw_floor(f);
+    if (f->blob.drawable.gl && f->desc.view == NOH_VIEW_LIT) figure_draw_blobs(f);
     result = in_parts ? draw_in_parts(f, &error) : noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     return result ? tool_fail_error(f->desc.file->path, &error) : 0;
 }

@@ -85,7 +85,6 @@ typedef struct figure_desc {
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
     uint32_t mark_count;
     int grown;       /* 1: marks are grown as triangles */
-    int on_floor;    /* 1: its shadow may fall on a floor (figure_set_floor) */
     lighting *light; /* NULL: the plain renderer's own. Must outlive the figure, at one address */
 } figure_desc;
 
@@ -119,6 +118,7 @@ typedef struct figure {
     noh_stage_floor level; /* zeros: no shadow falls on a floor */
     int shows_floor;       /* 1: it casts one now */
     float floor;           /* y of the ground where the body has none */
+    double height;         /* at rest */
     noh_stage_view seen;   /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_appearance look; /* of all actors */
@@ -131,7 +131,8 @@ void figure_plan_free(figure *f); /* of a figure that is not opened */
 /* The planned bytes: the stage and its hair, without lights, marks and debug views. */
 void figure_bytes(const figure *f, uint64_t *cpu_bytes, uint64_t *gpu_bytes);
 
-/* Whether a shadow falls on a floor at a height, if figure_desc.on_floor and a light with a shadow map allow it. */
+/* Whether a body casts a shadow on a floor, and at which height: from the start it does, at its feet. Only in a light
+ * with a shadow map, and without a ground of its own (figure_desc.body). */
 void figure_set_floor(figure *f, int on, float height);
 
 /* g  NULL: nothing is drawn, as above */
@@ -195,10 +196,13 @@ int figure_feel(figure *f, const option_list *emotions);
  * where it stands without a turn. */
 int figure_live(figure *f, double seconds, double turn);
 
-/* The spots under a figure (--shadow blob): opened with its actors, closed; drawn, before the figure. */
+/* The spots under a figure (--shadow blob, and where it stands on a floor or a ground): opened after the floor; drawn
+ * before the figure. */
 int figure_open_blobs(figure *f);
 void figure_draw_blobs(figure *f);
 int figure_open_floor(figure *f);
+/* Put the floor at the lowest point of poses, if it is near. */
+void figure_fit_floor(figure *f, double lowest);
 void figure_draw_floor(const figure *f);
 
 /* --decal X,Y[,SIZE[,RRGGBB]] and --decal-kind rest|grown. marks: [NOH_DECALS_MAX], that desc has afterwards */
@@ -235,6 +239,8 @@ int figure_fall(figure *f, const float impulse[3], double seconds);
 /* The world bounds of the part of the pose that a camera frames, by the coarsest levels, whichever is shown: pictures of
  * all levels can be compared, also with a stripped pack. A face is what targets move, with room for its hair. */
 bounds figure_bounds(const figure *f, view_frame frame);
+/* 1 where a face is most of it. */
+int figure_is_head(const figure *f);
 /* The first joint's place over the ground, which a camera follows. 0 without joints. */
 void figure_anchor(const figure *f, double anchor[3]);
 /* The joints of a kind: matrices[joint_count][12], by malloc; NULL: it has none. */

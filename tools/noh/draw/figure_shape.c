@@ -209,6 +209,17 @@ static bounds upper_of(bounds box)
     return box;
 }
 
+static int is_head(const bounds *all, const bounds *face)
+{
+    return face->high[1] - face->low[1] > FACE_IS_ALL * (all->high[1] - all->low[1]);
+}
+
+int figure_is_head(const figure *f)
+{
+    const bounds all = measure(f, 0), face = measure(f, 1);
+    return face.low[0] <= face.high[0] && is_head(&all, &face);
+}
+
 bounds figure_bounds(const figure *f, view_frame frame)
 {
     const bounds all = measure(f, 0), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
@@ -216,7 +227,6 @@ bounds figure_bounds(const figure *f, view_frame frame)
     if (frame == FRAME_FULL) return all;
     const bounds face = measure(f, 1);
     const int has_face = face.low[0] <= face.high[0];
-    const int is_head = has_face && face.high[1] - face.low[1] > FACE_IS_ALL * (all.high[1] - all.low[1]);
-    if (frame == FRAME_FACE ? has_face : is_head) return around_face(f, &all, face);
+    if (has_face && (frame == FRAME_FACE || is_head(&all, &face))) return around_face(f, &all, face);
     return frame == FRAME_UPPER ? upper_of(all) : all;
 }

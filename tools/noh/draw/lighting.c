@@ -9,10 +9,19 @@
 
 #define PI 3.14159265358979323846
 
-int lighting_wanted(light_options *o, int shows_surfaces)
+/* Skin shows its depth by a window, everything else in soft boxes. */
+static const char *light_of(const noh_pack *pack)
+{
+    for (uint32_t i = 0; pack && i < pack->material_count; i++) {
+        if (pack->materials[i].surface == NOH_SURFACE_SKIN) return "room";
+    }
+    return "studio";
+}
+
+int lighting_wanted(light_options *o, const noh_pack *pack, int shows_surfaces)
 {
     if (o->light && strcmp(o->light, "auto") == 0) {
-        o->light = shows_surfaces ? "studio" : NULL;
+        o->light = shows_surfaces ? light_of(pack) : NULL;
     }
     return o->light && strcmp(o->light, "none") != 0;
 }

@@ -32,8 +32,9 @@ typedef struct lighting {
 } lighting;
 
 /* 1 if the options select an environment, not "none". "auto" is replaced by its light.
+ * pack: its materials choose the light of "auto"; NULL: none known
  * shows_surfaces: 0: bones, or values as colours */
-int lighting_wanted(light_options *o, int shows_surfaces);
+int lighting_wanted(light_options *o, const noh_pack *pack, int shows_surfaces);
 /* Read or bake the environment. Prints an error and returns an exit code; 0 on success. */
 int lighting_open(lighting *l, const light_options *o);
 void lighting_close(lighting *l);

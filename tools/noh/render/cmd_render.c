@@ -136,6 +136,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
         const bounds box = picture_bounds(p, view_frame_of(&a->view));
+        if (p->figure.shows_floor) figure_fit_floor(&p->figure, figure_bounds(&p->figure, FRAME_FULL).low[1]);
         status = view_camera(&a->view, &box, &camera);
     }
     return status ? status : picture_read(p, &camera, rgba);
@@ -169,7 +170,7 @@ static int render(render_args *a, const pack_file *file)
     const int shows_bones = picture_shows_bones(file, a->show_bones);
     const int lit = a->figure.view == NOH_VIEW_LIT && a->shows != DEBUG_JOINTS && a->shows != DEBUG_WEIGHTS;
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
-    if (!status && lighting_wanted(&a->light, !shows_bones && lit)) {
+    if (!status && lighting_wanted(&a->light, &file->pack, !shows_bones && lit)) {
         status = lighting_open(&light, &a->light);
         if (status) return status;
         a->figure.light = &light;

@@ -71,6 +71,7 @@ static void find_anchor(const sheet *s, const picture *p, double anchor[3])
 
 static int measure_tiles(sheet *s, picture *p, view_frame frame)
 {
+    double lowest = INFINITY;
     int status = 0;
     for (uint32_t tile = 0; tile < s->tile_count && !status; tile += 1 + s->tile_count / 40) {
         double anchor[3];
@@ -78,9 +79,12 @@ static int measure_tiles(sheet *s, picture *p, view_frame frame)
         status = sheet_tiles_pose(&s->tiles, &p->figure, tile);
         if (status) break;
         find_anchor(s, p, anchor);
-        box = move_box(picture_bounds(p, frame), anchor, -1.0);
+        box = picture_bounds(p, frame);
+        lowest = fmin(lowest, box.low[1]);
+        box = move_box(box, anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
+    if (frame == FRAME_FULL) figure_fit_floor(&p->figure, lowest);
     return status;
 }
 
@@ -275,16 +279,14 @@ static int run(void *args)
     sheet_args *a = args;
     pack_file file;
     int status = check_args(a);
-    if (!status && lighting_wanted(&a->s.light, !a->s.show_bones)) {
-        status = lighting_open(&a->s.lit, &a->s.light);
-        if (!status) a->s.figure.light = &a->s.lit;
-    }
+    if (!status) status = pack_file_open(&file, a->s.pack);
     if (!status) {
-        status = pack_file_open(&file, a->s.pack);
-        if (!status) {
-            status = make(&a->s, &file);
-            pack_file_close(&file);
+        if (lighting_wanted(&a->s.light, &file.pack, !a->s.show_bones)) {
+            status = lighting_open(&a->s.lit, &a->s.light);
+            if (!status) a->s.figure.light = &a->s.lit;
         }
+        if (!status) status = make(&a->s, &file);
+        pack_file_close(&file);
     }
     if (a->s.figure.light) lighting_close(&a->s.lit);
     figure_body_free(&a->s.body);

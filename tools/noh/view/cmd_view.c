@@ -49,7 +49,7 @@ static int run(void *args)
 {
     view_args *a = args;
     int springs = 1, status = check_args(a);
-    if (!status && lighting_wanted(&a->light, !a->run.desc.show_bones)) {
+    if (!status && lighting_wanted(&a->light, NULL, !a->run.desc.show_bones)) {
         status = lighting_open(&a->lit, &a->light);
         a->run.desc.light = &a->lit;
     }
