@@ -27,9 +27,10 @@ echo 'This is not a pack, but a line of text that is long enough to hold a heade
 noh info "$work/text.noh"
 expect 1 'a text file as a pack'
 says 'not a .noh pack'
-noh info "$build/mask.glb"
-expect 1 'a .glb as a pack'
-says 'not a .noh pack'
+cp "$work/text.noh" "$work/text.glb"
+noh info "$work/text.glb"
+expect 1 'a text file as a model'
+says "noh: $work/text.glb: "
 
 for cut in 1 63 64 65 1000 $((bytes / 2)) $((bytes - 1)); do
     head -c "$cut" "$pack" >"$work/cut.noh"

@@ -268,7 +268,7 @@ expect 2 '--actors and --desc'
 says '--actors has no effect with --desc'
 noh budget --nominal
 expect 2 'neither a pack nor a text'
-says 'noh budget needs PACK or --desc'
+says 'noh budget needs PACK|MODEL or --desc'
 
 # faces and graphs in a text
 printf 'kind puppet\n mesh %s\n actor_count 2\n graphs "*"\n face 0.035 1.55 0.11 -0.035 1.55 0.11\n' \

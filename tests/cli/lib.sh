@@ -11,6 +11,7 @@ build=${NOH_BUILD:-build}
 assets=${NOH_ASSETS:-}
 work=$(mktemp -d "${TMPDIR:-/tmp}/noh_cli_XXXXXX") || exit 1
 trap 'rm -rf "$work"' EXIT
+export NOH_CACHE="$work/cache"
 tests=0 failures=0 code=0
 
 ok() {

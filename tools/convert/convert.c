@@ -273,8 +273,8 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     if (!failed && options->only != CONVERT_MESH && size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm)) {
         failed = out_of_memory(error);
     }
-    if (options->report) {
-        report_warnings(options->report, s);
+    if (options->warnings || options->report) {
+        report_warnings(options->warnings ? options->warnings : options->report, s);
     }
     failed = failed || pack_check_model(m, error) || encode_meshes(m, options, &meshes, error) ||
              trim_textures(s->m, meshes.levels, options, error);
@@ -377,6 +377,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
         free(all);
         return out_of_memory(&failure->error);
     }
+    inputs_record(options->inputs);
     failed = read_all(inputs, input_count, options, all, failure);
     if (!failed) {
         base = base_of(all, input_count);
@@ -389,6 +390,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  read_chunks(options, &all[base], 1, chunks, failure) ||
                  convert_source(&all[base], chunks, options, out, &failure->error);
     }
+    inputs_record(NULL);
     for (int i = 0; i < input_count || !i; i++) {
         source_free(&all[i]);
     }

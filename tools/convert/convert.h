@@ -4,6 +4,7 @@
 
 #include <stdio.h>
 
+#include "convert/base/input_file.h"
 #include "convert/light/transfer_make.h"
 #include "convert/pack/pack_clips.h"
 #include "noh/pack.h"
@@ -41,6 +42,8 @@ typedef struct convert_options {
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */
+    FILE *warnings;         /* NULL: with the report */
+    input_list *inputs;     /* receives the files that were read or looked for; NULL: not wanted */
     FILE *progress;         /* a terminal, for progress; NULL: none */
 } convert_options;
 

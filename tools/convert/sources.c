@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "convert/clips/bvh_read.h"
+#include "convert/base/file_kind.h"
+#include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
@@ -27,21 +29,6 @@ static int out_of_memory(model_error *error)
 }
 
 /* ---- reading ---- */
-
-static int has_ending(const char *path, const char *ending)
-{
-    size_t length = strlen(path), tail = strlen(ending);
-    if (length < tail) {
-        return 0;
-    }
-    for (size_t i = 0; i < tail; i++) {
-        char c = path[length - tail + i];
-        if ((c >= 'A' && c <= 'Z' ? c + 32 : c) != ending[i]) {
-            return 0;
-        }
-    }
-    return 1;
-}
 
 static int resample_set(raw_set *set, double sample_rate_hz, model_error *error)
 {
@@ -75,10 +62,11 @@ static int turn(raw_set *set, const source_options *options, model_error *error)
     return 0;
 }
 
-static int read_clip_file(const char *path, const source_options *options, source *s, model_error *error)
+static int read_clip_file(const char *path, file_reader reader, const source_options *options, source *s,
+                          model_error *error)
 {
     bvh_options bvh = { options->unit_cm, 0 };
-    int failed = has_ending(path, ".rcl") ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
+    int failed = reader == READER_RCL ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
     if (failed) {
         return 1;
     }
@@ -98,13 +86,16 @@ static int read_model(const char *path, const source_options *options, model **o
 {
     const obj_options obj = { options->unit_cm, options->targets };
     const fbx_options fbx = { options->unit_cm };
-    if (has_ending(path, ".fbx")) return fbx_read(path, &fbx, out, error);
-    if (has_ending(path, ".c3d") || has_ending(path, ".trc")) {
-        return model_fail(error, "",
-                          "markers of optical capture (.c3d, .trc) are not read: solve them for a skeleton and "
-                          "export .bvh, which noh build --clean then fills and filters");
+    const file_kind *kind = file_kind_of(path);
+    const file_reader reader = kind ? kind->reader : READER_GLTF;
+    switch (reader) {
+    case READER_FBX: inputs_note(path, 1); return fbx_read(path, &fbx, out, error);
+    case READER_OBJ: return obj_read(path, &obj, out, error);
+    case READER_GLTF: return model_read_gltf(path, out, error);
+    default:
+        return model_fail(error, "", "this is %s, not a model: %s", kind->what,
+                          kind->instead ? kind->instead : "noh build MODEL FILE adds its clips to a model");
     }
-    return has_ending(path, ".obj") ? obj_read(path, &obj, out, error) : model_read_gltf(path, out, error);
 }
 
 /* Add the meshes of other files to a model that has meshes. */
@@ -161,11 +152,11 @@ static int read_model_file(const char *path, const source_options *options, sour
 
 int source_read(const char *path, const source_options *options, source *s, model_error *error)
 {
+    const file_kind *kind = file_kind_of(path);
     memset(s, 0, sizeof *s);
-    if (has_ending(path, ".rcl") || has_ending(path, ".bvh")) {
-        return read_clip_file(path, options, s, error);
-    }
-    return read_model_file(path, options, s, error);
+    return kind && (kind->reader == READER_BVH || kind->reader == READER_RCL)
+               ? read_clip_file(path, kind->reader, options, s, error)
+               : read_model_file(path, options, s, error);
 }
 
 void source_free(source *s)

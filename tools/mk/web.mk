@@ -102,8 +102,8 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 # of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco and
 # FBX, whose arrays are packed by zlib, are left out: what needs them is refused.
 WEB_CONVERT   := $(BUILD)/web-convert
-WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c fbx_none.c stb.c libraries.cpp) \
-                 tools/noh/build/cmd_build.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c model_none.c fbx_none.c stb.c libraries.cpp) \
+                 tools/noh/build/cmd_build.c tools/noh/build/build_fail.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
                  $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) \
                  $(filter-out tools/convert/fbx/%,$(CONVERT_CC)))) \
                  $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
@@ -148,8 +148,8 @@ $(WEB)/package/convert/convert.%: $(WEB_CONVERT)/convert.%
 WEB_FESTIVAL   := $(WEB)/festival
 WEB_FESTIVAL_O := $(patsubst %.c,$(WEB_OBJECTS)/%.o,platform/web/festival/festival.c platform/web/context.c platform/file.c \
                   $(addprefix tools/noh/crowd/,place_scene.c place_life.c place_people.c place_file.c crowd_measure.c crowd_hair.c) \
-                  tools/noh/draw/lighting.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
-                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error nearest image_file input_file text_scan))
+                  tools/noh/draw/lighting.c tools/noh/build/build_fail.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
+                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_none web_convert/model_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error file_kind nearest image_file input_file text_scan))
 WEB_FESTIVAL_FILES := $(addprefix $(WEB_FESTIVAL)/,index.html festival.js people.nohz festival.nohz festival.place)
 
 web-festival: web

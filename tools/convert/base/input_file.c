@@ -5,11 +5,47 @@
 
 #include "platform.h"
 
+static __thread input_list *recording;
+
+void inputs_record(input_list *list)
+{
+    recording = list;
+}
+
+void inputs_note(const char *path, int is_there)
+{
+    input_list *list = recording;
+    struct input_entry *grown;
+    for (uint32_t i = 0; list && i < list->count; i++) {
+        if (strcmp(list->entries[i].path, path) == 0) {
+            list->entries[i].is_there |= is_there;
+            return;
+        }
+    }
+    if (!list || list->failed) return;
+    grown = realloc(list->entries, ((size_t)list->count + 1u) * sizeof *grown);
+    if (grown) list->entries = grown;
+    if (!grown || !(grown[list->count].path = model_string(path))) {
+        list->failed = 1;
+        return;
+    }
+    grown[list->count++].is_there = is_there;
+}
+
+void inputs_free(input_list *list)
+{
+    for (uint32_t i = 0; i < list->count; i++) free(list->entries[i].path);
+    free(list->entries);
+    memset(list, 0, sizeof *list);
+}
+
 char *input_read(const char *path, size_t *bytes, model_error *error)
 {
     noh_file file;
     noh_error reason;
-    if (noh_file_map(path, &file, &reason) != NOH_OK) {
+    const noh_result result = noh_file_map(path, &file, &reason);
+    inputs_note(path, result == NOH_OK);
+    if (result != NOH_OK) {
         model_fail(error, "", "the file cannot be read: %s", reason.what);
         return NULL;
     }

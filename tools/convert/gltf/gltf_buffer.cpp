@@ -6,6 +6,8 @@
 #include <filesystem>
 #include <memory>
 
+#include "convert/base/input_file.h"
+
 namespace tinygltf
 {
 /* tinygltf defines this function, but its header declares it only for its own use. */
@@ -30,7 +32,9 @@ struct file_closer {
 bytes read_whole_file(const std::string &path, const std::string &where)
 {
     std::error_code ignored;
-    if (!std::filesystem::exists(path, ignored)) fail(where, "the file does not exist: " + path);
+    const bool is_there = std::filesystem::exists(path, ignored);
+    inputs_note(path.c_str(), is_there);
+    if (!is_there) fail(where, "the file does not exist: " + path);
     if (!std::filesystem::is_regular_file(path, ignored)) /* a device may never end */
         fail(where, "this is not a file: " + path);
     std::unique_ptr<FILE, file_closer> stream(fopen(path.c_str(), "rb"));

@@ -121,13 +121,13 @@ typedef struct scene {
 static int copy_pack(scene *s, const pack_file *from, unsigned keeps)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
-    s->bytes = malloc(from->file.bytes);
+    s->bytes = malloc(from->pack.byte_count);
     s->file.path = from->path;
     if (!s->bytes) {
         return tool_fail(from->path, "out of memory");
     }
-    memcpy(s->bytes, from->file.data, from->file.bytes);
-    if (noh_pack_open(s->bytes, from->file.bytes, &s->file.pack, &error)) {
+    memcpy(s->bytes, from->pack.bytes, from->pack.byte_count);
+    if (noh_pack_open(s->bytes, from->pack.byte_count, &s->file.pack, &error)) {
         return tool_fail_error(from->path, &error);
     }
     for (uint32_t i = 0; i < s->file.pack.material_count; i++) {

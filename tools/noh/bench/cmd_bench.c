@@ -195,7 +195,7 @@ static const option options[] = {
 
 const verb verb_bench = {
     .name = "bench",
-    .files = "PACK...",
+    .files = "PACK|MODEL...",
     .what = "measure costs as ratios to named baselines from the same run",
     .example = "head.noh --source head.glb\nwalk.noh run.noh --only clip --json",
     .options = options,

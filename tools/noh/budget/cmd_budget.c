@@ -309,7 +309,7 @@ static const option options[] = {
 
 const verb verb_budget = {
     .name = "budget",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "show the bytes that a load or a stage will take, CPU and GPU, by part",
     .more =
         "With --actors, or with --desc in place of PACK, it plans a stage: its parts, the levels of each kind, and what it gives up to meet a limit.",

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "build/build_options.h"
 #include "cli/args.h"
 #include "convert/convert.h"
 #include "convert/mocap/clean.h"
@@ -301,7 +302,7 @@ static int set_textures(const build_args *a, convert_options *o)
                : 0;
 }
 
-static int set_options(const build_args *a, convert_options *o)
+static int set_values(const build_args *a, convert_options *o)
 {
     int status;
     if (a->error_um <= 0.0 || a->error_um > 1e6) {
@@ -318,17 +319,6 @@ static int set_options(const build_args *a, convert_options *o)
     if (!status) status = set_wrinkles(a, o);
     if (!status) status = set_textures(a, o);
     return status;
-}
-
-static int fail_build(const convert_failure *f)
-{
-    char place[512];
-    if (f->line) {
-        (void)snprintf(place, sizeof place, "%s:%u", f->file, f->line);
-        return tool_fail(place, "%s", f->error.what);
-    }
-    return f->error.where[0] ? tool_fail(f->file, "%s (%s)", f->error.what, f->error.where)
-                             : tool_fail(f->file, "%s", f->error.what);
 }
 
 static int set_terrain(const build_args *a, convert_options *o)
@@ -359,6 +349,26 @@ static int check_targets(const build_args *a)
     return a->face.targets ? tool_usage("--targets needs an .obj model: a glTF file holds its own targets") : 0;
 }
 
+static int set_options(const build_args *a, convert_options *o)
+{
+    int status;
+    memset(o, 0, sizeof *o);
+    status = set_values(a, o);
+    if (!status) status = check_targets(a);
+    if (!status) status = set_terrain(a, o);
+    o->source.identity = a->face.identity;
+    o->source.targets = a->face.targets;
+    o->joints.names = a->clips.rename;
+    o->joints.partial = a->clips.partial;
+    o->source.split_eyes = a->face.eyes;
+    memcpy(o->texts, a->texts, sizeof o->texts);
+    o->spring_lines = a->spring_lines.items;
+    o->spring_line_count = (uint32_t)a->spring_lines.count;
+    o->source.lips = a->face.lips;
+    o->no_correctives = a->face.no_correctives;
+    return status;
+}
+
 static int run(void *args)
 {
     const build_args *a = args;
@@ -367,28 +377,14 @@ static int run(void *args)
     noh_error error = { NOH_OK, "", 0, 0 };
     byte_buffer pack = { NULL, 0, 0, 0 };
     FILE *report = a->quiet ? NULL : report_stream(a->output);
-    int status;
-    memset(&o, 0, sizeof o);
-    status = set_options(a, &o);
-    if (!status) status = check_targets(a);
-    if (!status) status = set_terrain(a, &o);
+    int status = set_options(a, &o);
     if (status) {
         return status;
     }
-    o.source.identity = a->face.identity;
-    o.source.targets = a->face.targets;
-    o.joints.names = a->clips.rename;
-    o.joints.partial = a->clips.partial;
-    o.source.split_eyes = a->face.eyes;
-    memcpy(o.texts, a->texts, sizeof o.texts);
-    o.spring_lines = a->spring_lines.items;
-    o.spring_line_count = (uint32_t)a->spring_lines.count;
-    o.source.lips = a->face.lips;
-    o.no_correctives = a->face.no_correctives;
     o.report = report;
     o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
     if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
-        return fail_build(&failure);
+        return build_fail(&failure);
     }
     if (noh_file_write(a->output, pack.bytes, pack.count, &error)) {
         status = tool_fail(a->output, "cannot write: %s", error.what);
@@ -400,6 +396,11 @@ static int run(void *args)
 }
 
 static build_args arguments;
+
+int build_options_read(int argc, char **argv, convert_options *o)
+{
+    return args_read(&verb_build, argc, argv) ? EXIT_USAGE : set_options(&arguments, o);
+}
 
 static const option options[] = {
     { .name = "-o",

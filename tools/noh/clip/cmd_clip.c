@@ -304,7 +304,7 @@ static const option options[] = {
 
 const verb verb_clip = {
     .name = "clip",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "list compressed clips with their bytes and certified errors, or write one decoded",
     .example = "body.noh\nbody.noh --dump walk.rcl --clip walk --json",
     .options = options,

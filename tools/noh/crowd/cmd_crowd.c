@@ -434,7 +434,7 @@ static const option options[] = {
 
 const verb verb_crowd = {
     .name = "crowd",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "draw a crowd of a pack's skinned mesh with LOD, or run agents through a scene and measure them",
     .more =
         "--test runs agents without a pack. circle250: 250 of 3 m across, at 2 m/s, on a circle of 200 m, each to the opposite side. door200: 200 of half a metre, at 1.3 m/s, a metre apart, out through a door of 1.6 m. dense1000: 1,000 of half a metre on a square with a square metre for each, to one random place after the other; open10000: 10,000 of 0.6 m with 4 square metres for each. maze400: 400 of half a metre, from corner to corner of a maze, by flow fields; stalls600: 600 from one of 12 stalls to another, where each stays for 5 to 15 s. Printed are when half and all of them were there, the worst overlap of two, how often one overlapped by more than 5 %, the mean speed towards the goal (of the speed that they like), the longest time in which one stood still with room in front, CPU time and bytes, and a hash of where all are: the same on every processor. --place does the same in a place of a file: its agents walk from goal to goal and use what they need; all are there when each has been at a first goal.",

@@ -194,7 +194,7 @@ static const option options[] = {
 
 const verb verb_drop = {
     .name = "lab drop",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "drop ragdolls of a character and measure how they fall",
     .more =
         "Bodies follow from joint names, and their capsules from the skin. Each ragdoll starts 1.5 m up, turned at random, with up to 3 m/s sideways, and falls onto a floor with a friction of 0.6. Prints the largest angle past a joint's limits, the largest depth below the floor, the mean distance of the worst joint's anchors, the time at which the last ragdoll fell asleep, and the CPU time per body in 1/60 s. The hash covers all final poses, and is the same on every processor.",

@@ -292,7 +292,7 @@ static const option options[] = {
 
 const verb verb_dump = {
     .name = "dump",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "write the deformed mesh, as drawn, as an OBJ file, or an animation graph as text",
     .more =
         "Without --path, and with --path cpu, the CPU computes the mesh and no GL is needed. With any other path the vertices come from the vertex shader.",

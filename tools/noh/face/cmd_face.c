@@ -309,7 +309,7 @@ static const option options[] = { OPTION_JSON(face_args, as_json) };
 
 const verb verb_face = {
     .name = "face",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "show which targets of a face make blinks, gaze, emotions and mouth shapes, with the recipe of each",
     .more =
         "Each channel uses the first recipe that fits the targets' names: the pack's own (noh build --recipe), then the built-in recipes for ARKit, VRM and facial units. A mouth shape without a recipe uses the nearest other shape.",

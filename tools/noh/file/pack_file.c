@@ -1,9 +1,19 @@
+#define _POSIX_C_SOURCE 200809L /* isatty, opendir */
+
 #include "pack_file.h"
 
+#include <dirent.h>
+#include <errno.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "build/build_options.h"
 #include "cli/message.h"
+#include "convert/base/file_kind.h"
+#include "convert/base/nearest.h"
+#include "file/model_pack.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
@@ -42,32 +52,86 @@ static int unpack(pack_file *file, const char *subject)
     }
     free(memory);
     smaller = result ? NULL : realloc(desc.block, info.pack_bytes);
-    file->unpacked = smaller ? smaller : desc.block;
-    if (!result) result = noh_pack_open(file->unpacked, info.pack_bytes, &file->pack, &error);
+    file->made = smaller ? smaller : desc.block;
+    if (!result) result = noh_pack_open(file->made, info.pack_bytes, &file->pack, &error);
     if (result) {
-        free(file->unpacked);
-        file->unpacked = NULL;
+        free(file->made);
+        file->made = NULL;
         return tool_fail_error(subject, &error);
     }
     return 0;
 }
 
+static int build(pack_file *file, const char *subject)
+{
+    const model_pack_desc desc = { .path = file->path, .progress = isatty(STDERR_FILENO) ? stderr : NULL };
+    noh_error error = { NOH_OK, "", 0, 0 };
+    convert_failure failure;
+    byte_buffer pack;
+    if (model_pack_make(&desc, &pack, &failure)) {
+        failure.file = subject;
+        return build_fail(&failure);
+    }
+    file->made = pack.bytes;
+    return noh_pack_open(pack.bytes, pack.count, &file->pack, &error) ? tool_fail_error(subject, &error) : 0;
+}
+
+/* The pack or model in a folder whose name is nearest; name NULL: the first. */
+static int find_in_folder(const char *folder, const char *name, char found[256])
+{
+    const struct dirent *entry;
+    DIR *open = opendir(folder);
+    found[0] = '\0';
+    while (open && (entry = readdir(open)) != NULL) {
+        const char *both[2] = { found, entry->d_name };
+        char path[1024];
+        const file_kind *kind;
+        (void)snprintf(path, sizeof path, "%.700s/%.256s", folder, entry->d_name);
+        kind = entry->d_name[0] == '.' ? NULL : file_kind_of(path);
+        if (!kind || kind->reader == READER_NONE) continue;
+        if (name ? nearest_name(name, both, 2) == entry->d_name : !found[0] || strcmp(entry->d_name, found) < 0) {
+            (void)snprintf(found, 256, "%s", entry->d_name);
+        }
+    }
+    if (open) closedir(open);
+    return found[0] != '\0';
+}
+
+/* The file cannot be opened: what else is in its folder, or in it where it is one. */
+static int fail_missing(const char *path, const char *subject, const noh_error *error)
+{
+    const char *slash = strrchr(path, '/');
+    const int is_folder = error->result == NOH_ERR_ARG && error->where == EISDIR;
+    char folder[1024], found[256];
+    (void)snprintf(folder, sizeof folder, "%.*s", is_folder || !slash ? 1000 : (int)(slash - path + 1),
+                   is_folder || slash ? path : ".");
+    if (!find_in_folder(folder, is_folder ? NULL : slash ? slash + 1 : path, found)) {
+        return tool_fail(subject, "%s", is_folder ? "this is a folder: name a pack or a model" : error->what);
+    }
+    return is_folder ? tool_fail(subject, "this is a folder: name a file in it, such as %s", found)
+                     : tool_fail(subject, "%s (did you mean %s?)", error->what, found);
+}
+
 int pack_file_open_as(pack_file *file, const char *path, const char *subject)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
+    const file_kind *kind;
     memset(file, 0, sizeof *file);
     file->path = path;
-    if (noh_file_map(path, &file->file, &error)) {
-        return tool_fail(subject, "%s", error.what);
-    }
+    if (noh_file_map(path, &file->file, &error)) return fail_missing(path, subject, &error);
     if (file->file.bytes == 0) {
         return tool_fail(subject, "the file is empty");
     }
-    if (is_wire(&file->file)) {
-        const int status = unpack(file, subject);
+    kind = file_kind_of(path);
+    if (file_kind_is_built(kind) || is_wire(&file->file)) {
+        const int status = is_wire(&file->file) ? unpack(file, subject) : build(file, subject);
         noh_file_unmap(&file->file);
-        memset(&file->file, 0, sizeof file->file);
+        if (status) pack_file_close(file);
         return status;
+    }
+    if (kind && kind->reader == READER_NONE) {
+        pack_file_close(file);
+        return tool_fail(subject, "this is %s, neither a pack nor a model: %s", kind->what, kind->instead);
     }
     if (noh_pack_open(file->file.data, file->file.bytes, &file->pack, &error)) {
         pack_file_close(file);
@@ -78,8 +142,8 @@ int pack_file_open_as(pack_file *file, const char *path, const char *subject)
 
 void pack_file_close(pack_file *file)
 {
-    free(file->unpacked);
-    file->unpacked = NULL;
+    free(file->made);
+    file->made = NULL;
     if (file->file.data) noh_file_unmap(&file->file);
 }
 

@@ -1,4 +1,4 @@
-/* pack_file.h: a pack mapped from a file, or unpacked from its wire form. */
+/* pack_file.h: a pack mapped from a file, unpacked from its wire form, or built from a model. */
 #ifndef NOH_NOH_FILE_PACK_FILE_H
 #define NOH_NOH_FILE_PACK_FILE_H
 
@@ -9,13 +9,13 @@
 
 typedef struct pack_file {
     const char *path;
-    noh_file file;  /* empty where the file is a wire form */
-    void *unpacked; /* NULL where it is a pack */
+    noh_file file; /* empty where the file is no pack */
+    void *made;    /* the pack, unpacked or built; NULL where the file is one */
     noh_pack pack;
 } pack_file;
 
-/* Map and open a pack, or unpack and open a wire form, whatever the name ends in; prints the error and returns an exit
- * code, 0 on success. */
+/* Map and open a pack, or unpack a wire form, or build a model (model_pack.h); prints the error, which says what other
+ * files are, and returns an exit code, 0 on success. */
 int pack_file_open(pack_file *file, const char *path);
 /* The same, with messages about `subject`: "cast.txt:3: head.noh". */
 int pack_file_open_as(pack_file *file, const char *path, const char *subject);

@@ -6,6 +6,11 @@ const char *const help_formats_text[] = {
     "# packs (.noh)",
     "noh build writes packs; the library reads them in place, without parsing. A pack of another format version is refused: rebuild it "
     "from the model.",
+    "# models in place of packs",
+    "Every verb that takes a pack takes a model, and builds it as noh build does without options. Warnings of the build go to stderr. "
+    "The pack is kept in $NOH_CACHE, else $XDG_CACHE_HOME/noh, else ~/.cache/noh, by the contents of the model and of the files that it "
+    "refers to: a file that changes is built again. The folder keeps below $NOH_CACHE_MB megabytes (1024; 0: nothing is kept) by removing "
+    "what was not used for longest, and may be removed at any time. A script that needs options calls noh build.",
     "# models and clips (noh build IN...)",
     ".gltf, .glb: glTF 2.0: meshes, morph targets, skins, materials, animations. The first input with meshes is the model.",
     ".vrm: glTF with VRM 1.0 or 0.0: bones take VRM's names (hips, leftUpperArm), expressions become the face's recipe.",

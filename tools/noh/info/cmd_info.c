@@ -428,7 +428,7 @@ static const option options[] = { OPTION_JSON(info_args, as_json) };
 
 const verb verb_info = {
     .name = "info",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what =
         "list the contents of a pack: counts, names, joints, callback keys and markers with their times, bytes, and errors certified at build",
     .example = "face.noh\nface.noh --json",

@@ -185,7 +185,7 @@ static const option options[] = {
 
 const verb verb_light = {
     .name = "lab light",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "compare precomputed light (noh build --transfer) with brute force",
     .more =
         "Prints the relative root mean square error of the light reflected by white matte vertices, against rays from every vertex, over 12 random lights of each kind: soft lights, and lamps of about 25 degrees; and the same for the method of the SparseMorphTargets sample, lobes about the normal. Vertices that see less than 15 % of the sphere are left out. Without --weight the pose is an open mouth, brows down and mouth corners pulled, by the targets' names, or else the four targets that move the farthest.",

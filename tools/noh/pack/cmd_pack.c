@@ -285,7 +285,7 @@ static const option options[] = {
 
 const verb verb_pack = {
     .name = "pack",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "make the wire form of a pack: several times smaller to send, unpacked while it arrives",
     .more =
         "Every verb that reads a pack also reads its wire form. A game unpacks it piece by piece with noh_wire_push (noh/pack.h). A pack with LOD levels is preceded by a pack of its coarsest levels, which can be shown while the rest arrives.",

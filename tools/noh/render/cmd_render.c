@@ -294,7 +294,7 @@ static const option options[] = {
 
 const verb verb_render = {
     .name = "render",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "draw a picture of a pack",
     .example =
         "face.noh\nface.noh -o face.png --weight smile=1 --camera face,20,5\nbody.noh -o walk.png --clip walk --time 0.5",

@@ -152,7 +152,7 @@ static int replay(const replay_args *a, const pack_file *file)
 {
     replay_result r = { 0 };
     session s = { 0 };
-    const uint32_t pack_crc = noh_crc32c(0, file->file.data, file->file.bytes);
+    const uint32_t pack_crc = noh_crc32c(0, file->pack.bytes, file->pack.byte_count);
     int status = a->input ? read(a, pack_crc, &s) : draw(a, file, &s);
     s.pack_crc = pack_crc;
     if (!status) status = run_session(a, file, &s, &r);
@@ -232,7 +232,7 @@ static const option options[] = {
 
 const verb verb_replay = {
     .name = "lab replay",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "play inputs to a stage and hash every frame, or replay a session and compare its hashes",
     .more =
         "Without --play the inputs are random: characters spawn, play clips and graphs, show emotions, look at points, are hit, fall and get up, as far as the pack allows. This tests a pack on a new processor or compiler, and a new version of the library. Each frame's hashes cover the stage's state, callback keys, positions, floats, joints, palettes, and every half second the vertices of one actor. noh lab bisect compares two files.",

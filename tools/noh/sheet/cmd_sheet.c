@@ -447,7 +447,7 @@ static const option options[] = {
 
 const verb verb_sheet = {
     .name = "sheet",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what =
         "draw a contact sheet: every target at full weight, a clip over time, people by seed, wrinkle models, LOD levels, or data textures",
     .example =

@@ -184,7 +184,7 @@ static const option options[] = {
 
 const verb verb_strip = {
     .name = "strip",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "make a pack of only the coarser LOD levels from a finished pack",
     .more =
         "Levels keep their numbers and errors, so they are chosen and look the same as in the full pack. Skins, clips, nodes, materials and textures are unchanged.",

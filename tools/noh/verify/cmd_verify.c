@@ -206,7 +206,7 @@ static const option options[] = {
 
 const verb verb_verify = {
     .name = "verify",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "compare every path and format with the CPU reference, and memory with its budget",
     .more =
         "Fails (exit code 1) if a value that must be equal differs, or if one exceeds its bound; each FAILED line names the row, the value and the bound.",

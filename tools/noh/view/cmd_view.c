@@ -8,7 +8,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *lod, *camera, *face, *springs, *play;
+    const char *path, *accumulate, *driver, *camera, *face, *springs, *play;
     double frames;
     uint32_t size[2];
     light_options light;
@@ -18,9 +18,10 @@ typedef struct view_args {
 
 static int check_args(view_args *a)
 {
-    int status = parse_path(a->path, &a->run.desc.morph_path);
+    uint32_t levels;
+    int by_error, status = parse_path(a->path, &a->run.desc.morph_path);
     if (!status) status = parse_accumulate(a->accumulate, &a->run.desc.accumulate);
-    if (!status && a->lod) status = parse_levels(a->lod, &a->run.desc.lod.level_count, &a->run.desc.lod.by_error);
+    if (!status && a->run.desc.levels) status = parse_levels(a->run.desc.levels, &levels, &by_error);
     if (status) {
         return status;
     }
@@ -65,7 +66,6 @@ static int run(void *args)
     a->run.desc.without_springs = !springs;
     a->run.fixed_camera = strcmp(a->camera, "fixed") == 0;
     a->run.native = a->driver[0] == 'n';
-    a->run.desc.lod.mode = LOD_FAST; /* conversion stays quick */
     a->run.desc.width = a->size[0];
     a->run.desc.height = a->size[1];
     status = view_window_run(&a->run);
@@ -118,7 +118,7 @@ static const option options[] = {
       .what = "draw the skeletons instead of the meshes" },
     { .name = "--lod",
       .kind = OPTION_TEXT,
-      .at = offsetof(view_args, lod),
+      .at = offsetof(view_args, run.desc.levels),
       .value = "auto|N",
       .what =
           "number of LOD levels when converting a model, including the full mesh, 1 to 8; auto: up to five, by error",

@@ -112,7 +112,7 @@ int view_app_load(view_app *a, const char *path)
         view_load_cancel(&a->files.load);
         return view_app_show(a, path, NULL);
     }
-    status = view_load_start(&a->files.load, path, &a->desc.lod);
+    status = view_load_start(&a->files.load, path, a->desc.levels);
     view_keep(a, status);
     return status;
 }

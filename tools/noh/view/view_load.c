@@ -11,32 +11,15 @@
 #include <unistd.h>
 
 #include "cli/message.h"
-#include "convert/convert.h"
+#include "convert/base/file_kind.h"
+#include "file/model_pack.h"
 
 int view_is_model(const char *path)
 {
-    static const char *const endings[] = { ".gltf", ".glb", ".vrm", ".fbx", ".obj", ".bvh", ".rcl" };
-    const char *dot = strrchr(path, '.');
-    for (size_t i = 0; dot && i < sizeof endings / sizeof endings[0]; i++) {
-        if (strcmp(dot, endings[i]) == 0) return 1;
-    }
-    return 0;
+    return file_kind_is_built(file_kind_of(path));
 }
 
 /* ---- the process that converts ---- */
-
-/* As `noh build` without options. */
-static convert_options options_of(const lod_settings *levels, FILE *words)
-{
-    convert_options o;
-    memset(&o, 0, sizeof o);
-    o.morph.error_um = 10.0f;
-    o.clip.clip.shell_cm = 3.0;
-    o.source.unit_cm = 1.0;
-    o.lod = *levels;
-    o.progress = words;
-    return o;
-}
 
 static int write_all(int file, const uint8_t *bytes, size_t count)
 {
@@ -51,28 +34,28 @@ static int write_all(int file, const uint8_t *bytes, size_t count)
 }
 
 /* Ends with 0 where the pack is whole; else its last words are the reason. */
-static void convert(const view_load *l, const lod_settings *levels, int words)
+static void convert(const view_load *l, const char *levels, int words)
 {
-    const char *inputs[1] = { l->path };
-    FILE *says = fdopen(words, "w");
-    byte_buffer pack = { NULL, 0, 0, 0 };
+    const char *options[] = { "--lod", levels, "--lod-fast" }; /* quick */
+    model_pack_desc desc = { .path = l->path, .options = options, .option_count = levels ? 3 : 0 };
+    byte_buffer pack;
     convert_failure failure;
-    if (!says) _exit(EXIT_FAILED);
-    const convert_options options = options_of(levels, says);
-    fprintf(says, "\rreading");
-    fflush(says);
-    if (convert_files(inputs, 1, &options, &pack, &failure)) {
-        fprintf(says, "\r!%s%s%s%s", failure.error.what, failure.error.where[0] ? " (" : "", failure.error.where,
-                failure.error.where[0] ? ")" : "");
-        fflush(says);
+    desc.progress = fdopen(words, "w");
+    if (!desc.progress) _exit(EXIT_FAILED);
+    fprintf(desc.progress, "\rreading");
+    fflush(desc.progress);
+    if (model_pack_make(&desc, &pack, &failure)) {
+        fprintf(desc.progress, "\r!%s%s%s%s", failure.error.what, failure.error.where[0] ? " (" : "",
+                failure.error.where, failure.error.where[0] ? ")" : "");
+        fflush(desc.progress);
         _exit(EXIT_FAILED);
     }
     if (!write_all(l->bytes, pack.bytes, pack.count)) {
-        fprintf(says, "\r!cannot write the converted file: no space left");
-        fflush(says);
+        fprintf(desc.progress, "\r!cannot write the converted file: no space left");
+        fflush(desc.progress);
         _exit(EXIT_FAILED);
     }
-    fflush(says);
+    fflush(NULL);
     _exit(0);
 }
 
@@ -94,7 +77,7 @@ static int open_nameless(void)
     return file;
 }
 
-int view_load_start(view_load *l, const char *path, const lod_settings *levels)
+int view_load_start(view_load *l, const char *path, const char *levels)
 {
     int ends[2];
     view_load_cancel(l);

@@ -8,7 +8,6 @@
 #define NOH_NOH_VIEW_VIEW_LOAD_H
 
 #include "convert/base/byte_buffer.h"
-#include "convert/lod/lod_levels.h"
 #include "platform.h"
 
 #ifdef __cplusplus
@@ -28,8 +27,8 @@ typedef struct view_load {
 
 int view_is_model(const char *path);
 
-/* One at a time: a running conversion is cancelled. Prints an error and returns an exit code; 0 on success. */
-int view_load_start(view_load *l, const char *path, const lod_settings *levels);
+/* levels: as noh build --lod; NULL: the full mesh only. One at a time: a running conversion is cancelled. Prints an error and returns an exit code; 0 on success. */
+int view_load_start(view_load *l, const char *path, const char *levels);
 /* Read its messages. VIEW_LOAD_FAILED: after an error was printed. */
 view_load_state view_load_poll(view_load *l);
 int view_load_take(view_load *l, byte_buffer *out);

@@ -10,7 +10,6 @@
 
 #include "budget/pack_budget.h"
 #include "convert/base/byte_buffer.h"
-#include "convert/lod/lod_levels.h"
 #include "draw/bones.h"
 #include "draw/figure.h"
 #include "draw/overlay.h"
@@ -48,7 +47,7 @@ typedef struct view_model_desc {
     const char *path;       /* a pack, or a model that was converted */
     byte_buffer *converted; /* the pack of a model (view_load.h), taken over; NULL: the file is one */
     const char *anim;       /* a pack whose clips are played instead; NULL: none */
-    lod_settings lod;       /* LOD levels to convert a model with; level_count 0: none. A pack has its own */
+    const char *levels;     /* LOD levels to convert a model with, as noh build --lod; NULL: none */
     noh_morph_path morph_path;
     noh_accumulate accumulate;
     noh_debug_view view;

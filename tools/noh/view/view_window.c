@@ -194,7 +194,7 @@ static int convert(view_window *w, const view_run *run, byte_buffer *converted)
     int status;
     memset(converted, 0, sizeof *converted);
     if (!view_is_model(run->desc.path)) return 0;
-    status = view_load_start(load, run->desc.path, &run->desc.lod);
+    status = view_load_start(load, run->desc.path, run->desc.levels);
     while (!status && view_load_poll(load) == VIEW_LOAD_RUNS) {
         view_input input;
         float scale;

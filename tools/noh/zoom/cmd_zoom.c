@@ -232,7 +232,7 @@ static const option options[] = {
 
 const verb verb_zoom = {
     .name = "lab zoom",
-    .files = "PACK",
+    .files = "PACK|MODEL",
     .what = "compare LOD levels with the full mesh in a slow zoom out and back: silhouettes, surfaces, pops, flicker",
     .more =
         "Fails (exit code 1) if silhouettes or the surface are off by more than 1.25 times --pixels, if a change of level is visible, or if a level is entered twice on the way out or on the way back.",

@@ -1,0 +1,124 @@
+#include "file_kind.h"
+
+#include <stddef.h>
+#include <string.h>
+
+#include "platform.h"
+
+#define EXPORT "export glTF 2.0 (.glb) from the program that it is of, and give noh that file"
+#define BLENDER "export glTF 2.0 in Blender (File, Export, glTF 2.0), and give noh the .glb file"
+#define TO_GLTF "open it in Blender, export glTF 2.0 (File, Export, glTF 2.0), and give noh the .glb file"
+#define PICTURE \
+    "textures are read with the model that names them; noh render MODEL --light FILE lights by a panorama of .hdr or .png"
+#define CAPTURE \
+    "markers of optical capture are not read: solve them for a skeleton and export .bvh, which noh build --clean then fills and filters"
+#define SPEECH "noh speak makes a clip of a recording"
+#define ARCHIVE "unpack it, and give noh the model in it"
+#define TEXT(option) "noh build MODEL " option " FILE reads it"
+
+/* Rows with both a beginning and an ending are of one format; the first row that fits counts. */
+static const file_kind kinds[] = {
+    { ".noh", "NOHP", READER_PACK, "a pack", "it is built already: noh info, noh render and noh view take it" },
+    { ".nohz", "NOHZ", READER_PACK, "the wire form of a pack",
+      "it is built already: noh info, noh render and noh view take it" },
+    { ".glb", "glTF", READER_GLTF, "a glTF file", NULL },
+    { ".gltf", NULL, READER_GLTF, "a glTF file", NULL },
+    { ".vrm", NULL, READER_GLTF, "a VRM file", NULL },
+    { ".fbx", "Kaydara FBX Binary", READER_FBX, "an FBX file", NULL },
+    { ".obj", NULL, READER_OBJ, "an OBJ file", NULL },
+    { ".bvh", "HIERARCHY", READER_BVH, "a BVH file", NULL },
+    { ".rcl", "RCL1", READER_RCL, "a raw clip", NULL },
+    { ".blend", "BLENDER", READER_NONE, "a Blender file", BLENDER },
+    { ".blend1", NULL, READER_NONE, "a backup of a Blender file", BLENDER },
+    { ".dae", NULL, READER_NONE, "a COLLADA file", TO_GLTF },
+    { ".usdz", NULL, READER_NONE, "a USD file", TO_GLTF },
+    { ".usda", "#usda", READER_NONE, "a USD file", TO_GLTF },
+    { ".usdc", "PXR-USDC", READER_NONE, "a USD file", TO_GLTF },
+    { ".usd", NULL, READER_NONE, "a USD file", TO_GLTF },
+    { ".abc", NULL, READER_NONE, "an Alembic file", TO_GLTF },
+    { ".ply", "ply\n", READER_NONE, "a PLY file", TO_GLTF },
+    { ".stl", NULL, READER_NONE, "an STL file", TO_GLTF },
+    { ".3ds", NULL, READER_NONE, "a 3DS file", TO_GLTF },
+    { ".max", NULL, READER_NONE, "a 3ds Max file", EXPORT },
+    { ".ma", "//Maya ASCII", READER_NONE, "a Maya file", EXPORT },
+    { ".mb", NULL, READER_NONE, "a Maya file", EXPORT },
+    { ".c4d", NULL, READER_NONE, "a Cinema 4D file", EXPORT },
+    { ".duf", NULL, READER_NONE, "a Daz file", EXPORT },
+    { ".pmx", "PMX ", READER_NONE, "an MMD model", TO_GLTF },
+    { ".pmd", "Pmd", READER_NONE, "an MMD model", TO_GLTF },
+    { ".c3d", NULL, READER_NONE, "a C3D file", CAPTURE },
+    { ".trc", NULL, READER_NONE, "a TRC file", CAPTURE },
+    { ".png", "\x89PNG", READER_NONE, "a PNG picture", PICTURE },
+    { ".jpg", "\xff\xd8\xff", READER_NONE, "a JPEG picture", PICTURE },
+    { ".jpeg", NULL, READER_NONE, "a JPEG picture", PICTURE },
+    { ".hdr", "#?RADIANCE", READER_NONE, "an HDR panorama", PICTURE },
+    { ".gif", "GIF8", READER_NONE, "a GIF picture", PICTURE },
+    { ".exr", "\x76\x2f\x31\x01", READER_NONE, "an OpenEXR picture", PICTURE },
+    { ".psd", "8BPS", READER_NONE, "a Photoshop file", PICTURE },
+    { ".tga", NULL, READER_NONE, "a TGA picture", PICTURE },
+    { ".dds", "DDS ", READER_NONE, "a DDS picture", PICTURE },
+    { ".ktx2", "\xabKTX 20", READER_NONE, "a KTX2 picture", PICTURE },
+    { ".webp", NULL, READER_NONE, "a WebP picture", PICTURE },
+    { ".mtl", NULL, READER_NONE, "materials of an OBJ file", "give noh the .obj file" },
+    { ".bin", NULL, READER_NONE, "data of a glTF file", "give noh the .gltf file that names it" },
+    { ".wav", "RIFF", READER_NONE, "a recording", SPEECH },
+    { ".mp3", NULL, READER_NONE, "a recording", SPEECH },
+    { ".ogg", "OggS", READER_NONE, "a recording", SPEECH },
+    { ".flac", "fLaC", READER_NONE, "a recording", SPEECH },
+    { ".zip", "PK\x03\x04", READER_NONE, "a zip archive", ARCHIVE },
+    { ".gz", "\x1f\x8b", READER_NONE, "a gzip archive", ARCHIVE },
+    { ".7z", "7z\xbc\xaf", READER_NONE, "a 7z archive", ARCHIVE },
+    { ".unitypackage", NULL, READER_NONE, "a Unity package", ARCHIVE },
+    { ".graph", NULL, READER_NONE, "a text of animation graphs", TEXT("--graph") },
+    { ".recipe", NULL, READER_NONE, "a text of a face's recipe", TEXT("--recipe") },
+    { ".ragdoll", NULL, READER_NONE, "a text of a ragdoll", TEXT("--ragdoll") },
+    { ".springs", NULL, READER_NONE, "a text of springs", TEXT("--springs") },
+    { ".hair", NULL, READER_NONE, "a text of a haircut", TEXT("--hair") },
+    { ".place", NULL, READER_NONE, "a text of a place", "noh crowd PACK --place FILE reads it" },
+    { ".session", NULL, READER_NONE, "a recording of play", "noh lab replay PACK --play FILE reads it" },
+};
+
+#define KIND_COUNT (sizeof kinds / sizeof kinds[0])
+
+static int has_ending(const char *path, const char *ending)
+{
+    const size_t length = strlen(path), tail = strlen(ending);
+    if (length < tail) return 0;
+    for (size_t i = 0; i < tail; i++) {
+        const char c = path[length - tail + i];
+        if ((c >= 'A' && c <= 'Z' ? c + 32 : c) != ending[i]) return 0;
+    }
+    return 1;
+}
+
+static const file_kind *by_beginning(const char *path, int *is_there)
+{
+    const file_kind *found = NULL;
+    noh_file file;
+    *is_there = noh_file_map(path, &file, NULL) == NOH_OK;
+    if (!*is_there) return NULL;
+    for (size_t i = 0; i < KIND_COUNT && !found; i++) {
+        const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
+        if (length && file.bytes >= length && memcmp(file.data, kinds[i].begins, length) == 0) found = &kinds[i];
+    }
+    noh_file_unmap(&file);
+    return found;
+}
+
+/* Containers such as RIFF and zip hold many formats: there the ending decides. */
+const file_kind *file_kind_of(const char *path)
+{
+    int is_there;
+    const file_kind *began = by_beginning(path, &is_there), *ends = NULL;
+    for (size_t i = 0; i < KIND_COUNT && !ends; i++) {
+        if (kinds[i].ending && has_ending(path, kinds[i].ending)) ends = &kinds[i];
+    }
+    if (began && began->reader != READER_NONE) return began;
+    if (!is_there && ends && ends->reader == READER_NONE) return NULL;
+    return !began || (ends && ends->reader == READER_NONE) ? ends : began;
+}
+
+int file_kind_is_built(const file_kind *kind)
+{
+    return kind && kind->reader != READER_NONE && kind->reader != READER_PACK;
+}

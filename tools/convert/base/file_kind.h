@@ -1,0 +1,38 @@
+/* file_kind.h: what a file is, by its first bytes or its ending: which reader takes it, or what to do with it instead.
+ */
+#ifndef NOH_CONVERT_BASE_FILE_KIND_H
+#define NOH_CONVERT_BASE_FILE_KIND_H
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum file_reader {
+    READER_NONE,
+    READER_PACK,
+    READER_GLTF,
+    READER_FBX,
+    READER_OBJ,
+    READER_BVH,
+    READER_RCL
+} file_reader;
+
+typedef struct file_kind {
+    const char *ending; /* in small letters; NULL: by its first bytes alone */
+    const char *begins; /* its first bytes, without a zero; NULL: by its ending alone */
+    file_reader reader;
+    const char *what;    /* "a Blender file" */
+    const char *instead; /* what to do with it; NULL where a reader takes it */
+} file_kind;
+
+/* By the first bytes, else by the ending. NULL: of no kind, or a missing file that no reader would take. */
+const file_kind *file_kind_of(const char *path);
+
+/* 1 where noh build makes a pack of it. */
+int file_kind_is_built(const file_kind *kind);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
