@@ -47,7 +47,7 @@ QUICK_LD    := $(if $(shell command -v ld.lld),-fuse-ld=lld)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 # Draco meshes in glTF are read where its library is.
 HAVE_DRACO := $(shell $(PKG) --exists draco && echo y)
-TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(or $(shell $(PKG) --libs zlib),-lz) $(if $(HAVE_DRACO),-ldraco) -ldl -lm
+TOOL_LIBS := -ltinygltf -lmeshoptimizer -lstb $(if $(HAVE_DRACO),-ldraco) -ldl -lm
 # What runs is printed as a word and a file; V=1 prints the commands.
 Q        := $(if $(V),,@)
 say       = $(if $(V),,@printf '  %-6s %s\n' $(1) $(2))

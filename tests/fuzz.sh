@@ -61,7 +61,7 @@ wires=$!
 
 # Also the converter: C and C++, with its input libraries.
 link_import() {
-    more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb -lz"
+    more="-Itools -Iplatform -isystem /usr/include/stb" libraries="-ltinygltf -lmeshoptimizer -lstb"
     if pkg-config --exists draco; then more="$more -DNOH_DRACO" libraries="$libraries -ldraco"; fi
     rm -rf "$work/import"
     mkdir "$work/import"

@@ -40,6 +40,8 @@ head -c 5000 "$build/demo/arm.glb" >"$out/cut.glb"
 refuses cut "$out/cut.glb" 'truncated'
 printf 'HIERARCHY\nROOT hip\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\nEnd Site\n{\nOFFSET 0 10 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.03\n0 0 0\n10 20 30\n20 40 60\n' >"$out/turn.bvh"
 same clip "$out/turn.bvh"
+sed -n '/^cat .*strip\.fbx/,/^FBX$/p' tests/cli/fbx.sh | sed '1d; $d' >"$out/strip.fbx"
+same strip "$out/strip.fbx"
 printf 'HIERARCHY\nROOT hip\n{\nOFFSET 0 0\n' >"$out/bad.bvh"
 refuses bad "$out/bad.bvh" 'bad.bvh'
 if [ "${NOH_LONG:-0}" = 1 ]; then

@@ -25,7 +25,6 @@ libtinygltf-dev:reading glTF
 nlohmann-json3-dev:reading glTF
 libstb-dev:reading and writing pictures
 libmeshoptimizer-dev:reading compressed glTF
-zlib1g-dev:reading FBX
 ?libdraco-dev:reading Draco meshes in glTF'
 packages_view='?libglfw3-dev:noh view
 ?libimgui-dev:noh view'

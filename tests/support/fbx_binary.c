@@ -3,7 +3,9 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-#include <zlib.h>
+
+/* Of stb_image_write, whose header declares it only for its own implementation. */
+unsigned char *stbi_zlib_compress(unsigned char *data, int count, int *packed_count, int quality);
 
 typedef struct writer {
     const char *at;
@@ -118,12 +120,11 @@ static void put_value(writer *w)
 /* The numbers of `*COUNT { a: ... }`. All that fit are 32-bit integers; slopes are floats. */
 static void put_array(writer *w, int is_float)
 {
-    static uint8_t raw[1 << 16], packed[1 << 17];
+    static uint8_t raw[1 << 16];
     writer inner = { strstr(w->at, "a:") + 2, w->form, raw, 0, sizeof raw };
     const char *end = strchr(w->at, '}');
     int is_real = 0, is_wide = 0;
     uint32_t count = 0;
-    uLongf packed_size = sizeof packed;
     for (const char *c = inner.at; c < end; c++) is_real = is_real || *c == '.' || *c == 'e';
     for (const char *c = inner.at; c < end; c++) is_wide = is_wide || strspn(c, "0123456789") > 9;
     skip_blank(&inner);
@@ -146,9 +147,11 @@ static void put_array(writer *w, int is_float)
     put(w, is_float ? "f" : is_real ? "d" : is_wide ? "l" : "i", 1);
     put_u32(w, count);
     put_u32(w, w->form->packed ? 1 : 0);
-    if (w->form->packed && compress(packed, &packed_size, raw, inner.count) != Z_OK) abort();
-    put_u32(w, (uint32_t)(w->form->packed ? packed_size : inner.count));
-    put(w, w->form->packed ? packed : raw, w->form->packed ? packed_size : inner.count);
+    int packed_count = 0;
+    unsigned char *packed = w->form->packed ? stbi_zlib_compress(raw, (int)inner.count, &packed_count, 8) : NULL;
+    put_u32(w, packed ? (uint32_t)packed_count : (uint32_t)inner.count);
+    put(w, packed ? packed : raw, packed ? (size_t)packed_count : inner.count);
+    free(packed);
     w->at = end + 1;
 }
 

@@ -99,13 +99,12 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 # ---- the page's converter ----
 
 # `noh build` and `noh pack` as WebAssembly, which a page loads when a model is dropped on it (tools/web_convert). Headers
-# of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco and
-# FBX, whose arrays are packed by zlib, are left out: what needs them is refused.
+# of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco is
+# left out: what needs it is refused.
 WEB_CONVERT   := $(BUILD)/web-convert
-WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c model_none.c fbx_none.c stb.c libraries.cpp) \
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c model_none.c stb.c libraries.cpp) \
                  tools/noh/build/cmd_build.c tools/noh/build/build_fail.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
-                 $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) \
-                 $(filter-out tools/convert/fbx/%,$(CONVERT_CC)))) \
+                 $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) $(CONVERT_CC))) \
                  $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
 WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include
 WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker,node \

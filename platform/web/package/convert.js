@@ -2,16 +2,15 @@
 // and runs in a worker (tools/web_convert), without blocking the page. Packs equal `noh build`'s, byte for byte.
 
 const packs = /\.nohz?$/i;
-const figures = /\.(glb|gltf|vrm|obj)$/i;
+const figures = /\.(glb|gltf|vrm|fbx|obj)$/i;
 const motions = /\.bvh$/i;
-export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.obj', '.bvh'];
+export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.fbx', '.obj', '.bvh'];
 
 // Detect files that cannot be shown, before loading anything. names: of files given together.
 export function refusal(names) {
     const count = (pattern) => names.filter((name) => pattern.test(name)).length;
     if (count(packs) === 1 && names.length === 1) return '';
     if (count(packs)) return 'a pack is shown alone';
-    if (count(/\.fbx$/i)) return 'a page does not convert FBX: noh build does';
     if (count(figures) > 1) return 'one model at a time, and any number of .bvh with it';
     return count(figures) + count(motions) ? '' : `it is none of ${kinds.join(', ')}`;
 }

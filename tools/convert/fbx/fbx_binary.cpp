@@ -3,7 +3,8 @@
 #include "fbx_tree.h"
 
 #include <cstring>
-#include <zlib.h>
+#include <limits>
+#include <stb/stb_image.h>
 
 namespace fbx
 {
@@ -75,10 +76,10 @@ std::string binary_reader::unpack(uint64_t size, uint64_t packed_size)
     const char *packed = take(packed_size);
     if (size / deflate_ratio_max > packed_size + 64) refuse(place, "a packed array is too short for its count");
     std::string out(static_cast<size_t>(size), '\0');
-    uLongf got = static_cast<uLongf>(size);
-    const int result = uncompress(reinterpret_cast<Bytef *>(&out[0]), &got, reinterpret_cast<const Bytef *>(packed),
-                                  static_cast<uLong>(packed_size));
-    if (result != Z_OK || got != size)
+    const uint64_t most = std::numeric_limits<int>::max();
+    if (size > most || packed_size > most ||
+        stbi_zlib_decode_buffer(&out[0], static_cast<int>(size), packed, static_cast<int>(packed_size)) !=
+            static_cast<int>(size))
         refuse(place, "a packed array cannot be unpacked: the file is damaged, export or copy it again");
     return out;
 }
