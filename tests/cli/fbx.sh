@@ -234,6 +234,43 @@ stands 'at rest it is two inches tall, Y up' '0 0 0;0 1000 0;0 2000 0;1000 0 0;1
 stands 'the shape lifts its top' '0 0 0;0 1000 0;0 3000 0;1000 0 0;1000 1000 0;1000 3000 0;' --weight tall=1
 stands 'at the end of the clip the top, lifted, lies forward' '0 0 0;0 1000 0;0 1000 2000;1000 0 0;1000 1000 0;1000 1000 2000;' --clip bow --time 0.99999
 
+# ---- the same file with other details ----
+
+changed() { # SED: $work/strip.noh from the changed file
+    LC_ALL=C sed "$1" "$work/strip.fbx" >"$work/changed.fbx"
+    noh build "$work/changed.fbx" -o "$work/strip.noh"
+}
+changed 's|^\(.*"Lcl Translation", "Lcl Translation".*\)|\1\
+			P: "RotationPivot", "Vector3D", "Vector", "",0,0,0.5|'
+expect 0 'a joint with a pivot'
+stands 'it turns about its pivot' '0 0 0;0 1250 -250;0 1500 1500;1000 0 0;1000 1250 -250;1000 1500 1500;' --clip bow --time 0.99999
+
+changed 's|"LocalStop", "KTime", "Time", "",46186158000|"LocalStop", "KTime", "Time", "",23093079000|'
+expect 0 'a take of half of the keys'
+check 'the clip has its length' said "clip 'bow': 13 frames"
+
+changed 's|a: 100$|a: 100,0|; s|FullWeights: \*1|FullWeights: *2|'
+expect 0 'a shape with a mask'
+stands 'it moves what its mask lets through' '0 0 0;0 1000 0;0 3000 0;1000 0 0;1000 1000 0;1000 2000 0;' --weight tall=1
+
+changed 's|DeformPercent: 0|DeformPercent: 50|'
+expect 0 'a shape with a percentage'
+stands 'it is half up at rest' '0 0 0;0 1000 0;0 2500 0;1000 0 0;1000 1000 0;1000 2500 0;'
+
+changed 's|"Model::top"|"Model::strip"|'
+expect 0 'a joint with the name of the mesh'
+stands 'it moves the mesh' '0 0 0;0 1000 0;0 1000 2000;1000 0 0;1000 1000 0;1000 1000 2000;' --clip bow --time 0.99999
+
+bytes=$(printf '\223\252')
+changed "s|\"Model::top\"|\"Model::$bytes\"|"
+expect 0 'a name that is not UTF-8'
+check 'its bytes are replaced' said "the name '_93_AA' had bytes that are not UTF-8"
+
+changed 's|^\(.*Deformer: 400.*\)|\1\
+		SkinningType: "DualQuaternion"|'
+expect 0 'a skin of dual quaternions'
+check 'it is warned of' said 'dual quaternion'
+
 noh build "$work/strip.fbx" -o "$work/strip.noh" --unit-cm 5.08 --quiet
 expect 0 'with another unit'
 stands 'it is twice as large' '0 0 0;0 2000 0;0 4000 0;2000 0 0;2000 2000 0;2000 4000 0;'

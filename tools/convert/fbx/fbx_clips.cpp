@@ -9,57 +9,6 @@
 namespace fbx
 {
 
-static const double rate_max_hz = 120.0, usual_rate_hz = 60.0; /* the second for files with a finer clock */
-static const double rate_min_hz = 24.0;                        /* files of fewer frames are sampled between them, too */
-static const size_t samples_max = 20000000;                    /* of a take: frames times nodes */
-
-/* --- the span of a take --- */
-
-/* False: it has no keys. */
-static bool find_keys(const take &t, double *from_s, double *to_s)
-{
-    *from_s = HUGE_VAL;
-    *to_s = -HUGE_VAL;
-    for (const layer &l : t.layers)
-        for (const auto &c : l.channels)
-            for (const curve *of : c.second.curves)
-                if (of && !of->keys.empty()) {
-                    *from_s = std::min(*from_s, of->keys.front().time_s);
-                    *to_s = std::max(*to_s, of->keys.back().time_s);
-                }
-    return *from_s <= *to_s;
-}
-
-static double sample_rate(const scene &s)
-{
-    if (s.rate_hz > rate_max_hz) return usual_rate_hz;
-    return s.rate_hz * std::ceil(rate_min_hz / s.rate_hz - 1e-9);
-}
-
-static bool is_short(const scene &s, double duration_s)
-{
-    return duration_s >= 0.0 &&
-           duration_s * sample_rate(s) * static_cast<double>(s.models.size() + 1) <= static_cast<double>(samples_max);
-}
-
-/* What the take says; where that cannot be, from the first key to the last. */
-std::vector<double> sample_times(const scene &s, const take &t)
-{
-    const double step = 1.0 / sample_rate(s);
-    double from = 0.0, to = 0.0;
-    std::vector<double> out;
-    if (!find_keys(t, &from, &to)) return out;
-    if (t.to_s > t.from_s && is_short(s, t.to_s - t.from_s)) {
-        from = t.from_s;
-        to = t.to_s;
-    }
-    if (!is_short(s, to - from)) return out;
-    const size_t frames = static_cast<size_t>((to - from) / step + 1e-3);
-    for (size_t i = 0; i <= frames; ++i) out.push_back(from + static_cast<double>(i) * step);
-    if (to - out.back() > 1e-3 * step) out.push_back(to);
-    return out;
-}
-
 /* --- channels --- */
 
 /* The keys of one property. */
@@ -140,13 +89,12 @@ static void add_sample(node_tracks &n, const parts &p)
     }
 }
 
-static void write_node_channels(job &j, const take &t, const std::vector<double> &seconds, const clip_times &times,
-                                tinygltf::Animation &a)
+static void write_node_channels(job &j, const take &t, const clip_times &times, tinygltf::Animation &a)
 {
     const std::vector<rig_node> rig = make_rig(j.in, &t);
     std::vector<node_tracks> nodes(rig.size());
     std::vector<placed> pose;
-    for (double at : seconds) {
+    for (double at : t.samples) {
         pose_rig(rig, at, pose);
         for (size_t i = 0; i < nodes.size(); ++i) add_sample(nodes[i], parts_of(j, pose, i));
     }
@@ -162,8 +110,7 @@ static void write_node_channels(job &j, const take &t, const std::vector<double>
 
 /* --- shapes --- */
 
-static void write_shape_channels(job &j, const take &t, const std::vector<double> &seconds, const clip_times &times,
-                                 tinygltf::Animation &a)
+static void write_shape_channels(job &j, const take &t, const clip_times &times, tinygltf::Animation &a)
 {
     for (const auto &[node, d] : j.drawn) {
         std::vector<animated> channels;
@@ -171,7 +118,7 @@ static void write_shape_channels(job &j, const take &t, const std::vector<double
         if (d.mesh < 0 || !d.target_count) continue;
         for (const shape_channel &c : d.channels)
             channels.push_back(animate(&t, c.object, c.property, { { c.rest, 0.0, 0.0 } }));
-        for (double at : seconds) {
+        for (double at : t.samples) {
             std::vector<double> percent;
             for (const animated &c : channels) percent.push_back(c.at(at)[0]);
             for (double w : weights_of(d.channels, percent, d.target_count))
@@ -185,7 +132,7 @@ static void write_shape_channels(job &j, const take &t, const std::vector<double
 /* --- clips --- */
 
 /* Blender writes "Armature|walk", Mixamo always "mixamo.com": that is no name, and the file's is taken. */
-static std::string clip_name(const take &t, size_t take_count)
+static std::string clip_name(const take &t, std::ptrdiff_t take_count)
 {
     const size_t bar = t.name.rfind('|');
     const std::string name = bar != std::string::npos && bar + 1 < t.name.size() ? t.name.substr(bar + 1) : t.name;
@@ -219,34 +166,28 @@ static void warn_of_curves(job &j, const take &t)
         }
 }
 
-static void write_clip(job &j, const take &t, const std::vector<double> &seconds, const std::string &name)
+static void write_clip(job &j, const take &t, const std::string &name)
 {
     std::vector<float> times;
     tinygltf::Animation a;
     clip_times of;
-    for (double at : seconds) times.push_back(static_cast<float>(at - seconds[0]));
+    for (double at : t.samples) times.push_back(static_cast<float>(at - t.samples[0]));
     of.all = of.ends = add_times(j, times);
     if (times.size() > 2) of.ends = add_times(j, { times.front(), times.back() });
     a.name = name;
-    write_node_channels(j, t, seconds, of, a);
-    write_shape_channels(j, t, seconds, of, a);
+    write_node_channels(j, t, of, a);
+    write_shape_channels(j, t, of, a);
     if (!a.channels.empty()) j.out.animations.push_back(a);
 }
 
 void write_clips(job &j)
 {
-    std::vector<std::pair<const take *, std::vector<double>>> takes;
+    const std::ptrdiff_t count = std::count_if(j.in.takes.begin(), j.in.takes.end(),
+                                               [](const take &t) { return !t.samples.empty(); });
     for (const take &t : j.in.takes) {
-        double from, to;
-        std::vector<double> seconds = sample_times(j.in, t);
-        if (!seconds.empty())
-            takes.push_back({ &t, std::move(seconds) });
-        else if (find_keys(t, &from, &to))
-            j.in.warn("take '" + t.name + "'", " is too long and was left out: cut it in its program");
-    }
-    for (const auto &[t, seconds] : takes) {
-        warn_of_curves(j, *t);
-        write_clip(j, *t, seconds, clip_name(*t, takes.size()));
+        if (t.samples.empty()) continue;
+        warn_of_curves(j, t);
+        write_clip(j, t, clip_name(t, count));
     }
 }
 

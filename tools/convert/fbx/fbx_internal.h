@@ -74,8 +74,6 @@ int add_u16(job &j, const std::vector<uint16_t> &values, int type);
 int add_u32(job &j, const std::vector<uint32_t> &values);
 
 /* --- fbx_clips.cpp --- */
-/* The times at which a take is sampled, in seconds of the take; empty: it is left out. */
-std::vector<double> sample_times(const scene &s, const take &t);
 void write_clips(job &j);
 
 /* --- fbx_nodes.cpp --- */

@@ -98,6 +98,7 @@ quat euler(const vec &degrees, int order)
     quat q;
     for (int axis : letters[order < 0 || order > 5 ? 0 : order]) {
         const double half = degrees[axis] / degrees_per_radian / 2.0;
+        if (half == 0.0) continue;
         quat turn{ 0.0, 0.0, 0.0, std::cos(half) };
         (axis == 0 ? turn.x : axis == 1 ? turn.y : turn.z) = std::sin(half);
         q = turn * q;

@@ -32,7 +32,7 @@ static void find_holders(job &j)
     pass_over(j.in, pose, j.holder, sheared);
     for (const take &t : j.in.takes) {
         const std::vector<rig_node> rig = make_rig(j.in, &t);
-        for (double seconds : sample_times(j.in, t)) {
+        for (double seconds : t.samples) {
             pose_rig(rig, seconds, pose);
             pass_over(j.in, pose, j.holder, sheared);
         }

@@ -50,6 +50,7 @@ static vec override_layer(const vec &below, const vec &value, const layer &l, do
 vec animated::at(double seconds) const
 {
     vec out = rest;
+    if (layers.empty()) return out;
     for (const auto &[l, c] : layers) {
         const vec value = channel_at(*c, seconds);
         double weight = l->weight_curve ? l->weight_curve->at(seconds) / 100.0 : l->weight;
@@ -162,13 +163,13 @@ void pose_rig(const std::vector<rig_node> &rig, double seconds, std::vector<plac
 
 /* --- translation, rotation and scale --- */
 
-/* The largest distance of an axis from what rotation and scale give, over the longest axis. */
-static double distance_of(const mat &m, const quat &q, const vec &scale)
+/* How far the axes of `m` are from what rotation and scale give below `above`, over the longest axis. */
+static double distance_of(const mat &above, const mat &m, const quat &q, const vec &scale)
 {
     const mat got = rotation(q);
     double off = 0.0, longest = 0.0;
     for (int k = 0; k < 3; ++k) {
-        const vec d = got.column[k] * scale[k] - m.column[k];
+        const vec d = above.direction(got.column[k] * scale[k]) - m.column[k];
         off = std::max(off, dot(d, d));
         longest = std::max(longest, dot(m.column[k], m.column[k]));
     }
@@ -185,13 +186,17 @@ parts parts_below(const mat &above, const placed &node, bool is_parent)
 {
     static const double exact = 1e-9;
     parts out;
-    const bool is_flat = std::fabs(determinant(above)) < 1e-60;
-    const mat m = is_flat ? node.world : inverse(above) * node.world;
-    out.translation = is_parent ? node.local_place : m.column[3];
     out.rotation = node.local_turn;
     out.scale = node.local_scale;
-    if (is_flat) return out; /* it cannot be seen: a scale is 0 */
-    out.lost = distance_of(m, out.rotation, out.scale);
+    out.translation = node.local_place;
+    out.lost = distance_of(above, node.world, out.rotation, out.scale);
+    if (is_parent && out.lost < exact) return out;
+    if (std::fabs(determinant(above)) < 1e-60) { /* it cannot be seen: a scale is 0 */
+        out.lost = 0.0;
+        return out;
+    }
+    const mat m = inverse(above) * node.world;
+    if (!is_parent) out.translation = m.column[3];
     if (out.lost < exact) return out;
     mat axes;
     axes.column[0] = unit(m.column[0]);
@@ -200,7 +205,7 @@ parts parts_below(const mat &above, const placed &node, bool is_parent)
     if (std::fabs(determinant(axes)) < 0.5) return out; /* no area: its own rotation is as good */
     out.rotation = quaternion(axes);
     for (int k = 0; k < 3; ++k) out.scale[k] = dot(axes.column[k], m.column[k]);
-    out.lost = distance_of(m, out.rotation, out.scale);
+    out.lost = distance_of(mat(), m, out.rotation, out.scale);
     return out;
 }
 

@@ -315,6 +315,7 @@ void read_scene(const std::string &bytes, scene &out)
     find_left_out(out);
     read_takes(out);
     if (out.takes.empty()) read_takes6(out);
+    plan_samples(out);
 }
 
 } // namespace fbx

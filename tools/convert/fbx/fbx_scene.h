@@ -55,6 +55,7 @@ struct layer {
 struct take {
     std::string name;
     double from_s = 0.0, to_s = 0.0;
+    std::vector<double> samples; /* the times at which it is read; none: it has no keys, or is too long */
     std::vector<layer> layers;
 };
 
@@ -100,6 +101,7 @@ std::string place_of(const scene &s, size_t object);
 
 /* --- fbx_takes.cpp: stacks and layers; fbx_takes6.cpp: takes of version 6 --- */
 void read_takes(scene &s);
+void plan_samples(scene &s);
 void read_takes6(scene &s);
 
 } // namespace fbx

@@ -2,9 +2,14 @@
 #include "fbx_scene.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace fbx
 {
+
+static const double rate_max_hz = 120.0, usual_rate_hz = 60.0; /* the second for files with a finer clock */
+static const double rate_min_hz = 24.0;                        /* files of fewer frames are sampled between them, too */
+static const double samples_max = 1e7;                         /* of all takes: frames times nodes */
 
 static const curve *curve_at(scene &s, size_t object)
 {
@@ -82,6 +87,52 @@ void read_takes(scene &s)
         find_weights(t);
         s.takes.push_back(std::move(t));
     }
+}
+
+/* --- the times at which takes are read --- */
+
+/* False: it has no keys. */
+static bool find_keys(const take &t, double *from_s, double *to_s)
+{
+    *from_s = HUGE_VAL;
+    *to_s = -HUGE_VAL;
+    for (const layer &l : t.layers)
+        for (const auto &c : l.channels)
+            for (const curve *of : c.second.curves)
+                if (of && !of->keys.empty()) {
+                    *from_s = std::min(*from_s, of->keys.front().time_s);
+                    *to_s = std::max(*to_s, of->keys.back().time_s);
+                }
+    return *from_s <= *to_s;
+}
+
+/* The frames of what the take says it spans; where that cannot be, from the first key to the last. */
+static void plan_take(scene &s, take &t, double rate_hz, double *left)
+{
+    const double nodes = static_cast<double>(s.models.size() + 1);
+    double from, to;
+    if (!find_keys(t, &from, &to)) return;
+    if (t.to_s > t.from_s && (t.to_s - t.from_s) * rate_hz * nodes <= *left) {
+        from = t.from_s;
+        to = t.to_s;
+    }
+    *left -= ((to - from) * rate_hz + 2.0) * nodes;
+    if (*left < 0.0) {
+        s.warn("take '" + t.name + "'", " is too long and was left out: cut it in its program");
+        *left = 0.0;
+        return;
+    }
+    const size_t frames = static_cast<size_t>((to - from) * rate_hz + 1e-3);
+    for (size_t i = 0; i <= frames; ++i) t.samples.push_back(from + static_cast<double>(i) / rate_hz);
+    if (to - t.samples.back() > 1e-3 / rate_hz) t.samples.push_back(to);
+}
+
+void plan_samples(scene &s)
+{
+    const double rate_hz = s.rate_hz > rate_max_hz ? usual_rate_hz
+                                                   : s.rate_hz * std::ceil(rate_min_hz / s.rate_hz - 1e-9);
+    double left = samples_max;
+    for (take &t : s.takes) plan_take(s, t, rate_hz, &left);
 }
 
 } // namespace fbx
