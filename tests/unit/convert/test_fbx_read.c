@@ -378,10 +378,10 @@ static void curve_gives(const char *values, const char *flags, const char *data,
     model *m;
     begin();
     add_triangle(1, "");
-    add_object("Model", 2, "t", "Mesh", "", "");
+    add_object("Model", 2, "t", "Mesh", P3("Lcl Translation", "1", "2", "3"), "");
     add_take(10, "go", "92372316000");
     add("\tAnimationLayer: 11, \"AnimLayer::base\", \"\" {\n\t}\n");
-    add_object("AnimationCurveNode", 12, "T", "", P1("d|X", "0") P1("d|Y", "7") P1("d|Z", "0"), "");
+    add_object("AnimationCurveNode", 12, "T", "", P1("d|X", "0") P1("d|Y", "7"), "");
     add_curve(13, "0," SECOND, values, flags, data, more);
     links(OO(2, 0) OO(1, 2) OO(11, 10) OO(12, 11) OP(12, 2, "Lcl Translation") OP(13, 12, "d|X"));
     m = load();
@@ -389,6 +389,7 @@ static void curve_gives(const char *values, const char *flags, const char *data,
     assert_near((double)value_at(m, 0, "t", MODEL_PATH_TRANSLATION, 12)[0], half);
     assert_near((double)value_at(m, 0, "t", MODEL_PATH_TRANSLATION, 36)[0], behind);
     assert_near((double)value_at(m, 0, "t", MODEL_PATH_TRANSLATION, 36)[1], 7.0);
+    assert_near((double)value_at(m, 0, "t", MODEL_PATH_TRANSLATION, 36)[2], 3.0); /* its own: the take says nothing */
     model_free(m);
 }
 

@@ -9,11 +9,15 @@ namespace fbx
 
 /* --- a property at a time --- */
 
-static vec channel_at(const channel &c, double seconds)
+/* otherwise: of axes that the channel says nothing about */
+static vec channel_at(const channel &c, double seconds, const vec &otherwise)
 {
-    vec out = c.constant;
+    vec out = otherwise;
     for (int k = 0; k < 3; ++k)
-        if (c.curves[k]) out[k] = c.curves[k]->at(seconds);
+        if (c.curves[k])
+            out[k] = c.curves[k]->at(seconds);
+        else if (std::isfinite(c.constant[k]))
+            out[k] = c.constant[k];
     return out;
 }
 
@@ -52,14 +56,15 @@ vec animated::at(double seconds) const
     vec out = rest;
     if (layers.empty()) return out;
     for (const auto &[l, c] : layers) {
-        const vec value = channel_at(*c, seconds);
+        const bool adds = !l->is_base && l->mode == blending::add;
+        const double same = is == kind::scaling && !l->scaling_added ? 1.0 : 0.0;
+        const vec value = channel_at(*c, seconds, adds ? vec{ { same, same, same } } : out);
         double weight = l->weight_curve ? l->weight_curve->at(seconds) / 100.0 : l->weight;
         weight = std::max(0.0, std::min(1.0, weight));
         if (l->is_base)
             out = value;
         else
-            out = l->mode == blending::add ? add_layer(out, value, *l, weight, is)
-                                           : override_layer(out, value, *l, weight, is);
+            out = adds ? add_layer(out, value, *l, weight, is) : override_layer(out, value, *l, weight, is);
     }
     for (int k = 0; k < 3; ++k)
         if (!std::isfinite(out[k])) out[k] = rest[k];

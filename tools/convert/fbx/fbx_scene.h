@@ -34,10 +34,10 @@ struct object {
     std::vector<link> below, above;       /* what is connected to it; what it is connected to */
 };
 
-/* What a layer of a take does to one property of one object: curves, or constants where they are null. */
+/* What a layer of a take does to one property of one object: curves, or constants where they are null. NaN: nothing. */
 struct channel {
     const curve *curves[3] = { nullptr, nullptr, nullptr };
-    vec constant;
+    vec constant = { { NAN, NAN, NAN } };
 };
 
 enum class blending { add, override };

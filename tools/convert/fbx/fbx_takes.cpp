@@ -27,10 +27,10 @@ static const curve *curve_at(scene &s, size_t object)
 static vec constants_of(const scene &s, size_t object)
 {
     static const char *const axes[3] = { "d|X", "d|Y", "d|Z" };
-    vec out;
+    vec out = channel().constant;
     bool is_vector = false;
     for (int k = 0; k < 3; ++k) {
-        out[k] = s.real(object, axes[k], 0.0);
+        out[k] = s.real(object, axes[k], out[k]);
         is_vector = is_vector || s.objects[object].own.count(axes[k]);
     }
     for (const auto &p : s.objects[object].own)
