@@ -175,6 +175,9 @@ curve read_curve(const node &n, bool ascii, bool *biased)
 
 /* --- values --- */
 
+/* A key this close ahead counts as reached: frame times are rounded, and at a step a rounding would show. */
+static const double near_s = 1e-9;
+
 /* Where on a Bezier curve from 0 to 1 with handles at `a` and 1 - `b` the time is x: it grows with the parameter. */
 static double parameter_at(double x, double a, double b)
 {
@@ -190,7 +193,7 @@ static double parameter_at(double x, double a, double b)
 
 double curve::inside(double seconds) const
 {
-    const auto after_it = std::upper_bound(keys.begin(), keys.end(), seconds,
+    const auto after_it = std::upper_bound(keys.begin(), keys.end(), seconds + near_s,
                                            [](double t, const key &k) { return t < k.time_s; });
     if (keys.empty()) return 0.0;
     if (after_it == keys.begin()) return keys[0].value;
@@ -220,15 +223,15 @@ double curve::at(double seconds) const
 {
     if (keys.size() < 2) return inside(seconds);
     const key &first = keys.front(), &last = keys.back();
-    const bool early = seconds < first.time_s;
+    const bool early = seconds < first.time_s - near_s;
     const double span = last.time_s - first.time_s;
     const extrapolation &e = early ? before : after;
-    if ((!early && seconds <= last.time_s) || !(e.how && strchr("KRMA", e.how))) return inside(seconds);
+    if ((!early && seconds <= last.time_s + near_s) || !(e.how && strchr("KRMA", e.how))) return inside(seconds);
     if (e.how == 'K') {
         const key &end = early ? first : last;
         return end.value + (seconds - end.time_s) * end_slope(*this, early);
     }
-    double turns = std::floor((seconds - first.time_s) / span); /* which copy of the curve */
+    double turns = std::floor((seconds - first.time_s + near_s) / span); /* which copy of the curve */
     double x = seconds - first.time_s - turns * span;
     if (e.count >= 0 && std::fabs(turns) > static_cast<double>(e.count)) {
         turns = static_cast<double>(early ? -e.count : e.count);
