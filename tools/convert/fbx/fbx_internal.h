@@ -99,8 +99,8 @@ struct element {
 bool read_element(job &j, size_t geometry, const char *const names[3], size_t width, element &out);
 
 /* --- fbx_shape.cpp --- */
-/* The places of points that a target moves, by point. */
-using target_deltas = std::map<uint32_t, vec>;
+/* Points that a target moves, in order, and by how much. */
+using target_deltas = std::vector<std::pair<uint32_t, vec>>;
 struct shapes {
     std::vector<target_deltas> targets;
     std::vector<std::string> names;

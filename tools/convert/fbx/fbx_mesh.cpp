@@ -228,8 +228,10 @@ static void add_targets(const mesh_job &m, const part &p, tinygltf::Primitive &o
         std::vector<uint32_t> places;
         std::vector<float> deltas;
         for (size_t v = 0; v < p.vertices.size(); ++v) {
-            const auto found = target.find(p.vertices[v].point);
-            if (found == target.end()) continue;
+            const uint32_t point = p.vertices[v].point;
+            const auto found = std::lower_bound(target.begin(), target.end(), point,
+                                                [](const auto &of, uint32_t at) { return of.first < at; });
+            if (found == target.end() || found->first != point) continue;
             const vec moved = m.pivot.direction(found->second) * m.j.unit_m;
             places.push_back(static_cast<uint32_t>(v));
             for (int k = 0; k < 3; ++k) deltas.push_back(static_cast<float>(moved[k]));

@@ -1,24 +1,25 @@
 /* fbx_read.cpp: from an FBX file to a .glb in memory, and from there to a model. */
 #include "fbx_read.h"
 
+#include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "fbx_internal.h"
 
+#include <cstdlib>
 #include <exception>
-#include <fstream>
+#include <memory>
 #include <sstream>
 
 namespace fbx
 {
 
-static const char file_advice[] = "the file cannot be read: check its path and permissions";
-
 static std::string read_bytes(const char *path)
 {
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream out;
-    if (!in || !(out << in.rdbuf())) fail("", file_advice);
-    return out.str();
+    model_error error = { "", "" };
+    size_t size = 0;
+    const std::unique_ptr<char, void (*)(void *)> bytes(input_read(path, &size, &error), free);
+    if (!bytes) fail(error.where, error.what);
+    return std::string(bytes.get(), size);
 }
 
 static std::string write_glb(job &j)

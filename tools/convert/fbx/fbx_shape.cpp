@@ -23,9 +23,17 @@ static target_deltas read_deltas(job &j, const std::string &where, const node &s
             j.in.warn(where, " moves points that its mesh does not have, which were left out: export it again");
             continue;
         }
-        vec &delta = out[static_cast<uint32_t>(point)];
-        delta = delta + vec{ { moves[i * 3], moves[i * 3 + 1], moves[i * 3 + 2] } } * share;
+        out.push_back(
+            { static_cast<uint32_t>(point), vec{ { moves[i * 3], moves[i * 3 + 1], moves[i * 3 + 2] } } * share });
     }
+    std::stable_sort(out.begin(), out.end(), [](const auto &a, const auto &b) { return a.first < b.first; });
+    size_t kept = 0;
+    for (size_t i = 0; i < out.size(); ++i) /* a point that is there twice moves by both */
+        if (kept && out[kept - 1].first == out[i].first)
+            out[kept - 1].second = out[kept - 1].second + out[i].second;
+        else
+            out[kept++] = out[i];
+    out.resize(kept);
     return out;
 }
 
