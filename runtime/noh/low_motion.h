@@ -326,7 +326,8 @@ typedef struct noh_clip_info {
     uint64_t duration_ticks;  /* 1/48,000 s; frame_count - 1 frames: the last frame is shown at the end */
     uint32_t flags;           /* NOH_CLIP_FLAG_* */
     /* the error bound that it was built for, and the distance in the bind pose from a joint to the points that the
-     * bound covers: with NOH_CLIP_FLAG_SPHERE all points at that distance, without it the three on the joint's axes */
+     * bound covers: with NOH_CLIP_FLAG_SPHERE all points at that distance, without it the three on the joint's axes.
+     * Where the model has vertices that the joint moves, the bound covers these, too */
     double error_cm, shell_cm;
     double max_error_cm, rms_error_cm; /* certificate: measured errors, at frames and between them */
     uint32_t max_error_joint;
