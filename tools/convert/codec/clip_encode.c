@@ -253,7 +253,8 @@ static int encode_attempt(encoder *e, const encoder *from, byte_buffer *out, cli
             tight = 1.0;
         }
         if (!failed && level == LEVELS && !(worst_part <= 1.0)) {
-            failed = enc_fail(e, "the error bound is below single precision this far from the origin: raise the bound");
+            (void)enc_fail(e, "the error bound is below single precision this far from the origin: raise the bound");
+            failed = CLIP_TOO_FINE;
         }
         free_encoder(e);
     }
@@ -329,5 +330,5 @@ int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_o
     if (!failed) buffer_append(out, best.bytes, best.count);
     buffer_free(&best);
     free(e);
-    return failed || out->failed;
+    return failed ? failed : out->failed != 0;
 }

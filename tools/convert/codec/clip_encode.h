@@ -49,8 +49,9 @@ typedef struct clip_report {
 } clip_report;
 
 /* Encode a clip and append its bytes to `out`. report may be NULL.
- * errors  1 and *error: a limit of the format, out of memory, a value that is not finite, or a bound that single
- *         precision cannot hold */
+ * errors  1 and *error: a limit of the format, out of memory, or a value that is not finite; CLIP_TOO_FINE and *error:
+ *         single precision cannot hold the bound */
+#define CLIP_TOO_FINE 2
 int clip_encode(const raw_skeleton *skeleton, const raw_clip *clip, const clip_options *options, byte_buffer *out,
                 clip_report *report, model_error *error);
 

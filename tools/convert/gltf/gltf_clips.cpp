@@ -322,14 +322,30 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     if (!(sample_rate_hz > 0.0)) warn_of_rate(job, when, where);
 }
 
+/* A clip that cannot be made is left out: the character moves without it. */
+static bool try_clip(const set_job &job, const model_clip &from, const std::vector<track> &tracks,
+                     double sample_rate_hz, uint64_t &bytes_left)
+{
+    const uint32_t before = job.set->clip_count;
+    try {
+        make_clip(job, from, tracks, sample_rate_hz, bytes_left);
+        return true;
+    } catch (const failure &reason) {
+        check_memory(model_warn(job.m, "%s was left out: %s", reason.where.c_str(), reason.what.c_str()));
+    }
+    if (job.set->clip_count > before) raw_clip_clear(&job.set->clips[before]);
+    job.set->clip_count = before;
+    return false;
+}
+
 static void make_clips(set_job &job, double sample_rate_hz, std::vector<bool> &used, uint64_t &bytes_left)
 {
     for (uint32_t c = 0; c < job.m->clip_count; ++c) {
         const model_clip &from = job.m->clips[c];
         std::vector<track> tracks = find_tracks(job, from);
         if (tracks.empty()) continue;
-        make_clip(job, from, tracks, sample_rate_hz, bytes_left);
-        if (!used[c]) /* a key in several sets would fire several times */
+        const bool made = try_clip(job, from, tracks, sample_rate_hz, bytes_left);
+        if (made && !used[c]) /* a key in several sets would fire several times */
             copy_events(from, job.set->clips[job.set->clip_count - 1]);
         used[c] = true;
     }

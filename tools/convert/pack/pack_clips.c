@@ -134,6 +134,9 @@ static void show_progress(void *user, uint32_t done, uint32_t of)
     fflush(p->out);
 }
 
+#define ERROR_USUAL_CM 0.01
+#define ERROR_RAISED_CM 40.0 /* ten times this is about what a clip can say */
+
 static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_settings *s, encoded_clip *out,
                           model_error *error)
 {
@@ -152,8 +155,16 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_
         options.progress = show_progress;
         options.user = &shown;
     }
-    failed = clip_encode(&set->skeleton, clip, &options, &out->bytes, &out->report, error);
+    do {
+        options.error_cm = failed ? options.error_cm * 10.0 : options.error_cm;
+        failed = clip_encode(&set->skeleton, clip, &options, &out->bytes, &out->report, error);
+    } while (failed == CLIP_TOO_FINE && s->raises && !(own > 0.0) && options.error_cm <= ERROR_RAISED_CM);
     free(joints);
+    if (!failed && s->report && options.error_cm > s->clip.error_cm && !(own > 0.0)) {
+        fprintf(s->report,
+                "warning: clip '%s' is too large, or too far from the origin, for --error-cm %g: %g was used\n",
+                clip->name, s->clip.error_cm, options.error_cm);
+    }
     return failed;
 }
 
@@ -219,9 +230,10 @@ static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s,
     clips_settings own = *s;
     set_points points;
     int failed;
-    if (set->error_cm > 0.0) {
-        own.clip.error_cm = set->error_cm;
-        own.clip.shell_cm = fmin(shell_cm(s), set->shell_cm);
+    own.raises = !(s->clip.error_cm > 0.0);
+    if (own.raises) {
+        own.clip.error_cm = set->error_cm > 0.0 ? set->error_cm : ERROR_USUAL_CM;
+        own.clip.shell_cm = set->shell_cm > 0.0 ? fmin(shell_cm(s), set->shell_cm) : shell_cm(s);
     }
     failed = open_points(&own, &set->skeleton, index, &points);
     if (failed) {

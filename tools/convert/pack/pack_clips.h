@@ -29,7 +29,8 @@ typedef struct encoded_clips {
 typedef struct clips_settings {
     int check_loops;    /* mark every clip as a loop, and report the gap between its ends */
     int skeletons_only; /* no clips, for a pack of meshes */
-    clip_options clip;
+    clip_options clip;  /* error_cm 0: as fits the skeleton's size */
+    int raises;         /* 1: where single precision cannot hold the bound, it is raised; filled in by clips_encode */
     named_errors clip_errors, joint_errors; /* they override the bounds of `clip` */
     const model *m;          /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are
                                 measured; NULL: on the shell */
