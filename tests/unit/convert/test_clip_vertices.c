@@ -141,7 +141,7 @@ static uint32_t joint_named(const noh_pack *pack, uint32_t count, const char *na
     return j;
 }
 
-/* The worlds of nodes, of which joints are where the pack has them; others stay by the file. */
+/* The worlds of nodes: joints as the pack has them, others as the file has them. */
 static void pack_worlds(const oracle *o, const noh_pack *pack, const noh_skeleton *s, const noh_transform *pose,
                         double *worlds)
 {

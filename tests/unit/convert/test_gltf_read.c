@@ -1288,7 +1288,31 @@ static void vrm_expressions_are_recipes(void **state)
     assert_string_equal(m->meshes[0].recipe,
                         "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n");
     assert_true(has_warning(m, "VRM expression 'happy': its changes to materials were left out"));
+    assert_true(has_warning(m, "VRM expression 'happy': a bind was left out: its mesh or target does not exist"));
+    assert_true(has_warning(m, "VRM expression 'relaxed' was left out: the faces of packs have no such expression"));
     assert_true(m->nodes[2].world[14] == 3.5);
+    model_free(m);
+}
+
+/* A warning for each rule that a pack has no place for, with what replaces it. */
+static void vrm_rules_are_told(void **state)
+{
+    (void)state;
+    model *m = load(vrm_scene(
+        "\"VRMC_vrm\":{\"expressions\":{\"preset\":{\"happy\":{\"isBinary\":true,\"overrideBlink\":\"block\","
+        "\"overrideLookAt\":\"blend\",\"overrideMouth\":\"block\"},\"aa\":{\"isBinary\":false,\"overrideBlink\":\"none\"}},"
+        "\"custom\":{\"wink\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,\"weight\":0.5}]},\"empty\":{}}}}"));
+    assert_int_equal(m->warning_count, 5);
+    assert_true(has_warning(m, "VRM expression 'happy': isBinary was left out: it shows by degrees"));
+    assert_true(has_warning(m, "overrideBlink 'block' was left out: a game sets noh_face_rules.lids"));
+    assert_true(has_warning(m, "overrideLookAt 'blend' was left out: a game sets noh_face_rules.eyes"));
+    assert_true(has_warning(m, "overrideMouth 'block' was left out: a game sets noh_face_rules.speech"));
+    assert_true(has_warning(m, "VRM expression 'wink' was left out: the faces of packs have no such expression"));
+    model_free(m);
+    m = load(vrm_scene("\"VRM\":{\"blendShapeMaster\":{\"blendShapeGroups\":[{\"name\":\"wink\",\"presetName\":"
+                       "\"unknown\",\"isBinary\":true,\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]}]}}"));
+    assert_true(has_warning(m, "VRM expression 'wink': isBinary was left out"));
+    assert_true(has_warning(m, "VRM expression 'wink' was left out"));
     model_free(m);
 }
 
@@ -2441,6 +2465,7 @@ int main(void)
         cmocka_unit_test(skewed_and_mirrored_matrices),
         cmocka_unit_test(node_weights),
         cmocka_unit_test(vrm_expressions_are_recipes),
+        cmocka_unit_test(vrm_rules_are_told),
         cmocka_unit_test(old_vrm_turns_round),
         cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(mtoon_is_a_toon),

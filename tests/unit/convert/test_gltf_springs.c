@@ -137,6 +137,18 @@ static void what_is_broken_is_left_out(void **state)
                                    "{\"joints\":3},5],\"colliders\":7,\"colliderGroups\":{}}}",
                          &d, "fewer than two joints"));
     free(bytes);
+    assert_true(convert("",
+                        VRM1_HEAD VRM1_COLLIDERS "\"springs\":[{\"joints\":[" VRM1_JOINT(1) "," VRM1_JOINT(
+                            99) "," VRM1_JOINT(2) "],\"colliderGroups\":[0]}]}}",
+                        &d, "springs: a joint was left out: its node does not exist"));
+    assert_int_equal(d.row_count, 1);
+    free(bytes);
+    assert_true(convert("",
+                        VRM1_HEAD VRM1_COLLIDERS
+                        "\"springs\":[{\"joints\":[" VRM1_JOINT(1) "," VRM1_JOINT(2) "],\"colliderGroups\":[0,9]}]}}",
+                        &d, "springs: a collider group was ignored: the file has no such one"));
+    assert_int_equal(d.chains[0].collides, 2);
+    free(bytes);
     /* numbers out of their range become the nearest good ones */
     assert_true(convert("",
                         VRM1_HEAD "\"springs\":[{\"joints\":[{\"node\":1,\"dragForce\":9,\"stiffness\":-4,"

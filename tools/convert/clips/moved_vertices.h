@@ -21,7 +21,7 @@ typedef struct moved_vertices {
     float (*boxes)[6];  /* [joint_count] lowest and highest place that each joint holds; lowest above highest: none */
 } moved_vertices;
 
-/* Add a mesh's vertices; joints[skin's joint_count] are those of the skeleton. Returns 1: out of memory. */
+/* Add a mesh's vertices; joints[skin's joint_count]: the skeleton's joints. Returns 1: out of memory. */
 int moved_vertices_add(moved_vertices *v, const model_mesh *mesh, const model_skin *skin, const uint32_t *joints);
 /* Add a mesh that one joint moves; place[12]: from the mesh to the joint's own space. */
 int moved_vertices_add_rigid(moved_vertices *v, const model_mesh *mesh, uint32_t joint, const double *place);

@@ -23,7 +23,7 @@ void source_rest(const raw_skeleton *skeleton, double *locals)
 
 void source_channel(const model_channel *channel, uint32_t joint, double time_s, double snap_s, double *locals)
 {
-    static const uint32_t places[4] = { 0, 4, 0, 7 }; /* by model_path; weights are no joint's */
+    static const uint32_t places[4] = { 0, 4, 0, 7 }; /* by model_path; weights belong to meshes */
     (void)channel_sample(channel, time_s, snap_s, locals + SOURCE_LOCAL * (size_t)joint + places[channel->path]);
 }
 

@@ -3,7 +3,7 @@
  *
  *   gltf_clips.cpp     clips_from_model: sets, clips
  *   gltf_skeleton.cpp  which nodes make which skeletons
- *   sample_rate.cpp    how many frames a clip needs
+ *   sample_rate.cpp    how many frames a clip needs, by the vertices that it moves
  *   weight_radius.cpp  how far a morph weight moves the surface */
 #ifndef NOH_CONVERT_GLTF_CLIPS_INTERNAL_H
 #define NOH_CONVERT_GLTF_CLIPS_INTERNAL_H

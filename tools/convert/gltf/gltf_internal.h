@@ -9,12 +9,12 @@
  *   gltf_members.cpp   required members
  *   gltf_file.cpp      failures, warnings, names
  *   gltf_buffer.cpp    files, URIs, buffers
- *   gltf_meshopt.cpp   EXT_meshopt_compression
+ *   gltf_meshopt.cpp   EXT_meshopt_compression, KHR_meshopt_compression
  *   gltf_draco.cpp     KHR_draco_mesh_compression
  *   gltf_view.cpp      buffer views, plain or compressed
  *   gltf_accessor.cpp  accessors to floats and indices
  *   gltf_mesh.cpp      meshes, primitives, targets
- *   gltf_scene.cpp     nodes
+ *   gltf_scene.cpp     nodes; instances (EXT_mesh_gpu_instancing)
  *   gltf_influences.cpp joints and weights of vertices
  *   gltf_skin.cpp      skins, and the nodes whose meshes they move
  *   gltf_animation.cpp animations

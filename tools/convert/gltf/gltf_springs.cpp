@@ -100,15 +100,20 @@ static void add_chain(springs_job &job, std::vector<model_spring_joint> joints, 
     job.springs.push_back(spring);
 }
 
-static uint32_t bits_of(const springs_job &job, const value &indices)
+static uint32_t bits_of(springs_job &job, const value &indices, const char *kind)
 {
     uint32_t bits = 0;
     for (size_t i = 0; i < length_of(indices); ++i) {
         const double at = item(indices, i).IsNumber() ? item(indices, i).GetNumberAsDouble() : -1.0;
-        if (at >= 0.0 && at < static_cast<double>(job.bits.size())) bits |= job.bits[static_cast<size_t>(at)];
+        if (at >= 0.0 && at < static_cast<double>(job.bits.size()))
+            bits |= job.bits[static_cast<size_t>(at)];
+        else
+            leave_out(job.f, "springs", text(": a %s was ignored: the file has no such one", kind));
     }
     return bits;
 }
+
+static const char joint_lost[] = ": a joint was left out: its node does not exist, or is not in the default scene";
 
 static void warn_center(springs_job &job, const value &spring)
 {
@@ -176,7 +181,10 @@ static void read_spring(springs_job &job, const value &given)
     float end[3] = { 0.0f, 0.0f, 0.0f };
     for (size_t i = 0; i < length_of(listed); ++i) {
         const model_spring_joint joint = read_joint(job, item(listed, i));
-        if (joint.node != MODEL_NONE) joints.push_back(joint);
+        if (joint.node != MODEL_NONE)
+            joints.push_back(joint);
+        else
+            leave_out(job.f, "springs", joint_lost);
     }
     if (joints.size() < 2) {
         leave_out(job.f, "springs", ": a spring was left out: it has fewer than two joints");
@@ -185,7 +193,7 @@ static void read_spring(springs_job &job, const value &given)
     warn_center(job, given);
     place_in(*job.f.out, joints.back().node, joints[joints.size() - 2].node, end);
     joints.pop_back();
-    uint32_t collides = bits_of(job, member(given, "colliderGroups"));
+    uint32_t collides = bits_of(job, member(given, "colliderGroups"), "collider group");
     add_chain(job, std::move(joints), collides, end);
 }
 
@@ -196,7 +204,7 @@ static void read_vrm1(springs_job &job, const value &extension)
     std::vector<uint32_t> of_groups;
     for (size_t i = 0; i < length_of(colliders); ++i) job.bits.push_back(read_collider(job, item(colliders, i)));
     for (size_t i = 0; i < length_of(groups); ++i)
-        of_groups.push_back(bits_of(job, member(item(groups, i), "colliders")));
+        of_groups.push_back(bits_of(job, member(item(groups, i), "colliders"), "collider"));
     job.bits = of_groups;
     for (size_t i = 0; i < length_of(springs); ++i) read_spring(job, item(springs, i));
 }
@@ -209,6 +217,8 @@ static uint32_t read_group0(springs_job &job, const value &group)
     const value &colliders = member(group, "colliders");
     const uint32_t node = node_of(job.f, member(group, "node"));
     uint32_t bits = 0;
+    if (node == MODEL_NONE && length_of(colliders) > 0)
+        leave_out(job.f, "springs", ": a collider group was left out: its node does not exist");
     for (size_t i = 0; node != MODEL_NONE && i < length_of(colliders); ++i) {
         model_collider c = {};
         c.node = node;
@@ -287,7 +297,10 @@ static void read_vrm0(springs_job &job, const value &extension)
         warn_center(job, group);
         for (size_t k = 0; k < length_of(bones); ++k) {
             const uint32_t top = node_of(job.f, item(bones, k));
-            if (top != MODEL_NONE) read_bone0(job, top, values, bits_of(job, member(group, "colliderGroups")));
+            if (top != MODEL_NONE)
+                read_bone0(job, top, values, bits_of(job, member(group, "colliderGroups"), "collider group"));
+            else
+                leave_out(job.f, "springs", joint_lost);
         }
     }
 }

@@ -140,7 +140,7 @@ static void add_line(file &f, const char *channel, uint32_t mesh, size_t target,
 }
 
 /* One bind: 1.0 names the node that draws the mesh, and weights to 1; 0.0 the mesh, and weights to 100. */
-static void add_bind(file &f, const char *channel, const value &bind, bool old, recipes &r)
+static void add_bind(file &f, const char *channel, const value &bind, bool old, const std::string &where, recipes &r)
 {
     const value *weight = member(bind, "weight");
     uint32_t mesh = MODEL_NONE;
@@ -151,20 +151,51 @@ static void add_bind(file &f, const char *channel, const value &bind, bool old, 
         const size_t node = index_member(bind, "node", f.node_of.size());
         if (node < f.node_of.size() && f.node_of[node] != MODEL_NONE) mesh = f.out->nodes[f.node_of[node]].mesh;
     }
-    if (mesh == MODEL_NONE || !weight || !weight->IsNumber()) return;
-    const size_t count = f.out->meshes[mesh].target_count, target = index_member(bind, "index", count);
-    if (target < count) add_line(f, channel, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
+    const size_t count = mesh == MODEL_NONE ? 0 : f.out->meshes[mesh].target_count;
+    const size_t target = index_member(bind, "index", count);
+    if (target < count && weight && weight->IsNumber())
+        add_line(f, channel, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
+    else
+        leave_out(f, where, ": a bind was left out: its mesh or target does not exist, or it has no weight");
 }
 
-static void add_expression(file &f, const std::string &name, const value &expression, bool old, recipes &r)
+static bool has_items(const value &object, const char *key)
 {
-    const char *channel = channel_of(name, old);
+    const value *found = array_member(object, key);
+    return found && found->ArrayLen() > 0;
+}
+
+/* Rules of an expression over others, which a pack has no place for, and where a game sets them. */
+static void warn_rules(file &f, const value &expression, const std::string &where)
+{
+    static const char *const rules[][2] = { { "overrideBlink", "lids" },
+                                            { "overrideLookAt", "eyes" },
+                                            { "overrideMouth", "speech" } };
+    const value *binary = member(expression, "isBinary");
+    if (binary && binary->IsBool() && binary->Get<bool>())
+        leave_out(f, where, ": isBinary was left out: it shows by degrees");
+    for (const auto &rule : rules) {
+        const std::string how = text_member(expression, rule[0]);
+        if (!how.empty() && how != "none")
+            leave_out(f, where,
+                      text(": %s '%s' was left out: a game sets noh_face_rules.%s", rule[0], printable(how).c_str(),
+                           rule[1]));
+    }
+}
+
+static void add_expression(file &f, const std::string &name, const char *channel, const value &expression, bool old,
+                           recipes &r)
+{
+    const std::string where = "VRM expression '" + printable(name) + "'";
     const value *binds = array_member(expression, old ? "binds" : "morphTargetBinds");
-    const value *colors = array_member(expression, old ? "materialValues" : "materialColorBinds");
-    if (colors && colors->ArrayLen() > 0)
-        leave_out(f, "VRM expression '" + printable(name) + "'", ": its changes to materials were left out");
+    if (has_items(expression, old ? "materialValues" : "materialColorBinds") ||
+        has_items(expression, "textureTransformBinds"))
+        leave_out(f, where, ": its changes to materials were left out");
+    warn_rules(f, expression, where);
+    if (!channel && binds && binds->ArrayLen() > 0)
+        leave_out(f, where, " was left out: the faces of packs have no such expression; its targets stay");
     for (size_t i = 0; channel && binds && i < binds->ArrayLen(); ++i)
-        add_bind(f, channel, binds->Get(static_cast<int>(i)), old, r);
+        add_bind(f, channel, binds->Get(static_cast<int>(i)), old, where, r);
 }
 
 /* Both lids at once, unless each has its own: else they would shut twice. */
@@ -176,10 +207,14 @@ static bool is_double(const std::string &name, bool both_lids)
 static void add_new(file &f, const value &vrm, recipes &r)
 {
     const value *all = member(vrm, "expressions"), *presets = all ? member(*all, "preset") : nullptr;
-    if (!presets || !presets->IsObject()) return;
-    const bool both = presets->Has("blinkLeft") && presets->Has("blinkRight");
-    for (const std::string &name : presets->Keys())
-        if (!is_double(name, both)) add_expression(f, name, presets->Get(name), false, r);
+    const value *customs = all ? member(*all, "custom") : nullptr;
+    const bool both = presets && presets->IsObject() && presets->Has("blinkLeft") && presets->Has("blinkRight");
+    for (size_t i = 0; presets && presets->IsObject() && i < presets->Keys().size(); ++i) {
+        const std::string name = presets->Keys()[i];
+        if (!is_double(name, both)) add_expression(f, name, channel_of(name, false), presets->Get(name), false, r);
+    }
+    for (size_t i = 0; customs && customs->IsObject() && i < customs->Keys().size(); ++i)
+        add_expression(f, customs->Keys()[i], nullptr, customs->Get(customs->Keys()[i]), false, r);
 }
 
 static void add_old(file &f, const value &vrm, recipes &r)
@@ -192,7 +227,9 @@ static void add_old(file &f, const value &vrm, recipes &r)
     for (size_t i = 0; groups && i < groups->ArrayLen(); ++i) {
         const value &group = groups->Get(static_cast<int>(i));
         const std::string name = text_member(group, "presetName");
-        if (!is_double(name, lids >= 2)) add_expression(f, name, group, true, r);
+        const bool custom = name.empty() || lower(name) == "unknown";
+        if (!is_double(name, lids >= 2))
+            add_expression(f, custom ? text_member(group, "name") : name, channel_of(name, true), group, true, r);
     }
 }
 
