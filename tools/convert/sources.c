@@ -370,7 +370,7 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
                         model_error *error)
 {
     joint_match match = JOINTS_DIFFER;
-    for (uint32_t i = 0; i < base->set_count; i++) {
+    for (uint32_t i = 0; i < base->set_count && !options->by_rest; i++) {
         if (raw_skeleton_hash(&base->sets[i]->skeleton) == raw_skeleton_hash(&from->skeleton)) return 0;
     }
     for (uint32_t i = 0; i < base->set_count && match == JOINTS_DIFFER; i++) {
@@ -437,9 +437,11 @@ static int keep_warnings(source *base, const char *base_path, const source *othe
 int source_join(source *base, const char *base_path, source *other, const char *other_path,
                 const joint_match_options *options, model_error *error)
 {
+    joint_match_options matching = *options;
     uint32_t joined = 0;
+    matching.by_rest = other->m->for_any_body;
     for (uint32_t i = 0; i < other->set_count; i++) {
-        if (match_joints(base, other->sets[i], other_path, options, error)) return 1;
+        if (match_joints(base, other->sets[i], other_path, &matching, error)) return 1;
     }
     if (keep_warnings(base, base_path, other, other_path)) return out_of_memory(error);
     for (uint32_t i = 0; i < other->set_count; i++) {

@@ -1316,6 +1316,20 @@ static void vrm_rules_are_told(void **state)
     model_free(m);
 }
 
+/* A VRM animation: bones have VRM's names, and its clips are for any body. */
+static void vrm_animations_are_for_any_body(void **state)
+{
+    (void)state;
+    model *m = load(
+        vrm_scene("\"VRMC_vrm_animation\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{"
+                  "\"node\":1}}},\"expressions\":{\"preset\":{\"happy\":{\"node\":2}}},\"lookAt\":{\"node\":2}}"));
+    assert_true(m->for_any_body);
+    assert_string_equal(m->nodes[1].name, "hips");
+    assert_true(has_warning(m, "VRM expression 'happy': its animation was left out"));
+    assert_true(has_warning(m, "VRM lookAt: its animation was left out"));
+    model_free(m);
+}
+
 /* Before 1.0 weights go to 100, binds name meshes, and figures face -z. */
 static void old_vrm_turns_round(void **state)
 {
@@ -2466,6 +2480,7 @@ int main(void)
         cmocka_unit_test(node_weights),
         cmocka_unit_test(vrm_expressions_are_recipes),
         cmocka_unit_test(vrm_rules_are_told),
+        cmocka_unit_test(vrm_animations_are_for_any_body),
         cmocka_unit_test(old_vrm_turns_round),
         cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(mtoon_is_a_toon),

@@ -10,6 +10,7 @@
 #include "convert/base/input_file.h"
 #include "convert/base/quat.h"
 #include "convert/base/text_scan.h"
+#include "convert/clips/rest_fit.h"
 #include "convert/model/model.h"
 
 #define LISTED 5u          /* names of each kind in a report */
@@ -21,6 +22,7 @@ typedef struct matcher {
     uint32_t *counterpart; /* [to->joint_count] joint of the set, or MODEL_NONE */
     uint8_t *taken;        /* [joints of the set] */
     uint32_t found;
+    int by_rest;
 } matcher;
 
 /* ---- names ---- */
@@ -236,7 +238,13 @@ static int refit_clip(const matcher *m, raw_clip *clip)
         free(to.scales);
         return 1;
     }
-    for (uint32_t f = 0; f < clip->frame_count; f++) {
+    if (m->by_rest && rest_fit_clip(&m->set->skeleton, m->to, m->counterpart, clip, &to)) {
+        free(to.rotations);
+        free(to.translations);
+        free(to.scales);
+        return 1;
+    }
+    for (uint32_t f = 0; f < clip->frame_count && !m->by_rest; f++) {
         for (uint32_t j = 0; j < m->to->joint_count; j++) fill_joint(m, clip, &to, f, j);
     }
     free(clip->rotations);
@@ -320,7 +328,7 @@ static char *write_report(const matcher *m)
     buffer_print(&out, "%u of its %u joints were found by name", m->found, m->set->skeleton.joint_count);
     list_left(&out, m->to, m->counterpart, NULL, "; these keep the bind pose:");
     list_left(&out, &m->set->skeleton, NULL, m->taken, "; these were left out:");
-    if (apart > LENGTHS_EQUAL)
+    if (apart > LENGTHS_EQUAL && !m->by_rest)
         buffer_print(&out, "; bones differ in length by up to %.0f %%, and the pack's lengths are kept", 100.0 * apart);
     buffer_append(&out, "", 1);
     return out.failed ? NULL : (char *)out.bytes;
@@ -339,8 +347,8 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
 {
     if (options->names && pair_by_file(m, options->names, error)) return JOINTS_FAILED;
     pair_by_name(m);
-    if (!is_whole(m) &&
-        !(options->partial && (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
+    if (!is_whole(m) && !((options->partial || options->by_rest) &&
+                          (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
         return JOINTS_DIFFER;
     *report = write_report(m);
     if (!*report) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
@@ -354,7 +362,7 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
 joint_match joint_match_set(raw_set *set, const raw_skeleton *to, const joint_match_options *options, char **report,
                             model_error *error)
 {
-    matcher m = { set, to, NULL, NULL, 0 };
+    matcher m = { set, to, NULL, NULL, 0, options->by_rest };
     joint_match result;
     *report = NULL;
     m.counterpart = malloc(((size_t)to->joint_count + 1u) * sizeof *m.counterpart);

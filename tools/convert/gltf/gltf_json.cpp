@@ -37,21 +37,14 @@ static const integer_rule integer_rules[] = {
 };
 
 /* Extensions that are understood, or may be ignored if they are not required. */
-static const char *const supported[] = { "KHR_mesh_quantization",
-                                         "EXT_meshopt_compression",
-                                         "KHR_animation_pointer",
-                                         "EXT_mesh_gpu_instancing",
-                                         "KHR_texture_transform",
-                                         "KHR_materials_unlit",
-                                         "KHR_materials_specular",
-                                         "KHR_materials_pbrSpecularGlossiness",
-                                         "KHR_materials_ior",
-                                         "KHR_materials_emissive_strength",
-                                         "EXT_texture_webp",
-                                         "VRMC_vrm",
-                                         "VRMC_springBone",
-                                         "VRMC_materials_mtoon",
-                                         "VRM" };
+static const char *const supported[] = { "KHR_mesh_quantization",  "EXT_meshopt_compression",
+                                         "KHR_animation_pointer",  "EXT_mesh_gpu_instancing",
+                                         "KHR_texture_transform",  "KHR_materials_unlit",
+                                         "KHR_materials_specular", "KHR_materials_pbrSpecularGlossiness",
+                                         "KHR_materials_ior",      "KHR_materials_emissive_strength",
+                                         "EXT_texture_webp",       "VRMC_vrm",
+                                         "VRMC_vrm_animation",     "VRMC_springBone",
+                                         "VRMC_materials_mtoon",   "VRM" };
 
 bool is_supported(const std::string &name)
 {

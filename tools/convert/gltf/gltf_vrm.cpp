@@ -300,10 +300,26 @@ bool read_toon(const file &f, size_t index, model_material &out)
 
 /* --- all of it --- */
 
+/* Curves of expressions and of the gaze lie in nodes of their own. */
+static void read_vrm_animation(file &f, const value &animation)
+{
+    const value *expressions = member(animation, "expressions");
+    f.out->for_any_body = 1;
+    name_bones(f, animation);
+    for (const char *kind : { "preset", "custom" }) {
+        const value *all = expressions ? member(*expressions, kind) : nullptr;
+        for (size_t i = 0; all && all->IsObject() && i < all->Keys().size(); ++i)
+            leave_out(f, "VRM expression '" + printable(all->Keys()[i]) + "'",
+                      ": its animation was left out: clips move bones and targets");
+    }
+    if (member(animation, "lookAt")) leave_out(f, "VRM lookAt", ": its animation was left out: clips have no gaze");
+}
+
 void read_vrm(file &f)
 {
     recipes r;
     const value *now = extension(f, "VRMC_vrm"), *old = extension(f, "VRM");
+    if (const value *animation = extension(f, "VRMC_vrm_animation")) read_vrm_animation(f, *animation);
     if (!now && !old) return;
     name_bones(f, now ? *now : *old);
     if (now)
