@@ -134,5 +134,5 @@ vec3 noh_eye_light(inout noh_surface s)
 #endif
 
 #if defined(NOH_TEETH) && !defined(NOH_DEPTH_ONLY)
-in float noh_v_open; /* 0..1: share of outside light that reaches the point */
+in float noh_v_depth; /* behind the lips: common_face.glsl */
 #endif

@@ -30,28 +30,36 @@ void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec
 #endif
 
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
-out float noh_v_open; /* 0..1: share of outside light that reaches the point */
+out float noh_v_depth; /* behind the lips, in halves of their gap; 0 outside of the mouth */
+
+/* The half gap of the lips, in depths of the mouth: narrow at rest, wider where targets move what is inside. */
+float noh_half_gap(vec3 moved, float scale)
+{
+    return 0.14 + scale * length(moved);
+}
 #endif
 
 #ifdef NOH_TEETH
-/* Teeth are darker the farther they are behind the lips, and brighter if a jaw target moves them. rest, model: position
- * before and after targets */
+/* rest, model: position before and after targets */
 void noh_face_vertex(vec3 rest, vec3 model)
 {
-    float open = dot(rest, noh_surface_values.xyz) + noh_surface_values.w + noh_surface_more[0].x * length(model - rest);
-    noh_v_open = noh_surface_more[0].x > 0.0 ? mix(0.04, 0.9, smoothstep(0.0, 1.0, open)) : 1.0;
+    float depth = max(1.2 - (dot(rest, noh_surface_values.xyz) + noh_surface_values.w), 0.2); /* lips are thick */
+    float gap = noh_half_gap(model - rest, noh_surface_more[0].x);
+    noh_v_depth = noh_surface_more[0].x > 0.0 ? depth / gap : 0.0;
 }
 #endif
 
 #ifdef NOH_SKIN
-/* The skin inside the mouth, around the teeth, is as dark as the teeth. */
-void noh_face_vertex(vec3 rest)
+/* The skin inside the mouth, around the teeth: what faces the middle of the hollow. normal: in the bind pose */
+void noh_face_vertex(vec3 rest, vec3 model, vec3 normal)
 {
     vec3 from = rest - noh_surface_values.yzw;
     vec2 beside = abs(from.xy) / max(noh_surface_more[0].xy, 1e-6);
-    float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, 0.8 * beside.y));
-    float open = mix(0.04, 1.0, smoothstep(-0.2, 1.0, 1.0 + from.z * noh_surface_more[0].z));
-    noh_v_open = noh_surface_more[0].z > 0.0 ? mix(1.0, open, inside) : 1.0;
+    float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, 0.8 * beside.y)), slope = noh_surface_more[0].z;
+    vec3 middle = vec3(0.0, 0.0, -0.5 / max(slope, 1e-6));
+    inside *= smoothstep(0.1, -0.3, dot(normal, normalize(from - middle)));
+    float depth = inside * max(0.15 - from.z * slope, 0.0);
+    noh_v_depth = slope > 0.0 ? depth / noh_half_gap(model - rest, 0.5 * slope) : 0.0;
 }
 #endif
 #endif

@@ -3,7 +3,7 @@
 #if defined(NOH_SKIN) && !defined(NOH_DEPTH_ONLY)
 uniform vec4 noh_surface_values; /* x: millimetres in a unit of the world */
 
-in float noh_v_open; /* 0..1: share of outside light that reaches the point */
+in float noh_v_depth; /* behind the lips: common_face.glsl */
 
 /* The light of a lamp at angle acos(nl) that skin scatters back, by channel: light that enters nearby leaves here. It
  * is the integral of max(cos, 0) over a ring of this curvature, weighted by the diffusion profile of d'Eon and Luebke

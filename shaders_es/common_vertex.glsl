@@ -215,7 +215,7 @@ noh_vertex noh_fetch()
     noh_face_vertex(noh_a_rest, v.model);
 #endif
 #ifdef NOH_SKIN
-    noh_face_vertex(noh_a_rest);
+    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal));
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);

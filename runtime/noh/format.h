@@ -323,8 +323,9 @@ typedef struct noh_node {
  *          the eyeball's centre between the gaze and the rim of the iris. surface_more: the edges of the upper and
  *          lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away from the nose, the
  *          edge is at the height x + y a + z a^2. Zeros: unknown
- *   teeth  openness to light, 0 to 1: dot(xyz, position in the bind pose) + w; zeros: unknown. surface_more x: openness
- *          added per unit that targets move the position; the rest zeros
+ *   teeth  nearness to the lips, 1 at the foremost teeth, 0 where no light arrives: dot(xyz, position in the bind pose)
+ *          + w; zeros: unknown. surface_more x: by how much the half gap of the lips grows, in depths of the mouth, per
+ *          unit that targets move the position; the rest zeros
  *   toon   xyz the colour in shade divided by the colour in light; w, -1 to 1, how far light extends past the
  *          terminator. surface_more x, 0 to 1: hardness of the edge; the rest zeros
  * A plain surface has zeros. */
