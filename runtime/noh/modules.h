@@ -433,7 +433,8 @@ typedef struct noh_kind_face {
     const noh_face_recipe *const *recipes; /* [recipe_count] the best first; default (NULL) the pack's recipe, if
                                             * any, then the three built-in recipes */
     uint32_t recipe_count;
-    /* Joint names; default (NULL) found by common names; "": none. Without a head joint only the eyes turn */
+    /* Joint names; default (NULL): those in the pack's recipe (rows joint-head and so on), else common names; "": none.
+     * Without a head joint only the eyes turn */
     const char *head, *neck, *chest, *eyes[2];
     uint32_t flags; /* NOH_FACE_* of new actors */
     noh_face_rules rules;

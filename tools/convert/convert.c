@@ -3,12 +3,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/base/names.h"
 #include "convert/clips/events_read.h"
 #include "convert/chunks/chunk_maker.h"
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/mocap/clean.h"
 #include "convert/model/model_build.h"
+#include "convert/model/size_guess.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
 #include "convert/model/texture_cut.h"
@@ -322,7 +324,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
     return 0;
 }
 
-/* The kinds of materials, and shapes that follow from meshes. */
+/* The kinds of materials, the size, and shapes that follow from meshes. */
 static int make_surfaces(const convert_options *options, source *s, model_error *error)
 {
     for (uint32_t i = 0; i < options->surface_count; i++) {
@@ -334,7 +336,9 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     for (uint32_t i = 0; i < options->priority_count; i++) {
         if (priority_assign(s->m, options->priorities[i], error)) return 1;
     }
-    return options->only != CONVERT_CLIPS && surface_shapes_find(s->m, options->report, error);
+    if (options->only == CONVERT_CLIPS) return 0;
+    if (size_guess(s->m, options->report)) return out_of_memory(error);
+    return surface_shapes_find(s->m, options->report, error);
 }
 
 static int join_all(const char *const *inputs, int count, int base, const convert_options *options, source *all,
@@ -365,6 +369,15 @@ static int read_chunks(const convert_options *options, const source *s, int in_j
     return 0;
 }
 
+static int use_names(const convert_options *options, convert_failure *failure)
+{
+    const char *model_file = failure->file;
+    if (options->names) failure->file = options->names;
+    if (names_use(options->names, &failure->error)) return 1;
+    failure->file = model_file;
+    return 0;
+}
+
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure)
 {
@@ -378,7 +391,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
         return out_of_memory(&failure->error);
     }
     inputs_record(options->inputs);
-    failed = read_all(inputs, input_count, options, all, failure);
+    failed = use_names(options, failure) || read_all(inputs, input_count, options, all, failure);
     if (!failed) {
         base = base_of(all, input_count);
         failed = join_all(inputs, input_count, base, options, all, failure) ||
@@ -391,6 +404,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  convert_source(&all[base], chunks, options, out, &failure->error);
     }
     inputs_record(NULL);
+    names_free();
     for (int i = 0; i < input_count || !i; i++) {
         source_free(&all[i]);
     }

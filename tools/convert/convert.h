@@ -33,6 +33,7 @@ typedef struct convert_options {
     uint32_t texture_max;       /* textures are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     int whole_textures;         /* 1: textures are not trimmed (texture/texture_trim.h) */
     convert_only only;
+    const char *names;                  /* a text file of names, see names.h; NULL: the table alone */
     const char *events;                 /* a text file of callback keys; NULL: none */
     const char *texts[NOH_CHUNK_TYPES]; /* the file of a chunk's text (chunks/chunk_maker.h): graphs, springs, recipe,
                                            ragdoll, haircut, terrain; NULL: none */

@@ -36,34 +36,40 @@ static void plain_name(const char *name, char out[NAME_BYTES])
     out[n] = '\0';
 }
 
-/* What tools put before names of joints: VRM's, 3ds Max's, Rigify's, Character Creator's, Mixamo's. */
-static const char *without_prefix(const char *plain)
+/* The channel of the pack's recipe whose row names the joint, then its usual names. The converter writes rows for
+ * joints that the programs of artists call otherwise. */
+static const char *const heads[] = { "joint-head", "head", NULL };
+static const char *const necks[] = { "joint-neck", "neck", NULL };
+static const char *const chests[] = { "joint-chest", "upperchest", "chest", NULL };
+static const char *const left_eyes[] = { "joint-eye-left", "lefteye", "eyeleft", "eyel", "leye", NULL };
+static const char *const right_eyes[] = { "joint-eye-right", "righteye", "eyeright", "eyer", "reye", NULL };
+
+static uint32_t find_named(const noh_kind_desc *d, uint32_t joint_count, const char *name)
 {
-    static const char *const prefixes[] = { "jbipc", "jbip", "jadj", "bip01", "bip001", "def", "ccbase", "mixamorig" };
-    for (uint32_t p = 0; p < sizeof prefixes / sizeof prefixes[0]; p++) {
-        uint32_t n = 0;
-        while (prefixes[p][n] && plain[n] == prefixes[p][n]) n++;
-        if (!prefixes[p][n] && plain[n]) return plain + n;
+    for (uint32_t j = 0; j < joint_count; j++) {
+        const char *own = noh_pack_joint_name(d->mesh, d->skeleton, j);
+        if (own && noh_names_equal(own, name)) return j;
     }
-    return plain;
+    return NOH_NONE;
 }
 
-static const char *const heads[] = { "head", NULL };
-static const char *const necks[] = { "neck", "neck1", "neck01", NULL };
-static const char *const chests[] = { "upperchest", "chest", "spine2", "spine03", "spine3", NULL };
-static const char *const left_eyes[] = { "lefteye", "eyeleft", "eyel", "leye", "lfaceeye", NULL };
-static const char *const right_eyes[] = { "righteye", "eyeright", "eyer", "reye", "rfaceeye", NULL };
-
-/* The first of a list of usual names that a joint has. */
+/* By the pack's recipe, else the first of the usual names that a joint has. */
 static uint32_t find_usual(const noh_kind_desc *d, uint32_t joint_count, const char *const *usual)
 {
     char plain[NAME_BYTES];
-    for (; *usual; usual++) {
+    for (uint32_t i = 0; i < d->mesh->recipe_row_count; i++) {
+        const noh_recipe_row *row = &d->mesh->recipe_rows[i];
+        uint32_t joint;
+        if (!noh_names_equal(noh_pack_string(d->mesh, row->channel), *usual)) continue;
+        joint = find_named(d, joint_count, noh_pack_string(d->mesh, row->target));
+        if (joint != NOH_NONE) return joint;
+    }
+    while (*++usual) {
         for (uint32_t j = 0; j < joint_count; j++) {
             const char *name = noh_pack_joint_name(d->mesh, d->skeleton, j);
             if (!name) continue;
             plain_name(name, plain);
-            if (noh_names_equal(plain, *usual) || noh_names_equal(without_prefix(plain), *usual)) return j;
+            if (noh_names_equal(plain, *usual)) return j;
         }
     }
     return NOH_NONE;
@@ -77,14 +83,7 @@ static int open_joint(const noh_kind_desc *d, const noh_skeleton *skeleton, cons
     memset(out, 0, sizeof *out);
     out->joint = NOH_NONE;
     if (!skeleton->joint_count || (name && !name[0])) return 1;
-    if (name) {
-        for (uint32_t j = 0; j < skeleton->joint_count && out->joint == NOH_NONE; j++) {
-            const char *own = noh_pack_joint_name(d->mesh, d->skeleton, j);
-            if (own && noh_names_equal(own, name)) out->joint = j;
-        }
-    } else {
-        out->joint = find_usual(d, skeleton->joint_count, usual);
-    }
+    out->joint = name ? find_named(d, skeleton->joint_count, name) : find_usual(d, skeleton->joint_count, usual);
     if (out->joint == NOH_NONE) return !name;
     noh_stage_joint_in(skeleton, skeleton->bind_pose, out->joint, rotation, out->at);
     noh_quat_conjugate(rotation, out->axes);

@@ -232,6 +232,38 @@ static void namespaces_are_no_part_of_a_name(void **state)
     source_free(&same);
 }
 
+/* base's joints are of VRM, the other's of Mixamo. turn_degrees: of the other's first joint at rest, about x. */
+static int join_by_meaning(double turn_degrees, model_error *error)
+{
+    static const char *const ours[] = { "hips", "spine", "leftUpperLeg" };
+    static const char *const theirs[] = { "mixamorig:Hips", "mixamorig:Spine", "mixamorig:LeftUpLeg" };
+    source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES));
+    const double half = 0.5 * turn_degrees * 3.14159265358979 / 180.0;
+    float *rest = other.sets[0]->skeleton.joints[0].rotation;
+    int failed;
+    for (uint32_t j = 0; j < 3; j++) {
+        name_joint(&base, j, ours[j]);
+        name_joint(&other, j, theirs[j]);
+    }
+    rest[0] = (float)sin(half);
+    rest[3] = (float)cos(half);
+    failed = source_join(&base, "walk.bvh", &other, "run.bvh", &by_name, error);
+    if (!failed) assert_int_equal(base.sets[0]->clip_count, 2);
+    source_free(&base);
+    source_free(&other);
+    return failed;
+}
+
+static void bones_of_other_names_are_matched_where_they_rest_alike(void **state)
+{
+    model_error error = { "", "" };
+    (void)state;
+    if (join_by_meaning(0.0, &error)) fail_msg("%s", error.what);
+    if (join_by_meaning(8.0, &error)) fail_msg("%s", error.what);
+    assert_int_equal(join_by_meaning(15.0, &error), 1);
+    assert_non_null(strstr(error.what, "joint 0 is 'mixamorig:Hips' here and 'hips' there"));
+}
+
 static const char *names_file(const char *text)
 {
     const char *path = test_path("names.txt");
@@ -402,6 +434,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_come_to_a_model_without_clip),
     cmocka_unit_test(what_adds_nothing_is_refused),
     cmocka_unit_test(namespaces_are_no_part_of_a_name),
+    cmocka_unit_test(bones_of_other_names_are_matched_where_they_rest_alike),
     cmocka_unit_test(names_are_read_from_a_file),
     cmocka_unit_test(a_bad_file_of_names_is_refused_by_line),
     cmocka_unit_test(a_joint_in_between_is_folded_into_the_next),

@@ -74,6 +74,7 @@ static const file_kind kinds[] = {
     { ".ragdoll", NULL, READER_NONE, "a text of a ragdoll", TEXT("--ragdoll") },
     { ".springs", NULL, READER_NONE, "a text of springs", TEXT("--springs") },
     { ".hair", NULL, READER_NONE, "a text of a haircut", TEXT("--hair") },
+    { ".names", NULL, READER_NONE, "a text of names", TEXT("--names") },
     { ".place", NULL, READER_NONE, "a text of a place", "noh crowd PACK --place FILE reads it" },
     { ".session", NULL, READER_NONE, "a recording of play", "noh lab replay PACK --play FILE reads it" },
 };

@@ -11,6 +11,9 @@
 
 #define CHANNEL_ANY "blink-left, eye-right-up, lids-down, joy-upper, joy-mouth, PP, aa and so on (noh help FORMATS)"
 
+const char *const recipe_joint_channels[5] = { "joint-head", "joint-neck", "joint-chest", "joint-eye-left",
+                                               "joint-eye-right" };
+
 /* The channels of a word: one, or the two of `blink`. */
 static uint32_t find_channels(text_word word, uint32_t channels[2])
 {
@@ -20,6 +23,15 @@ static uint32_t find_channels(text_word word, uint32_t channels[2])
         if (both || text_is(word, noh_face_channel_name(c))) channels[count++] = c;
     }
     return count;
+}
+
+/* A channel whose row names a joint in place of a target; NULL: none. */
+static const char *find_joint_channel(text_word word)
+{
+    for (size_t i = 0; i < sizeof recipe_joint_channels / sizeof recipe_joint_channels[0]; i++) {
+        if (text_is(word, recipe_joint_channels[i])) return recipe_joint_channels[i];
+    }
+    return NULL;
 }
 
 static char *copy_of(const char *text)
@@ -278,6 +290,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
 {
     text_word channel, target;
     uint32_t channels[2], count;
+    const char *joint;
     float weight = 1.0f;
     char shown[TEXT_SHOWN];
     if (text_take_on_line(s, &channel)) return 1;
@@ -288,7 +301,8 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "share")) return read_shares(s, recipe);
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
     count = find_channels(channel, channels);
-    if (!count) {
+    joint = find_joint_channel(channel);
+    if (!count && !joint) {
         return text_fail(s, channel.line, "'%s' is not a channel: channels are " CHANNEL_ANY,
                          text_show(channel, shown));
     }
@@ -296,7 +310,9 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (!target.size) {
         return text_fail(s, channel.line, "the target is missing: a row is CHANNEL TARGET [WEIGHT]");
     }
-    if (check_target(s, target) || read_weight(s, &weight)) return 1;
+    if (check_target(s, target)) return 1;
+    if (joint) return end_rule(s, "joint-head JOINT") || add_row(s, recipe, channel.line, joint, target, weight);
+    if (read_weight(s, &weight)) return 1;
     for (uint32_t i = 0; i < count; i++) {
         if (add_row(s, recipe, channel.line, noh_face_channel_name(channels[i]), target, weight)) return 1;
     }

@@ -28,6 +28,9 @@ typedef struct recipe_text {
     uint32_t count, wrinkle_count;
 } recipe_text;
 
+/* Channels of rows that name a joint of the face in place of a target. */
+extern const char *const recipe_joint_channels[5];
+
 recipe_text *recipe_new(void); /* NULL: out of memory */
 
 /* Add the lines of a text. 0, or 1 with *line and *error; what was read before stays. */

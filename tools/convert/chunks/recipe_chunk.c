@@ -31,8 +31,10 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
     }
     for (uint32_t i = 0; i < (*out)->count; i++) {
         const recipe_row *row = &(*out)->rows[i];
-        if (!has_target(s->m, row->target) && model_warn(s->m, "%s:%u: no mesh has the target '%s'",
-                                                         options->texts[NOH_CHUNK_RECIPE], row->line, row->target)) {
+        const int is_joint = strncmp(row->channel, "joint-", 6) == 0;
+        const int is_there = is_joint ? source_has_joint(s, row->target) : has_target(s->m, row->target);
+        if (!is_there && model_warn(s->m, "%s:%u: no %s '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
+                                    is_joint ? "skeleton has the joint" : "mesh has the target", row->target)) {
             return model_fail(&failure->error, "", "out of memory");
         }
         if (row->channel[0] == '+' && !has_target(s->m, row->channel + 1) &&
@@ -53,11 +55,26 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
     return 0;
 }
 
+static int add_joints(recipe_text *recipe, const source *s)
+{
+    int failed = 0;
+    for (uint32_t i = 0; i < s->set_count && !failed; i++) {
+        const raw_skeleton *k = &s->sets[i]->skeleton;
+        const char *names[NOH_JOINTS_MAX];
+        uint32_t count = 0;
+        for (; count < k->joint_count && count < NOH_JOINTS_MAX; count++) {
+            names[count] = k->joints[count].name ? k->joints[count].name : "";
+        }
+        failed = recipe_add_joints(recipe, names, count);
+    }
+    return failed;
+}
+
 /* Of a text, of extras, of names. */
 static int read_recipe(const convert_options *options, const source *s, void **made, convert_failure *failure)
 {
     recipe_text *recipe = NULL;
-    uint32_t named = 0;
+    uint32_t named = 0, known = 0;
     if (options->only == CONVERT_CLIPS) {
         return 0;
     }
@@ -66,6 +83,7 @@ static int read_recipe(const convert_options *options, const source *s, void **m
     *made = recipe;
     if (failed) return 1;
     if (!recipe || recipe_add_extras(recipe, s->m) || recipe_add_lips(recipe, s->m) ||
+        recipe_add_known(recipe, s->m, &known) || (s->m->mesh_count && add_joints(recipe, s)) ||
         (!options->no_correctives && recipe_add_named(recipe, s->m, &named))) {
         (void)snprintf(failure->error.what, sizeof failure->error.what,
                        "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
@@ -73,6 +91,10 @@ static int read_recipe(const convert_options *options, const source *s, void **m
     }
     if (named && options->report) {
         fprintf(options->report, "%u correctives by target names (--no-correctives turns them off)\n", named);
+    }
+    if (known && options->report) {
+        fprintf(options->report, "%u rows of the face's recipe by the names of its targets (noh face shows them)\n",
+                known);
     }
     if (!recipe->count && !recipe->wrinkle_count) {
         recipe_free(recipe);

@@ -8,6 +8,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/base/input_file.h"
+#include "convert/base/names.h"
 #include "convert/base/quat.h"
 #include "convert/base/text_scan.h"
 #include "convert/clips/rest_fit.h"
@@ -100,6 +101,48 @@ static void pair_by_name(matcher *m)
         const uint32_t theirs = m->to->joints[j].name ? find_joint(&m->set->skeleton, m->to->joints[j].name)
                                                       : MODEL_NONE;
         if (theirs != MODEL_NONE) pair(m, j, theirs);
+    }
+}
+
+/* ---- meanings ---- */
+
+#define REST_ALIKE 0.9962 /* cosine of 5 degrees, half of the angle by which rest poses may differ */
+
+static void rest_rotation(const raw_skeleton *s, uint32_t joint, double out[4])
+{
+    const double none[4] = { 0.0, 0.0, 0.0, 1.0 };
+    memcpy(out, none, sizeof none);
+    for (; joint != MODEL_NONE; joint = s->joints[joint].parent) {
+        const float *r = s->joints[joint].rotation;
+        const double own[4] = { (double)r[0], (double)r[1], (double)r[2], (double)r[3] };
+        double q[4];
+        quat_multiply(own, out, q);
+        memcpy(out, q, sizeof q);
+    }
+}
+
+/* Poses are taken over as they are, which is right where joints rest at the same angles alone. */
+static int rest_alike(const matcher *m, uint32_t ours, uint32_t theirs)
+{
+    double a[4], b[4];
+    rest_rotation(m->to, ours, a);
+    rest_rotation(&m->set->skeleton, theirs, b);
+    return fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]) > REST_ALIKE;
+}
+
+/* Joints that the table of names knows as the same bone of a person: hips, mixamorig:Hips and pelvis. */
+static void pair_by_meaning(matcher *m)
+{
+    const raw_skeleton *s = &m->set->skeleton;
+    char ours[NOH_NAME_BYTES_MAX], theirs[NOH_NAME_BYTES_MAX];
+    for (uint32_t j = 0; j < m->to->joint_count; j++) {
+        if (m->counterpart[j] != MODEL_NONE || !m->to->joints[j].name ||
+            !names_find(NAME_JOINT, m->to->joints[j].name, ours, NULL))
+            continue;
+        for (uint32_t k = 0; k < s->joint_count && m->counterpart[j] == MODEL_NONE; k++) {
+            if (m->taken[k] || !s->joints[k].name || !names_find(NAME_JOINT, s->joints[k].name, theirs, NULL)) continue;
+            if (strcmp(ours, theirs) == 0 && rest_alike(m, j, k)) pair(m, j, k);
+        }
     }
 }
 
@@ -347,6 +390,7 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
 {
     if (options->names && pair_by_file(m, options->names, error)) return JOINTS_FAILED;
     pair_by_name(m);
+    pair_by_meaning(m);
     if (!is_whole(m) && !((options->partial || options->by_rest) &&
                           (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
         return JOINTS_DIFFER;

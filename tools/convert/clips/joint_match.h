@@ -19,7 +19,8 @@ typedef enum joint_match {
 } joint_match;
 
 /* Fit a set's skeleton and clips to the joints of `to`, by name: the other name in the file of names, or else the same
- * name, without the namespaces that some exporters put before it ("mixamorig7:Hips" is "Hips"). Joints that the set
+ * name, without the namespaces that some exporters put before it ("mixamorig7:Hips" is "Hips"), or else another name of
+ * the same bone (names.h), where both rest at the same angles, within 10 degrees. Joints that the set
  * lacks keep the bind pose of `to`; a joint that it has between two others is folded into the one below it, by
  * rotation, translation and even scale. report  a sentence about omissions, to be freed, or NULL */
 joint_match joint_match_set(raw_set *set, const raw_skeleton *to, const joint_match_options *options, char **report,

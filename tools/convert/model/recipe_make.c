@@ -6,6 +6,7 @@
 
 #include "noh/base.h"
 #include "noh/face.h"
+#include "convert/base/names.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/model_build.h"
 
@@ -125,7 +126,112 @@ int recipe_add_lips(recipe_text *recipe, const model *m)
     return 0;
 }
 
-/* ---- names ---- */
+/* ---- the table of names ---- */
+
+typedef struct known {
+    const char *names[NOH_TARGETS_MAX]; /* of all meshes, each once */
+    const char *means[NOH_TARGETS_MAX]; /* the table's, or its own */
+    char text[NOH_TARGETS_MAX][NOH_NAME_BYTES_MAX];
+    uint32_t count;
+} known;
+
+static int is_listed(const known *k, const char *name)
+{
+    for (uint32_t i = 0; i < k->count; i++) {
+        if (strcmp(k->names[i], name) == 0) return 1;
+    }
+    return 0;
+}
+
+static void list_known(known *k, const model *m)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t t = 0; t < m->meshes[i].target_count && k->count < NOH_TARGETS_MAX; t++) {
+            if (!is_listed(k, m->meshes[i].targets[t].name)) k->names[k->count++] = m->meshes[i].targets[t].name;
+        }
+    }
+    for (uint32_t i = 0; i < k->count; i++) {
+        const int found = names_find(NAME_TARGET, k->names[i], k->text[i], NULL);
+        k->means[i] = found && !is_listed(k, k->text[i]) ? k->text[i] : k->names[i];
+    }
+}
+
+/* A row for each target that means this. */
+static int add_meant(recipe_text *recipe, const known *k, const char *meant, uint32_t channel, float weight)
+{
+    const char *name = noh_face_channel_name(channel);
+    for (uint32_t i = 0; i < k->count; i++) {
+        if (strcmp(k->means[i], meant) == 0 && recipe_add_row(recipe, k->names[i], name, weight, 0)) return 1;
+    }
+    return 0;
+}
+
+/* How much of what a built-in recipe wants for a channel is there. */
+static float covered(const noh_face_source *source, uint32_t channel)
+{
+    const int is_own = source->recipe && source->channel == channel && source->row_count;
+    return is_own ? (float)source->found_count / (float)source->row_count : 0.0f;
+}
+
+static int add_channel(recipe_text *recipe, const known *k, uint32_t channel)
+{
+    const recipe_row row = { (char *)"", (char *)noh_face_channel_name(channel), 0.0f, 0 };
+    noh_face_source now, then;
+    if (has_row(recipe, recipe->count, &row)) return 0;
+    for (uint32_t i = 0; i < k->count; i++) {
+        if (k->means[i] == k->text[i] && strcmp(k->means[i], row.channel) == 0)
+            return add_meant(recipe, k, row.channel, channel, 1.0f);
+    }
+    noh_face_recipe_source(NULL, 0, k->names, k->count, channel, &now);
+    noh_face_recipe_source(NULL, 0, k->means, k->count, channel, &then);
+    for (uint32_t i = 0; covered(&then, channel) > covered(&now, channel) && i < then.recipe->row_count; i++) {
+        const noh_face_row *from = &then.recipe->rows[i];
+        if (from->channel == channel && add_meant(recipe, k, from->target, channel, from->weight)) return 1;
+    }
+    return 0;
+}
+
+int recipe_add_known(recipe_text *recipe, const model *m, uint32_t *count)
+{
+    const uint32_t before = recipe->count;
+    known *k = calloc(1, sizeof *k);
+    int failed = !k;
+    if (k) list_known(k, m);
+    for (uint32_t c = 0; c < NOH_CHANNEL_COUNT && !failed; c++) failed = add_channel(recipe, k, c);
+    free(k);
+    *count = recipe->count - before;
+    return failed;
+}
+
+/* The first joint of a meaning; *is_own: the runtime finds it by its name. NULL: there is none. */
+static const char *find_meant(const char *const *joints, uint32_t joint_count, const char *meant, int *is_own)
+{
+    for (uint32_t j = 0; j < joint_count; j++) {
+        char means[NOH_NAME_BYTES_MAX];
+        if (names_find(NAME_JOINT, joints[j], means, is_own) && strcmp(means, meant) == 0) return joints[j];
+    }
+    return NULL;
+}
+
+int recipe_add_joints(recipe_text *recipe, const char *const *joints, uint32_t joint_count)
+{
+    static const char *const means[5][2] = {
+        { "head", NULL }, { "neck", NULL }, { "upperChest", "chest" }, { "leftEye", NULL }, { "rightEye", NULL }
+    };
+    for (size_t r = 0; r < 5; r++) {
+        const recipe_row row = { (char *)"", (char *)recipe_joint_channels[r], 1.0f, 0 };
+        const char *found = NULL;
+        int is_own = 0;
+        for (int i = 0; i < 2 && means[r][i] && !found; i++) {
+            found = find_meant(joints, joint_count, means[r][i], &is_own);
+        }
+        if (!found || is_own || has_row(recipe, recipe->count, &row)) continue;
+        if (recipe_add_row(recipe, found, row.channel, 1.0f, 0)) return 1;
+    }
+    return 0;
+}
+
+/* ---- names of correctives ---- */
 
 #define PARTS_MAX NOH_CORRECTIVE_DRIVERS_MAX
 #define JOINTS_MAX 10 /* underscores of a name that are tried as joints between parts */

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "convert/base/names.h"
 #include "noh/format.h"
 
 static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
@@ -17,29 +18,6 @@ uint32_t surface_kind_named(const char *word)
 }
 
 /* ---- words ---- */
-
-/* In small letters, each between spaces. */
-static const char skin_words[] = " skin haut peau piel pelle pele huid skóra skora кожа ";
-static const char eye_words[] =
-    " eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas auge augen augapfel œil oeil "
-    "yeux "
-    "ojo ojos olho olhos occhio occhi oog ogen oko oczy глаз глаза ";
-static const char teeth_words[] =
-    " tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive gencives langue diente "
-    "dientes "
-    "encía encia lengua dente dentes dientes gengiva língua lingua denti lingue tand tanden tong zęby zeby język jezyk "
-    "зуб зубы язык дёсны десны ";
-/* A name with one of these words is not an eye. */
-static const char around_words[] =
-    " line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid lids eyelid eyelids liner eyeliner "
-    "eyeline shadow "
-    "eyeshadow occlusion tear tears tearline glass glasses eyeglasses patch mask socket sockets wimper wimpern braue "
-    "brauen lid lider cil cils sourcil sourcils pestaña pestañas ceja cejas ciglia sopracciglia ресницы брови ";
-/* Languages that put no spaces between words: a name holds them anywhere. */
-static const char *const joined_around[] = { "睫", "眉", "影", "眼鏡", "眼镜", "안경", "눈썹" };
-static const char *const joined_eye[] = { "目", "瞳", "眼", "눈" };
-static const char *const joined_teeth[] = { "歯", "舌", "牙", "齿", "이빨", "혀" };
-static const char *const joined_skin[] = { "肌", "皮膚", "皮肤", "피부" };
 
 #define WORD_BYTES_MAX 32u
 
@@ -80,44 +58,33 @@ static size_t word_length(const char *text)
     return length;
 }
 
-static int is_in(const char *list, const char *word, size_t length)
+static int is_in(const char *material, const char *word, size_t length)
 {
-    char spaced[WORD_BYTES_MAX + 3u];
+    char folded[WORD_BYTES_MAX];
     if (length > WORD_BYTES_MAX) return 0;
-    spaced[0] = ' ';
-    memcpy(spaced + 1, word, length);
-    fold((unsigned char *)spaced + 1, length);
-    memcpy(spaced + 1 + length, " ", 2);
-    return strstr(list, spaced) != NULL;
+    memcpy(folded, word, length);
+    fold((unsigned char *)folded, length);
+    return names_has_word(material, folded, length);
 }
 
-static int has_word(const char *name, const char *list)
+/* Whether the table has a word or a part of the name for this kind. */
+static int is_of(const char *name, const char *material)
 {
-    while (*name) {
-        const size_t length = word_length(name);
-        if (length && is_in(list, name, length)) return 1;
-        name += length ? length : 1u;
+    for (const char *at = name; *at;) {
+        const size_t length = word_length(at);
+        if (length && is_in(material, at, length)) return 1;
+        at += length ? length : 1u;
     }
-    return 0;
+    return names_has_part(material, name);
 }
-
-static int has_part(const char *name, const char *const *parts, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        if (strstr(name, parts[i])) return 1;
-    }
-    return 0;
-}
-
-#define HAS_PART(name, parts) has_part(name, parts, sizeof(parts) / sizeof(parts)[0])
 
 uint32_t surface_kind_of_name(const char *name)
 {
-    const int around = has_word(name, around_words) || HAS_PART(name, joined_around);
-    if (!around && (has_word(name, eye_words) || HAS_PART(name, joined_eye))) return NOH_SURFACE_EYE;
-    if (has_word(name, teeth_words) || HAS_PART(name, joined_teeth)) return NOH_SURFACE_TEETH;
-    if (has_word(name, skin_words) || HAS_PART(name, joined_skin)) return NOH_SURFACE_SKIN;
-    return NOH_SURFACE_PLAIN;
+    if (is_of(name, "plain")) return NOH_SURFACE_PLAIN;
+    if (!is_of(name, "beside-eye") && is_of(name, "eye")) return NOH_SURFACE_EYE;
+    if (is_of(name, "teeth")) return NOH_SURFACE_TEETH;
+    if (is_of(name, "skin")) return NOH_SURFACE_SKIN;
+    return is_of(name, "toon") ? NOH_SURFACE_TOON : NOH_SURFACE_PLAIN;
 }
 
 /* ---- materials ---- */

@@ -62,7 +62,7 @@ typedef struct wrinkle_args {
 } wrinkle_args;
 
 typedef struct face_args {
-    const char *identity, *targets;
+    const char *identity, *targets, *names;
     int eyes, lips, no_correctives;
 } face_args;
 
@@ -366,6 +366,7 @@ static int set_options(const build_args *a, convert_options *o)
     o->spring_line_count = (uint32_t)a->spring_lines.count;
     o->source.lips = a->face.lips;
     o->no_correctives = a->face.no_correctives;
+    o->names = a->face.names;
     return status;
 }
 
@@ -778,6 +779,13 @@ static const option options[] = {
       .what = "text file of what the face's targets show: blinks, gaze, emotions, mouth shapes (noh help FORMATS)",
       .example = "hero.recipe",
       .excludes = "--only=anim" },
+    { .name = "--names",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, face.names),
+      .value = "FILE",
+      .what =
+          "text file of names of targets, joints and materials, before those that noh knows of Oculus, ARKit, VRoid, Character Creator, Daz, Mixamo, Unreal, Unity and others (noh help FORMATS)",
+      .example = "studio.names" },
     { .name = "--ragdoll",
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, texts[NOH_CHUNK_RAGDOLL]),

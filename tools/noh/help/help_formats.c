@@ -86,6 +86,8 @@ const char *const help_formats_text[] = {
     "                                               surprise, fear, anger, disgust, contempt",
     "   sil PP FF TH DD kk CH SS nn RR aa E ih oh ou  mouth shapes of speech",
     "   breath                                      the chest",
+    "   joint-head JOINT                            a joint of the face; also joint-neck, joint-chest, joint-eye-left,",
+    "                                               joint-eye-right",
     "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of its drivers' weights; a driver with",
     "                                               a peak below 1 counts fully there, and less on both sides",
     "   range TARGET MIN MAX                        range of its weight: MIN at most 0, MAX at least 0",
@@ -95,14 +97,30 @@ const char *const help_formats_text[] = {
     "                                               A target with such rows has no other regions; one without wrinkles the",
     "                                               regions it compresses (noh build --wrinkles, --region-mask)",
     "Range, oppose and share apply only on request: with --weight-rules in verbs that show a pack, and by kind in games.",
-    "A channel without a row uses the first built-in recipe that fits the targets' names (ARKit, VRM, facial units), and a mouth shape "
-    "without one uses the nearest other shape. A row with a target that no mesh has is a warning. noh face PACK shows the result. "
+    "A channel without a row takes targets of known names (names, below), or the first built-in recipe that fits their names (ARKit, VRM, "
+    "facial units), and a mouth shape without one uses the nearest other shape. A row with a target that no mesh has is a warning. noh face PACK shows the result. "
     "A glTF mesh may hold the lines in its extras: \"recipe\": an array of lines, or one text with ';' between them. Given targets jaw, "
     "grin and jaw_grin, the last is a corrective by its name; jaw50 is an in-between.",
     "   blink lidsClosed",
     "   aa jaw 0.8",
     "   aa \"lips wide\" 0.2",
     "   joy-mouth grin 0.9",
+    "# names (noh build --names FILE)",
+    "What other programs call targets, joints and materials. noh knows the names of ARKit, Oculus (viseme_*), VRoid, Character Creator, Daz, "
+    "MPFB, Mixamo, Unreal and Unity; lines of a file come before them. One per line, words separated by blanks, names with blanks in double "
+    "quotes; # begins a comment. Case, separators, what stands before a colon, and how left and right are written do not matter; * in "
+    "the names stands for left and right:",
+    "   target WHAT NAME...                         WHAT: a channel of a recipe, or one of ARKit's 52 targets",
+    "   joint WHAT NAME...                          WHAT: a bone of a person by VRM's name, such as *UpperArm, *Eye, head",
+    "   material KIND WORD...                       KIND: skin, eye, teeth, toon or plain; beside-eye: no eye, though a word",
+    "                                               says so; a word in small letters, *PART anywhere in the name",
+    "   strip NAME...                               what programs put in front of names, or behind them",
+    "Targets become rows of the face's recipe, joints of a face rows too; clips of other files find joints by bones, where both rest at the "
+    "same angles.",
+    "   target aa Mouth_Wide",
+    "   target eyeBlink* Wink_*",
+    "   joint *Eye Ball_*",
+    "   material skin leather",
     "# springs (noh build --springs FILE, --spring LINE)",
     "Joints that swing, as in VRMC_springBone, and capsules they collide with. One per line, words separated by blanks, names with "
     "blanks in double quotes; # begins a comment:",

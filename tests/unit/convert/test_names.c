@@ -1,0 +1,239 @@
+/* Tests of tools/convert/base/names.c and of what uses it: recipes by the names of targets (recipe_make.c), clips by the
+ * names of joints (joint_match.c) are in test_sources.c. */
+#include "convert/base/names.h"
+#include "convert/base/names_table.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "convert/model/recipe_make.h"
+#include "convert/model/surface_kind.h"
+#include "noh/face.h"
+#include "noh/format.h"
+#include "support/support.h"
+
+typedef struct name_case {
+    const char *name, *means; /* means NULL: nothing */
+} name_case;
+
+static void check_cases(name_kind kind, const name_case *cases, size_t count)
+{
+    char means[NOH_NAME_BYTES_MAX];
+    for (size_t i = 0; i < count; i++) {
+        const int found = names_find(kind, cases[i].name, means, NULL);
+        if (found != (cases[i].means != NULL) || (found && strcmp(means, cases[i].means) != 0)) {
+            fail_msg("'%s' means '%s', and should mean '%s'", cases[i].name, found ? means : "nothing",
+                     cases[i].means ? cases[i].means : "nothing");
+        }
+    }
+}
+
+static void targets_have_other_names(void **state)
+{
+    static const name_case cases[] = {
+        { "eyeBlinkLeft", "eyeBlinkLeft" },
+        { "eyeBlink_L", "eyeBlinkLeft" },
+        { "EyeBlinkRight", "eyeBlinkRight" },
+        { "eye_blink_right", "eyeBlinkRight" },
+        { "L_eyeBlink", "eyeBlinkLeft" },
+        { "Eye_Blink_L", "eyeBlinkLeft" },
+        { "Eye_L_Look_Up", "eyeLookUpLeft" },
+        { "face_shapes.jawOpen", "jawOpen" },
+        { "blendShape1.mouthSmile_R", "mouthSmileRight" },
+        { "jawOpen.001", "jawOpen" },
+        { "Jaw_Open", "jawOpen" },
+        { "Jaw_L", "jawLeft" },
+        { "Mouth_Down_Lower_L", "mouthLowerDownLeft" },
+        { "Brow_Raise_Inner_R", "browInnerUp" },
+        { "Brow_Drop_R", "browDownRight" },
+        { "facs_jnt_EyeBlinkLeft", "eyeBlinkLeft" },
+        { "facs_bs_MouthSmileLeft_div2", "mouthSmileLeft" },
+        { "eCTRLEyesClosedR", "eyeBlinkRight" },
+        { "eCTRLvL", "nn" },
+        { "eCTRLvAA", "aa" },
+        { "head__eCTRLvUW", "ou" },
+        { "Genesis8Female__eCTRLvEH", "E" },
+        { "viseme_sil", "sil" },
+        { "viseme_PP", "PP" },
+        { "viseme_FF", "FF" },
+        { "viseme_TH", "TH" },
+        { "viseme_DD", "DD" },
+        { "viseme_kk", "kk" },
+        { "viseme_CH", "CH" },
+        { "viseme_SS", "SS" },
+        { "viseme_nn", "nn" },
+        { "viseme_RR", "RR" },
+        { "viseme_aa", "aa" },
+        { "viseme_E", "E" },
+        { "viseme_I", "ih" },
+        { "viseme_O", "oh" },
+        { "viseme_U", "ou" },
+        { "vrc.v_ch", "CH" },
+        { "V_Explosive", "PP" },
+        { "T_L_D_N", "DD" },
+        { "Fcl_MTH_A", "aa" },
+        { "Fcl_MTH_I", "ih" },
+        { "Fcl_EYE_Close_L", "eyeBlinkLeft" },
+        { "Face.M_F00_000_00_Fcl_EYE_Close_R", NULL },
+        { "Fcl_ALL_Sorrow", "sadness-upper" },
+        { "あ", "aa" },
+        { "eyeBlink", NULL },
+        { "smile", NULL },
+        { "L", NULL },
+        { "", NULL },
+        { ":", NULL },
+        { "...", NULL },
+    };
+    (void)state;
+    check_cases(NAME_TARGET, cases, TEST_COUNT(cases));
+}
+
+static void joints_have_other_names(void **state)
+{
+    static const name_case cases[] = {
+        { "hips", "hips" },
+        { "mixamorig:Hips", "hips" },
+        { "mixamorig7:LeftUpLeg", "leftUpperLeg" },
+        { "mixamorig:RightForeArm", "rightLowerArm" },
+        { "mixamorig:LeftHandIndex1", "leftIndexProximal" },
+        { "mixamorig:LeftToeBase", "leftToes" },
+        { "pelvis", "hips" },
+        { "spine_03", "upperChest" },
+        { "clavicle_l", "leftShoulder" },
+        { "upperarm_r", "rightUpperArm" },
+        { "calf_l", "leftLowerLeg" },
+        { "ball_r", "rightToes" },
+        { "thumb_01_l", "leftThumbMetacarpal" },
+        { "FACIAL_L_Eye", "leftEye" },
+        { "LeftUpperLeg", "leftUpperLeg" },
+        { "UpperChest", "upperChest" },
+        { "J_Bip_C_Head", "head" },
+        { "J_Bip_L_LowerArm", "leftLowerArm" },
+        { "J_Adj_R_FaceEye", "rightEye" },
+        { "Bip01 R Thigh", "rightUpperLeg" },
+        { "Bip001 L Calf", "leftLowerLeg" },
+        { "CC_Base_L_Eye", "leftEye" },
+        { "CC_Base_NeckTwist01", "neck" },
+        { "CC_Base_Spine01", "chest" },
+        { "CC_Base_R_Calf", "rightLowerLeg" },
+        { "lShldrBend", "leftUpperArm" },
+        { "rForearmBend", "rightLowerArm" },
+        { "abdomenLower", "spine" },
+        { "chestUpper", "upperChest" },
+        { "lEye", "leftEye" },
+        { "l_thigh", "leftUpperLeg" },
+        { "upperarm01.L", "leftUpperArm" },
+        { "lowerleg01.R", "rightLowerLeg" },
+        { "eye.L", "leftEye" },
+        { "DEF-upper_arm.L", "leftUpperArm" },
+        { "tail", NULL },
+    };
+    int is_own = 0;
+    char means[NOH_NAME_BYTES_MAX];
+    (void)state;
+    check_cases(NAME_JOINT, cases, TEST_COUNT(cases));
+    assert_true(names_find(NAME_JOINT, "EYE_LEFT", means, &is_own) && is_own);
+    assert_true(names_find(NAME_JOINT, "CC_Base_L_Eye", means, &is_own) && !is_own);
+}
+
+/* What the table calls a target is a channel or a name that a built-in recipe has, or one of ARKit's others. */
+static void every_line_is_read(void **state)
+{
+    char means[NOH_NAME_BYTES_MAX];
+    uint32_t channels = 0;
+    (void)state;
+    for (uint32_t i = 0; names_table[i]; i++) {
+        char first[64], kind[16];
+        assert_int_equal(sscanf(names_table[i], "%15s %63s", kind, first), 2);
+        if (strcmp(kind, "target") != 0) continue;
+        channels += noh_face_channel_find(first) != NOH_NONE;
+    }
+    assert_int_equal(channels, 19); /* fifteen mouth shapes and four of VRoid */
+    for (uint32_t i = 0; i < noh_face_recipe_arkit.row_count; i++) {
+        assert_true(names_find(NAME_TARGET, noh_face_recipe_arkit.rows[i].target, means, NULL));
+        assert_string_equal(means, noh_face_recipe_arkit.rows[i].target);
+    }
+}
+
+static void a_file_comes_first(void **state)
+{
+    static const char text[] = "# ours\ntarget aa Schnabel_Auf\ntarget mouthSmile* Grins_*\njoint head Kopf\n"
+                               "material plain tarnhaut\nmaterial skin leder\n";
+    char means[NOH_NAME_BYTES_MAX];
+    model_error error = { "", "" };
+    (void)state;
+    test_write_file(test_path("names.txt"), text, sizeof text - 1u);
+    assert_int_equal(names_use(test_path("names.txt"), &error), 0);
+    assert_true(names_find(NAME_TARGET, "schnabelAuf", means, NULL));
+    assert_string_equal(means, "aa");
+    assert_true(names_find(NAME_TARGET, "grins.R", means, NULL));
+    assert_string_equal(means, "mouthSmileRight");
+    assert_true(names_find(NAME_JOINT, "Kopf", means, NULL));
+    assert_int_equal(surface_kind_of_name("altes Leder"), NOH_SURFACE_SKIN);
+    assert_int_equal(surface_kind_of_name("Skin_Tarnhaut"), NOH_SURFACE_PLAIN);
+    names_free();
+    assert_int_equal(surface_kind_of_name("Skin_Tarnhaut"), NOH_SURFACE_SKIN);
+    assert_false(names_find(NAME_JOINT, "Kopf", means, NULL));
+    names_free();
+}
+
+static float weight_of(const recipe_text *recipe, const char *channel, const char *target)
+{
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        if (strcmp(recipe->rows[i].channel, channel) == 0 && strcmp(recipe->rows[i].target, target) == 0)
+            return recipe->rows[i].weight;
+    }
+    return 0.0f;
+}
+
+static void joints_of_the_face_get_rows(void **state)
+{
+    static const char *const joints[] = { "CC_Base_Head",    "CC_Base_NeckTwist01", "CC_Base_Spine01",
+                                          "CC_Base_Spine02", "CC_Base_L_Eye",       "CC_Base_R_Eye" };
+    static const char *const own[] = { "HEAD", "Neck", "mixamorig:Chest", "eye.L", "RightEye", "Spine2" };
+    recipe_text *recipe = recipe_new();
+    (void)state;
+    assert_int_equal(recipe_add_row(recipe, "mine", "joint-neck", 1.0f, 0), 0);
+    assert_int_equal(recipe_add_joints(recipe, joints, TEST_COUNT(joints)), 0);
+    assert_int_equal(recipe->count, 5);
+    assert_true(weight_of(recipe, "joint-neck", "mine") == 1.0f);
+    assert_true(weight_of(recipe, "joint-head", "CC_Base_Head") == 1.0f);
+    assert_true(weight_of(recipe, "joint-chest", "CC_Base_Spine02") == 1.0f);
+    assert_true(weight_of(recipe, "joint-eye-left", "CC_Base_L_Eye") == 1.0f);
+    assert_true(weight_of(recipe, "joint-eye-right", "CC_Base_R_Eye") == 1.0f);
+    recipe_free(recipe);
+    recipe = recipe_new();
+    assert_int_equal(recipe_add_joints(recipe, own, TEST_COUNT(own)), 0);
+    assert_int_equal(recipe->count, 1); /* the runtime knows the others */
+    assert_true(weight_of(recipe, "joint-chest", "Spine2") == 1.0f);
+    recipe_free(recipe);
+}
+
+static void wrong_lines_are_named(void **state)
+{
+    static const struct {
+        const char *text, *what, *where;
+    } cases[] = { { "target aa x\nbone head Kopf\n", "'bone' is none of", "line 2" },
+                  { "target\n", "a line is KIND WHAT NAME", "line 1" },
+                  { "material skin\n", "a line is KIND WHAT NAME", "line 1" },
+                  { "joint head \"Kopf\n", "a quote is not closed", "line 1" } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model_error error = { "", "" };
+        test_write_file(test_path("names.txt"), cases[i].text, strlen(cases[i].text));
+        assert_int_equal(names_use(test_path("names.txt"), &error), 1);
+        if (!strstr(error.what, cases[i].what)) fail_msg("'%s' for '%s'", error.what, cases[i].text);
+        assert_string_equal(error.where, cases[i].where);
+        names_free();
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(targets_have_other_names),    cmocka_unit_test(joints_have_other_names),
+        cmocka_unit_test(every_line_is_read),          cmocka_unit_test(a_file_comes_first),
+        cmocka_unit_test(joints_of_the_face_get_rows), cmocka_unit_test(wrong_lines_are_named),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

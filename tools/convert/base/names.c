@@ -1,0 +1,306 @@
+#include "names.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/base/input_file.h"
+#include "convert/base/names_table.h"
+#include "convert/base/text_scan.h"
+
+#define KEY_BYTES NOH_NAME_BYTES_MAX
+
+/* side: 'l', 'r', 0: none, '*': of either, and `means` has a '*' for it */
+typedef struct name_row {
+    name_kind kind;
+    int is_own;
+    char side;
+    char *means, *name; /* name: a key; of materials a word */
+} name_row;
+
+typedef struct name_rows {
+    name_row *rows;
+    uint32_t count;
+} name_rows;
+
+static __thread name_rows in_use;
+
+/* ---- keys ---- */
+
+static int is_small(char c)
+{
+    return c >= 'a' && c <= 'z';
+}
+
+static int is_capital(char c)
+{
+    return c >= 'A' && c <= 'Z';
+}
+
+static int is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static int is_in_word(char c)
+{
+    return is_small(c) || is_capital(c) || is_digit(c) || (unsigned char)c >= 0x80u;
+}
+
+/* Without a namespace, the node of "node.target", and the number of a copy. */
+static const char *core_of(const char *name, size_t *size)
+{
+    const char *at = name, *dot;
+    for (const char *c = name; *c; c++) {
+        if ((*c == ':' || *c == '|') && c[1]) at = c + 1;
+    }
+    *size = strlen(at);
+    dot = strrchr(at, '.');
+    if (dot && dot > at && dot[1] && strspn(dot + 1, "0123456789") == strlen(dot + 1) && strlen(dot) == 4) {
+        *size = (size_t)(dot - at);
+    } else if (dot && strlen(dot + 1) > 2 && !is_digit(dot[1])) {
+        at = dot + 1;
+        *size = strlen(at);
+    }
+    return at;
+}
+
+/* A word ends at a separator, before a capital behind a small letter, and before a capital and a small letter behind a
+ * capital: L Eye in LEye. */
+static size_t word_length(const char *at, size_t left)
+{
+    size_t n = 0;
+    while (n < left && is_in_word(at[n])) {
+        if (n && is_capital(at[n]) && (is_small(at[n - 1]) || (n + 1 < left && is_small(at[n + 1])))) break;
+        n++;
+    }
+    return n;
+}
+
+static size_t take_side(const char *word, size_t length, char *side, size_t *from)
+{
+    static const char *const words[] = { "left", "right" };
+    *from = 0;
+    if (*side) return length;
+    if (length == 1 && (*word == 'l' || *word == 'r')) {
+        *side = *word;
+        return 0;
+    }
+    for (int i = 0; i < 2; i++) {
+        const size_t size = strlen(words[i]);
+        const int first = length >= size && memcmp(word, words[i], size) == 0;
+        const int last = !first && length >= size && memcmp(word + length - size, words[i], size) == 0;
+        if (!(first || last) || (length > size && length < size + 3)) continue;
+        *side = words[i][0];
+        *from = first ? size : 0;
+        return length - size;
+    }
+    return length;
+}
+
+/* The words of a name, joined, but the first that is a side. Returns the side, 0: none. */
+static char key_of(const char *name, char key[KEY_BYTES])
+{
+    size_t left, count = 0;
+    const char *at = core_of(name, &left);
+    char side = 0;
+    while (left) {
+        const size_t length = word_length(at, left);
+        if (length && count + length < KEY_BYTES - 1u) {
+            size_t from, rest;
+            for (size_t i = 0; i < length; i++) {
+                key[count + i] = is_capital(at[i]) ? (char)(at[i] - 'A' + 'a') : at[i];
+            }
+            rest = take_side(key + count, length, &side, &from);
+            memmove(key + count, key + count + from, rest);
+            count += rest;
+        }
+        at += length ? length : 1u;
+        left -= length ? length : 1u;
+    }
+    key[count] = '\0';
+    return side;
+}
+
+/* ---- reading ---- */
+
+static int add_row(name_rows *all, name_kind kind, int is_own, const char *means, const char *name)
+{
+    name_row *grown = realloc(all->rows, ((size_t)all->count + 1u) * sizeof *grown);
+    char spelled[2 * KEY_BYTES], key[KEY_BYTES];
+    const char *star = kind == NAME_MATERIAL ? NULL : strchr(name, '*');
+    name_row *row;
+    if (!grown) return 1;
+    all->rows = grown;
+    row = &grown[all->count];
+    row->kind = kind;
+    row->is_own = is_own;
+    row->side = 0;
+    if (kind != NAME_MATERIAL) {
+        (void)snprintf(spelled, sizeof spelled, "%.*s%s%.60s", star ? (int)(star - name) : 60, name,
+                       star ? "_left_" : "", star ? star + 1 : "");
+        row->side = key_of(spelled, key);
+        if (star) row->side = '*';
+    }
+    row->means = model_string(means);
+    row->name = model_string(kind == NAME_MATERIAL ? name : key);
+    all->count++;
+    return !row->means || !row->name;
+}
+
+static int kind_named(text_word word, name_kind *kind)
+{
+    static const char *const kinds[] = { "target", "joint", "material", "strip" };
+    for (int i = 0; i < 4; i++) {
+        *kind = (name_kind)i;
+        if (text_is(word, kinds[i])) return 1;
+    }
+    return 0;
+}
+
+static int read_line(text_scan *s, name_rows *all)
+{
+    text_word word;
+    name_kind kind;
+    char means[KEY_BYTES], name[KEY_BYTES], shown[TEXT_SHOWN];
+    if (text_take_on_line(s, &word)) return 1;
+    if (!word.size) return 0; /* a comment */
+    if (!kind_named(word, &kind)) {
+        return text_fail(s, word.line, "'%s' is none of target, joint, material and strip", text_show(word, shown));
+    }
+    means[0] = '\0';
+    for (int n = 0;; n++) {
+        if (text_take_on_line(s, &word)) return 1;
+        if (!word.size) {
+            return n > (kind == NAME_MATERIAL) ? 0 : text_fail(s, word.line, "a line is KIND WHAT NAME...");
+        }
+        if (word.size >= KEY_BYTES - 8u) {
+            return text_fail(s, word.line, "'%s' is too long for a name", text_show(word, shown));
+        }
+        (void)snprintf(name, sizeof name, "%.*s", (int)word.size, word.text);
+        if (!n) memcpy(means, name, sizeof means);
+        if (kind == NAME_MATERIAL && !n) continue;
+        if (add_row(all, kind, !n, means, name)) return text_fail(s, word.line, "out of memory");
+    }
+}
+
+static int read_text(name_rows *all, const char *text, size_t size, model_error *error)
+{
+    text_scan scan;
+    int failed;
+    text_start(&scan, text, size, error);
+    do {
+        failed = read_line(&scan, all);
+    } while (!failed && text_next_line(&scan));
+    return failed;
+}
+
+int names_use(const char *path, model_error *error)
+{
+    size_t size;
+    char *text = path ? input_read(path, &size, error) : NULL;
+    int failed = path && !text;
+    names_free();
+    if (text) failed = read_text(&in_use, text, size, error);
+    free(text);
+    for (uint32_t i = 0; !failed && names_table[i]; i++) {
+        failed = read_text(&in_use, names_table[i], strlen(names_table[i]), error);
+    }
+    return failed;
+}
+
+void names_free(void)
+{
+    for (uint32_t i = 0; i < in_use.count; i++) {
+        free(in_use.rows[i].means);
+        free(in_use.rows[i].name);
+    }
+    free(in_use.rows);
+    memset(&in_use, 0, sizeof in_use);
+}
+
+static const name_rows *rows_in_use(void)
+{
+    model_error error;
+    if (!in_use.count) (void)names_use(NULL, &error);
+    return &in_use;
+}
+
+/* ---- finding ---- */
+
+static const name_row *find_key(const name_rows *all, name_kind kind, const char *key, char side)
+{
+    for (uint32_t i = 0; i < all->count; i++) {
+        const name_row *row = &all->rows[i];
+        const int fits = row->side == side || (row->side == '*' && side);
+        if (row->kind == kind && fits && strcmp(row->name, key) == 0) return row;
+    }
+    return NULL;
+}
+
+/* Cut one of the table's beginnings or endings off. 0: there is none, or nothing else is left. */
+static int strip(const name_rows *all, char *key)
+{
+    const size_t length = strlen(key);
+    for (uint32_t i = 0; i < all->count; i++) {
+        const name_row *row = &all->rows[i];
+        const size_t cut = row->kind == NAME_STRIP ? strlen(row->name) : 0;
+        if (!cut || cut >= length) continue;
+        if (memcmp(key, row->name, cut) == 0) {
+            memmove(key, key + cut, length - cut + 1u);
+            return 1;
+        }
+        if (memcmp(key + length - cut, row->name, cut) == 0) {
+            key[length - cut] = '\0';
+            return 1;
+        }
+    }
+    return 0;
+}
+
+int names_find(name_kind kind, const char *name, char means[NOH_NAME_BYTES_MAX], int *is_own)
+{
+    const name_rows *all = rows_in_use();
+    char key[KEY_BYTES];
+    const char side = key_of(name, key), *star;
+    const name_row *row = find_key(all, kind, key, side);
+    int stripped = 0;
+    while (!row && strip(all, key)) {
+        row = find_key(all, kind, key, side);
+        stripped = 1;
+    }
+    if (!row) return 0;
+    star = strchr(row->means, '*');
+    (void)snprintf(means, NOH_NAME_BYTES_MAX, "%.*s%s%.40s", star ? (int)(star - row->means) : 60, row->means,
+                   !star               ? ""
+                   : star > row->means ? (side == 'l' ? "Left" : "Right")
+                   : side == 'l'       ? "left"
+                                       : "right",
+                   star ? star + 1 : "");
+    if (is_own) *is_own = row->is_own && !stripped;
+    return 1;
+}
+
+int names_has_word(const char *material, const char *word, size_t length)
+{
+    const name_rows *all = rows_in_use();
+    for (uint32_t i = 0; i < all->count; i++) {
+        const name_row *row = &all->rows[i];
+        if (row->kind == NAME_MATERIAL && strcmp(row->means, material) == 0 && strlen(row->name) == length &&
+            memcmp(row->name, word, length) == 0)
+            return 1;
+    }
+    return 0;
+}
+
+int names_has_part(const char *material, const char *name)
+{
+    const name_rows *all = rows_in_use();
+    for (uint32_t i = 0; i < all->count; i++) {
+        const name_row *row = &all->rows[i];
+        if (row->kind == NAME_MATERIAL && row->name[0] == '*' && strcmp(row->means, material) == 0 &&
+            strstr(name, row->name + 1))
+            return 1;
+    }
+    return 0;
+}
