@@ -533,18 +533,24 @@ static void losses_are_warned_of(void **state)
     add_triangle(1, "\t\tSmoothness: 2\n");
     add_object("Model", 2, "\223\252", "Mesh", "", "");
     add_object("Model", 3, "bone", "LimbNode", "", "");
+    add_object("Model", 30, "sheet", "NurbsSurface", P3("Lcl Translation", "1e300", "0", "0"), "");
+    add_object("Geometry", 31, "sheet", "NurbsSurface", "", "");
+    add_object("Deformer", 32, "", "VertexCacheDeformer", "", "");
     add_object("Constraint", 9, "aim", "Aim", "", "");
     add("\tDeformer: 4, \"Deformer::\", \"Skin\" {\n\t\tSkinningType: \"DualQuaternion\"\n\t}\n");
     add("\tDeformer: 5, \"SubDeformer::c\", \"Cluster\" {\n\t\tMode: \"Additive\"\n"
         "\t\tIndexes: *1 {\n\t\t\ta: 0\n\t\t}\n"
         "\t\tWeights: *1 {\n\t\t\ta: 1\n\t\t}\n\t}\n\tDeformer: 6, \"Deformer::\", \"Skin\" {\n\t}\n");
-    links(OO(2, 0) OO(3, 0) OO(1, 2) OO(4, 1) OO(6, 1) OO(5, 4) OO(3, 5));
+    links(OO(2, 0) OO(3, 0) OO(1, 2) OO(4, 1) OO(6, 1) OO(5, 4) OO(3, 5) OO(30, 0) OO(31, 30) OO(32, 1));
     warns("'_93_AA' had bytes that are not UTF-8");
     warns("constraint 'aim' is a constraint");
     warns("is a subdivision surface");
     warns("more than one skin");
     warns("dual quaternion");
     warns("is additive");
+    warns("'sheet' is a surface or a curve");
+    warns("moved by a point cache");
+    warns("node 'sheet' has a transform that is not finite");
 }
 
 static void refused(const void *bytes, size_t count, const char *what, const char *where)

@@ -79,7 +79,7 @@ void write_clips(job &j);
 /* --- fbx_nodes.cpp --- */
 void write_nodes(job &j);
 /* As translation in metres, rotation, scale, below its holder or the y-up world. */
-parts parts_of(const job &j, const std::vector<placed> &pose, size_t model);
+parts parts_of(job &j, const std::vector<placed> &pose, size_t model);
 
 /* --- fbx_mesh.cpp --- */
 void write_meshes(job &j);

@@ -92,7 +92,7 @@ quat quaternion(const mat &m)
     return { (zx + xz) / s, (zy + yz) / s, s / 4.0, (xy - yx) / s };
 }
 
-quat euler(const vec &degrees, int order)
+quat euler(const vec &degrees, int64_t order)
 {
     static const int letters[6][3] = { { 0, 1, 2 }, { 0, 2, 1 }, { 1, 2, 0 }, { 1, 0, 2 }, { 2, 0, 1 }, { 2, 1, 0 } };
     quat q;

@@ -3,6 +3,7 @@
 #define NOH_CONVERT_FBX_FBX_MATH_H
 
 #include <cmath>
+#include <cstdint>
 
 namespace fbx
 {
@@ -76,7 +77,7 @@ quat conjugate(const quat &q);
 /* Of a matrix that is a rotation. */
 quat quaternion(const mat &m);
 /* order 0..5: XYZ, XZY, YZX, YXZ, ZXY, ZYX; the first letter turns first. */
-quat euler(const vec &degrees, int order);
+quat euler(const vec &degrees, int64_t order);
 /* The inverse of euler() of order 0, its middle angle within 90 degrees. */
 vec angles(const quat &q);
 quat slerp(const quat &a, const quat &b, double share);

@@ -114,7 +114,8 @@ static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t
         m.j.in.warn(place_of(m.j.in, m.geometry),
                     " has a polygon with too many corners, which was cut from its first corner: triangulate it");
     const double *material = m.has_materials ? m.materials.at(first, points[0], polygon) : nullptr;
-    part &p = m.parts[material ? static_cast<int>(std::min(std::max(*material, -1.0), 65535.0)) : 0];
+    const int64_t place = material ? whole_of(*material) : 0;
+    part &p = m.parts[static_cast<int>(std::min(std::max(place, int64_t{ 0 }), int64_t{ 65535 }))];
     for (size_t t = 0; t < triangles.size(); t += 3) {
         const corner of[3] = { corners[triangles[t]], corners[triangles[t + 1]], corners[triangles[t + 2]] };
         add_triangle(p, of, determinant(m.pivot) < 0.0);
@@ -298,7 +299,7 @@ static drawn_mesh write_mesh(job &j, size_t geometry, size_t model)
     read_geometry(m);
     for (const auto &of : m.parts) {
         if (of.second.indices.empty()) continue;
-        const size_t place = static_cast<size_t>(std::max(of.first, 0));
+        const size_t place = static_cast<size_t>(of.first);
         mesh.primitives.push_back(primitive_of(m, of.second));
         mesh.primitives.back().material = place < materials.size() ? material_of(j, materials[place], object) : -1;
     }

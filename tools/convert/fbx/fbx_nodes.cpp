@@ -2,8 +2,14 @@
  * in three ways. So each node is written under the nearest ancestor that never shears it, in any take. */
 #include "fbx_internal.h"
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
 namespace fbx
 {
+
+static const double value_max = 1e30; /* of a transform: its float and sums of it are finite */
 
 static const double shear_max = 1e-5; /* of the longest axis */
 
@@ -47,18 +53,26 @@ static void find_holders(job &j)
     }
 }
 
-parts parts_of(const job &j, const std::vector<placed> &pose, size_t model)
+static bool is_usable(const parts &p)
+{
+    const double all[] = { p.translation[0], p.translation[1], p.translation[2], p.scale[0],   p.scale[1],
+                           p.scale[2],       p.rotation.x,     p.rotation.y,     p.rotation.z, p.rotation.w };
+    return std::all_of(std::begin(all), std::end(all), [](double v) { return std::fabs(v) < value_max; });
+}
+
+parts parts_of(job &j, const std::vector<placed> &pose, size_t model)
 {
     const size_t holder = j.holder[model];
-    if (holder != none) {
-        parts out = parts_below(pose[holder].world, pose[model], holder == j.in.parent[model]);
-        out.translation = out.translation * j.unit_m;
-        return out;
+    parts out = parts_below(holder == none ? mat() : pose[holder].world, pose[model], holder == j.in.parent[model]);
+    if (holder == none) {
+        out.translation = j.in.to_y_up.point(out.translation);
+        out.rotation = quaternion(j.in.to_y_up) * out.rotation;
     }
-    parts out = parts_below(mat(), pose[model], j.in.parent[model] == none);
-    out.translation = j.in.to_y_up.point(out.translation) * j.unit_m;
-    out.rotation = quaternion(j.in.to_y_up) * out.rotation;
-    return out;
+    out.translation = out.translation * j.unit_m;
+    if (is_usable(out)) return out;
+    j.in.warn(place_of(j.in, j.in.models[model]), " has a transform that is not finite or too large, and was left in "
+                                                  "its parent's: export the file again");
+    return parts();
 }
 
 void write_nodes(job &j)

@@ -99,8 +99,8 @@ std::vector<rig_node> make_rig(const scene &s, const take *t)
         rig_node n;
         n.parent = s.parent[i];
         n.has_spaces = s.real(m, "RotationActive", 0.0) != 0.0 && s.real(m, "RotationSpaceForLimitOnly", 0.0) == 0.0;
-        n.rotation_order = n.has_spaces ? static_cast<int>(s.real(m, "RotationOrder", 0.0)) : 0;
-        n.inherit_type = static_cast<int>(s.real(m, "InheritType", 0.0));
+        n.rotation_order = n.has_spaces ? s.whole(m, "RotationOrder", 0) : 0;
+        n.inherit_type = s.whole(m, "InheritType", 0);
         n.translation = get("Lcl Translation", 0.0);
         n.rotation = get("Lcl Rotation", 0.0);
         n.scaling = get("Lcl Scaling", 1.0);

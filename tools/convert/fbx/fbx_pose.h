@@ -27,7 +27,7 @@ animated animate(const take *t, size_t object, const std::string &property, cons
 /* How a node's transform is made: L = T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1. */
 struct rig_node {
     size_t parent = none; /* place in the rig */
-    int rotation_order = 0, inherit_type = 0;
+    int64_t rotation_order = 0, inherit_type = 0;
     bool has_spaces = false; /* rotation order, pre and post rotation count */
     animated translation, rotation, scaling, pre, post, rotation_offset, rotation_pivot, scaling_offset, scaling_pivot;
 };
@@ -45,7 +45,7 @@ void pose_rig(const std::vector<rig_node> &rig, double seconds, std::vector<plac
 
 /* Place, rotation and scale; `lost`: how far an axis is off that they cannot hold, over the longest axis. */
 struct parts {
-    vec translation, scale;
+    vec translation, scale = { { 1.0, 1.0, 1.0 } };
     quat rotation;
     double lost = 0.0;
 };

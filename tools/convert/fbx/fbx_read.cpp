@@ -33,7 +33,8 @@ static std::string write_glb(job &j)
 
 static std::string line_of(const note &n)
 {
-    std::string out = n.first + n.what;
+    bool changed = false;
+    std::string out = to_utf8(n.first + n.what, &changed);
     if (n.count > 1) out += " (and " + std::to_string(n.count - 1) + " more like it)";
     for (char &c : out)
         if (static_cast<unsigned char>(c) < 32) c = ' ';

@@ -55,8 +55,8 @@ static size_t sequence(const std::string &s, size_t at)
     return overlong || beyond ? 0 : size;
 }
 
-/* Other bytes become their codes, so that names that differ still do. */
-static std::string to_utf8(const std::string &given, bool *changed)
+/* By their codes, names that differ still do. */
+std::string to_utf8(const std::string &given, bool *changed)
 {
     static const char digits[] = "0123456789ABCDEF";
     std::string out;
@@ -137,6 +137,12 @@ double scene::real(size_t object, const char *name, double otherwise) const
 {
     const std::vector<value> *found = property(object, name);
     return found ? number_of((*found)[0], otherwise) : otherwise;
+}
+
+int64_t scene::whole(size_t object, const char *name, int64_t otherwise) const
+{
+    const std::vector<value> *found = property(object, name);
+    return found ? whole_of((*found)[0], otherwise) : otherwise;
 }
 
 vec scene::vector(size_t object, const char *name, double otherwise) const

@@ -85,6 +85,7 @@ struct scene {
     /* A property of an object or of its template; null: neither has it. */
     const std::vector<value> *property(size_t object, const char *name) const;
     double real(size_t object, const char *name, double otherwise) const;
+    int64_t whole(size_t object, const char *name, int64_t otherwise) const;
     vec vector(size_t object, const char *name, double otherwise) const;
     /* Objects of this kind connected to it, of this sub kind if it is not null. */
     std::vector<size_t> below(size_t object, const char *kind, const char *sub) const;
@@ -94,6 +95,8 @@ struct scene {
 /* Throws failure. Takes are read, too. */
 void read_scene(const std::string &bytes, scene &out);
 std::string id_of(const value &v);
+/* Bytes that are not UTF-8 become _ and their codes. */
+std::string to_utf8(const std::string &given, bool *changed);
 /* The name without its class, in UTF-8. */
 std::string name_of(scene &s, const std::string &given);
 /* "kind 'name'", for messages. */

@@ -8,6 +8,8 @@
 namespace fbx
 {
 
+static const double percent_max = 1e6;
+
 /* --- the points of a shape --- */
 
 /* mask: percent by entry, or empty */
@@ -60,7 +62,7 @@ static void strip_prefix(std::vector<std::string> &names)
 
 static std::string percent(double full)
 {
-    return std::to_string(std::lround(std::max(-1e6, std::min(full, 1e6))));
+    return std::to_string(std::lround(std::max(-percent_max, std::min(full, percent_max))));
 }
 
 /* Exporters write one percentage for each shape, or, where a shape is masked, one for each of its points. */
@@ -82,6 +84,8 @@ static void read_channel(job &j, size_t object, size_t point_count, shapes &out)
         for (size_t i = 0; i < full.size(); ++i)
             full[i] *= static_cast<double>(i + 1) / static_cast<double>(full.size());
     }
+    for (double &f : full)
+        if (!std::isfinite(f)) f = 100.0;
     const size_t last = static_cast<size_t>(std::max_element(full.begin(), full.end()) - full.begin());
     if (targets.size() > 1)
         j.in.warn(place_of(j.in, object), " has in-betweens, which became targets with weights of their own: clips "
@@ -131,10 +135,11 @@ std::vector<double> weights_of(const std::vector<shape_channel> &channels, const
     std::vector<double> out(target_count, 0.0);
     for (size_t c = 0; c < channels.size(); ++c) {
         const std::vector<station> &at = channels[c].stations;
+        const double value = std::max(-percent_max, std::min(percent[c], percent_max));
         size_t k = 0;
-        while (k + 2 < at.size() && percent[c] > at[k + 1].full) ++k;
+        while (k + 2 < at.size() && value > at[k + 1].full) ++k;
         const double span = at[k + 1].full - at[k].full;
-        const double x = span != 0.0 ? (percent[c] - at[k].full) / span : 0.0;
+        const double x = span != 0.0 ? (value - at[k].full) / span : 0.0;
         if (at[k].target >= 0) out[static_cast<size_t>(at[k].target)] += 1.0 - x;
         if (at[k + 1].target >= 0) out[static_cast<size_t>(at[k + 1].target)] += x;
     }
