@@ -524,6 +524,57 @@ static void masks_and_in_betweens(void **state)
     model_free(m);
 }
 
+/* ---- materials ---- */
+
+#define PNG "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mNk+M9QDwADhgGAWjR9awAAAABJRU5ErkJggg=="
+
+/* A square of two triangles with a material each: one of Phong, and one physical with a picture in the file. */
+static void materials_and_pictures(void **state)
+{
+    const model_material *a, *b;
+    model *m;
+    (void)state;
+    begin();
+    add("\tGeometry: 1, \"Geometry::t\", \"Mesh\" {\n\t\tVertices: *12 {\n\t\t\ta: 0,0,0,1,0,0,1,1,0,0,1,0\n\t\t}\n"
+        "\t\tPolygonVertexIndex: *6 {\n\t\t\ta: 0,1,-3,0,2,-4\n\t\t}\n\t\tLayerElementMaterial: 0 {\n"
+        "\t\t\tMappingInformationType: \"ByPolygon\"\n\t\t\tReferenceInformationType: \"IndexToDirect\"\n"
+        "\t\t\tMaterials: *2 {\n\t\t\t\ta: 1,0\n\t\t\t}\n\t\t}\n\t}\n");
+    add_object("Model", 2, "t", "Mesh", "", "");
+    add_object("Material", 3, "phong", "",
+               P3("DiffuseColor", "1", "0.5", "0") P1("TransparencyFactor", "0.25")
+                   P3("TransparentColor", "1", "1", "1") P1("ShininessExponent", "30"),
+               "");
+    add_object("Material", 4, "physical", "",
+               "\t\tP: \"3dsMax|main|basecolor\", \"ColorAndAlpha\", \"\", \"A\",0,1,1,1\n" P1(
+                   "3dsMax|main|metalness", "0.75") P1("3dsMax|main|roughness", "0.5"),
+               "");
+    add_object("Texture", 5, "inside", "", "", "\t\tRelativeFilename: \"..\\away\\in.png\"\n");
+    add_object("Texture", 6, "outside", "", "", "\t\tRelativeFilename: \"away.png\"\n");
+    add_object("Video", 7, "clip", "Clip", "", "\t\tContent: ,\n\t\t\"" PNG "\"\n");
+    links(OO(2, 0) OO(1, 2) OO(3, 2) OO(4, 2) OO(7, 5) OP(5, 4, "3dsMax|main|base_color_map") OP(6, 3, "NormalMap")
+              OP(6, 4, "3dsMax|main|roughness_map"));
+    m = load();
+    assert_int_equal(m->meshes[0].submesh_count, 2);
+    a = m->materials + m->meshes[0].submeshes[0].material;
+    b = m->materials + m->meshes[0].submeshes[1].material;
+    assert_string_equal(a->name, "phong");
+    assert_near((double)a->base_color[1], pow((0.5 + 0.055) / 1.055, 2.4));
+    assert_near((double)a->base_color[3], 0.75);
+    assert_int_equal(a->alpha, MODEL_ALPHA_BLEND);
+    assert_near((double)a->roughness, pow(2.0 / 32.0, 0.25));
+    assert_near((double)a->metallic, 0.0);
+    assert_int_equal(m->meshes[0].indices[0], 0);
+    assert_string_equal(b->name, "physical");
+    assert_near((double)b->metallic, 0.75);
+    assert_near((double)b->roughness, 0.5);
+    assert_near((double)b->base_color[0], 1.0); /* the picture is in its place */
+    assert_int_equal(m->texture_count, 1);
+    assert_int_equal(b->base_color_texture, 0);
+    assert_true(has_warning(m, "the picture 'away.png' is neither"));
+    assert_true(has_warning(m, "material 'physical' 3dsMax|main|roughness_map: a picture of this kind"));
+    model_free(m);
+}
+
 /* ---- what is left out, and what is refused ---- */
 
 static void losses_are_warned_of(void **state)
@@ -631,6 +682,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(layers_are_blended),
     cmocka_unit_test(takes_have_their_span),
     cmocka_unit_test(masks_and_in_betweens),
+    cmocka_unit_test(materials_and_pictures),
     cmocka_unit_test(losses_are_warned_of),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(mutations_never_crash),

@@ -64,10 +64,10 @@ struct job {
 };
 
 /* --- fbx_output.cpp --- */
-/* type: TINYGLTF_TYPE_*. Numbers that are not finite become 0, with a warning. */
+/* type: TINYGLTF_TYPE_*. Numbers that are not finite or too large become 0, with a warning. */
 int add_view(job &j, const void *bytes, size_t size);
 int add_floats(job &j, std::vector<float> values, int type);
-int add_positions(job &j, const std::vector<float> &values); /* with their bounds */
+int add_positions(job &j, std::vector<float> values); /* with their bounds */
 /* Of `count` values, zero but for these. */
 int add_sparse(job &j, const std::vector<uint32_t> &places, const std::vector<float> &values, size_t count);
 int add_u16(job &j, const std::vector<uint16_t> &values, int type);

@@ -9,7 +9,7 @@
 namespace fbx
 {
 
-static const double value_max = 1e30; /* of a transform: its float and sums of it are finite */
+static const double value_max = 1e12; /* of a transform; gltf/ reads no larger one */
 
 static const double shear_max = 1e-5; /* of the longest axis */
 

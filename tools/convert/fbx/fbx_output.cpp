@@ -7,6 +7,8 @@
 namespace fbx
 {
 
+static const float value_max = 1e12f; /* gltf/ reads no larger one */
+
 int add_view(job &j, const void *bytes, size_t size)
 {
     if (j.out.buffers.empty()) j.out.buffers.emplace_back();
@@ -36,7 +38,7 @@ static int add_accessor(job &j, int view, int component, int type, size_t values
 static void make_finite(job &j, std::vector<float> &values)
 {
     for (float &v : values) {
-        if (std::isfinite(v)) continue;
+        if (std::fabs(v) <= value_max) continue;
         v = 0.0f;
         j.in.warn("the file", " has numbers that are not finite or too large, which became 0: export it again");
     }
@@ -54,7 +56,7 @@ static void add_bounds(tinygltf::Accessor &a, const std::vector<float> &values, 
     for (size_t k = 0; k < 3; ++k) {
         double low = with_zero || values.empty() ? 0.0 : HUGE_VAL, high = with_zero || values.empty() ? 0.0 : -HUGE_VAL;
         for (size_t i = k; i < values.size(); i += 3) {
-            const double v = std::isfinite(values[i]) ? static_cast<double>(values[i]) : 0.0;
+            const double v = static_cast<double>(values[i]);
             low = std::min(low, v);
             high = std::max(high, v);
         }
@@ -63,8 +65,9 @@ static void add_bounds(tinygltf::Accessor &a, const std::vector<float> &values, 
     }
 }
 
-int add_positions(job &j, const std::vector<float> &values)
+int add_positions(job &j, std::vector<float> values)
 {
+    make_finite(j, values);
     const int index = add_floats(j, values, TINYGLTF_TYPE_VEC3);
     add_bounds(j.out.accessors.back(), values, false);
     return index;

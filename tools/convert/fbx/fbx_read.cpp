@@ -50,8 +50,10 @@ static std::string convert(const char *path, double unit_cm, std::vector<std::st
     write_nodes(j);
     write_meshes(j);
     write_clips(j);
-    if (j.out.meshes.empty() && j.out.animations.empty())
-        fail("FBX", "the file has no polygons and no animations: there is nothing to convert");
+    if (j.out.meshes.empty() && j.out.animations.empty()) {
+        const std::string why = j.in.notes.empty() ? "" : " (" + line_of(j.in.notes[0]) + ")";
+        fail("FBX", "the file has no polygons and no animations: there is nothing to convert" + why);
+    }
     for (const note &n : j.in.notes) notes.push_back(line_of(n));
     return write_glb(j);
 }
