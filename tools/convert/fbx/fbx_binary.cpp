@@ -13,7 +13,7 @@ static const char magic[] = "Kaydara FBX Binary  "; /* with its zero: 21 bytes; 
 static const size_t magic_size = 21, header_size = 27;
 static const int64_t wide_version = 7500; /* from here on records have 64 bits */
 
-static const uint64_t array_bytes_max = uint64_t{ 1 } << 31; /* of all arrays, unpacked */
+static const uint64_t array_bytes_max = uint64_t{ 1 } << 30; /* of all arrays, unpacked */
 static const uint64_t deflate_ratio_max = 1032;
 
 static const char truncated[] = "the file ends inside a value: it is truncated or damaged, export or copy it again";
@@ -91,7 +91,7 @@ template <class T> value binary_reader::array()
     const uint64_t size = count * sizeof(T);
     numbers out;
     array_bytes += count * sizeof(double);
-    if (array_bytes > array_bytes_max) refuse(place, "the file's arrays need more than 2 GiB, which is the limit");
+    if (array_bytes > array_bytes_max) refuse(place, "the file's arrays need more than 1 GiB, which is the limit");
     const std::string unpacked = packed ? unpack(size, packed_size) : std::string();
     const char *from = packed ? unpacked.data() : take(size);
     out.whole = static_cast<T>(0.5) == static_cast<T>(0);
