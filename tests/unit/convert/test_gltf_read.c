@@ -1153,16 +1153,21 @@ static void skinned_mesh_is_as_large_as_its_joints_make_it(void **state)
     model_free(m);
 }
 
-static void bad_skins_are_refused(void **state)
+static void bad_skins_are_left_out(void **state)
 {
     (void)state;
-    static const char *const rests[][2] = { { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "skin 0 does not exist" },
-                                            { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]",
-                                              "joint node 7 does not exist" } };
+    static const char *const rests[][2] = {
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}]", "node 'node_0': its skin does not exist" },
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[]}]", "skin 0: the skin has no joints" },
+        { ",\"nodes\":[{\"mesh\":0,\"skin\":0}],\"skins\":[{\"joints\":[7]}]", "skin 0: joint node 7 does not exist" }
+    };
     for (size_t i = 0; i < sizeof rests / sizeof rests[0]; i++) {
-        scene *s = triangle("", "");
+        scene *s = skinned_triangle();
         APPEND(s->rest, "%s", rests[i][0]);
-        refused(s, rests[i][1], "");
+        model *m = load(s);
+        assert_true(m->skin_count == 0 && m->nodes[0].mesh == 0 && m->nodes[0].skin == MODEL_NONE);
+        assert_true(has_warning(m, rests[i][1]));
+        model_free(m);
     }
 }
 
@@ -2473,7 +2478,7 @@ int main(void)
         cmocka_unit_test(no_uvs_no_tangents),
         cmocka_unit_test(nodes_parents_first),
         cmocka_unit_test(skinned_mesh_is_as_large_as_its_joints_make_it),
-        cmocka_unit_test(bad_skins_are_refused),
+        cmocka_unit_test(bad_skins_are_left_out),
         cmocka_unit_test(bad_bind_matrices_are_replaced),
         cmocka_unit_test(matrices_are_decomposed),
         cmocka_unit_test(skewed_and_mirrored_matrices),

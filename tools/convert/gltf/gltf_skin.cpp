@@ -120,7 +120,7 @@ static void read_skin(file &f, size_t index)
 {
     const tinygltf::Skin &skin = f.json.skins[index];
     std::string where = text("skin %zu", index);
-    check_joints(f, skin, where);
+    if (!attempt(f, "; the skin was left out", [&] { check_joints(f, skin, where); })) return;
     if (!all_in_scene(f, skin)) {
         leave_out(f, where, " was skipped: its joints are not in the default scene, and no mesh there follows them");
         return;
@@ -136,15 +136,6 @@ static void read_skin(file &f, size_t index)
 
 /* --- the meshes that skins move --- */
 
-static void bind_node(file &f, size_t node, model_node &out)
-{
-    size_t skin = static_cast<size_t>(f.json.nodes[node].skin);
-    if (skin >= f.json.skins.size())
-        fail("node '" + printable(out.name) + "'",
-             text("skin %zu does not exist: the file has %zu", skin, f.json.skins.size()));
-    out.skin = f.skin_of[skin];
-}
-
 /* A mesh without joints has nothing for a skin to move. */
 static void bind_nodes(file &f)
 {
@@ -152,7 +143,11 @@ static void bind_nodes(file &f)
         uint32_t node = f.node_of[i];
         if (node == MODEL_NONE || f.json.nodes[i].skin < 0) continue;
         model_node &out = f.out->nodes[node];
-        bind_node(f, i, out);
+        const size_t skin = static_cast<size_t>(f.json.nodes[i].skin);
+        if (skin < f.skin_of.size())
+            out.skin = f.skin_of[skin];
+        else
+            leave_out(f, "node '" + printable(out.name) + "'", ": its skin does not exist; the node alone places it");
         if (out.skin == MODEL_NONE || out.mesh == MODEL_NONE) continue;
         if (f.out->meshes[out.mesh].joints) {
             check_influences(f, f.out->meshes[out.mesh], f.out->skins[out.skin].joint_count);
