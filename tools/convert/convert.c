@@ -1,5 +1,6 @@
 #include "convert.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -23,6 +24,7 @@
 #include "noh/pack.h"
 #include "sources.h"
 
+#define ERROR_UM 10.0 /* of targets, usually */
 /* How far targets that a level leaves out may move the surface, as a share of that level's error: both add up to the
  * largest error in pixels (low_stage.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
@@ -94,14 +96,21 @@ static void say(const convert_options *options, const char *what, const model *m
     }
 }
 
+/* Given in world units, held in the mesh's own. On a figure of less than a centimetre the usual error would show. */
+static float target_error_um(const model *m, float asked_um, float scale)
+{
+    const double size_cm = asked_um > 0.0f ? 0.0 : meshes_cm(m);
+    const double usual_um = size_cm > 0.0 ? fmin(ERROR_UM, ERROR_UM * size_cm) : ERROR_UM;
+    return (asked_um > 0.0f ? asked_um : (float)usual_um) / scale;
+}
+
 static int encode_mesh(const model *m, uint32_t index, const convert_options *options, encoded *e, model_error *error)
 {
     const model_mesh *mesh = &m->meshes[index];
     const float scale = model_mesh_scale(m, index);
     float skip_radius[NOH_LOD_LEVELS_MAX];
     morph_options morph = options->morph;
-    morph.error_um = (morph.error_um > 0.0f ? morph.error_um : 10.0f) /
-                     scale; /* given in world units, held in the mesh's own */
+    morph.error_um = target_error_um(m, morph.error_um, scale);
     morph.rank = e->levels[index].rank;
     morph.level_count = e->levels[index].count;
     morph.skip_radius = skip_radius;

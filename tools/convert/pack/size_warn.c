@@ -16,8 +16,7 @@
 #define USUAL_LEAST_CM 20.0
 #define USUAL_MOST_CM 400.0
 
-/* The longest side of a box about a mesh, of clips that move no joints. */
-static double meshes_cm(const model *m)
+double meshes_cm(const model *m)
 {
     double size = 0.0;
     for (uint32_t i = 0; m && i < m->mesh_count; i++) {

@@ -4,6 +4,9 @@
 
 #include "convert/clips/raw_clip.h"
 
+/* The longest side of a box about a mesh, in the world; 0: there are none. */
+double meshes_cm(const model *m);
+
 /* Distances in centimetres: of points around joints, as clips are encoded to them. The default tolerance is right for
  * people. On a coin it is visible, and on a ship it wastes bytes; the suggestion is the same share of the size. If the
  * size would be usual in another unit, the warning says so.

@@ -80,7 +80,7 @@ typedef struct build_args {
     const char *texts[NOH_CHUNK_TYPES]; /* as in convert_options */
     option_list spring_lines;
     int input_count, quiet;
-    double error_um;
+    const char *error_um;
     clip_args clips;
     lod_args lod;
     skin_args skin;
@@ -305,10 +305,15 @@ static int set_textures(const build_args *a, convert_options *o)
 static int set_values(const build_args *a, convert_options *o)
 {
     int status;
-    if (a->error_um <= 0.0 || a->error_um > 1e6) {
+    double error_um = 0.0;
+    const int asked = strcmp(a->error_um, "auto") != 0;
+    if (asked && tool_number(a->error_um, &error_um)) {
+        return tool_usage("--error-um must be a number, not '%s'", a->error_um);
+    }
+    if (asked && !(error_um > 0.0 && error_um <= 1e6)) {
         return tool_usage("--error-um must be a number over 0 and up to 1000000");
     }
-    o->morph.error_um = (float)a->error_um;
+    o->morph.error_um = (float)error_um;
     status = set_clip(a, o);
     if (!status) status = check_errors("--clip-error", &a->clips.clip_errors);
     if (!status) status = check_errors("--joint-error", &a->clips.joint_errors);
@@ -418,11 +423,12 @@ static const option options[] = {
       .what = "write only meshes and skeletons, or only clips (for --anim)" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--error-um",
-      .kind = OPTION_NUMBER,
+      .kind = OPTION_TEXT,
       .at = offsetof(build_args, error_um),
-      .value = "UM",
-      .initial = "10",
-      .what = "largest error of target positions, micrometres, above 0, at most 1000000",
+      .value = "auto|UM",
+      .initial = "auto",
+      .what =
+          "largest error of target positions, micrometres, above 0, at most 1000000; auto: 10, or less on a figure of less than a centimetre",
       .example = "2",
       .excludes = "--only=anim" },
     { .name = "--rects",
