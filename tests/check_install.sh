@@ -160,6 +160,49 @@ END
     mkdir "$work/cmake_new" && mv "$work/CMakeLists.txt" "$work/cmake_smile/"*.c* "$work/cmake_new"
     check 'CMake: another version is refused' sh -c '! cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2"' - "$work/cmake_new" "$prefix"
 
+    # Packs: noh_add_pack of the installed tool.
+    mkdir "$work/packs"
+    printf '\000\000\200\077%032d' 0 | tr 0 '\000' >"$work/packs/a b.bin"
+    cat >"$work/packs/a.gltf" <<END
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],
+"buffers":[{"uri":"a%20b.bin","byteLength":36}],"bufferViews":[{"buffer":0,"byteLength":36}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}]}
+END
+    sed 's/a%20b/b/' "$work/packs/a.gltf" >"$work/packs/b.gltf"
+    cp "$work/packs/a b.bin" "$work/packs/b.bin"
+    echo 'aa smile' >"$work/packs/face.recipe"
+    cat >"$work/packs/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.20)
+project(packs NONE)
+find_package(noh ${version%.*} REQUIRED)
+noh_add_pack(first SOURCES a.gltf OPTIONS --recipe \${CMAKE_CURRENT_SOURCE_DIR}/face.recipe)
+noh_add_pack(second SOURCES b.gltf OUTPUT "data/the second.noh")
+END
+    built() { # NAME EXPECTED: which packs the build makes again, by their folder's names
+        touch "$work/packs/mark"
+        sleep 1.1
+        [ -z "$3" ] || touch "$work/packs/$3"
+        cmake --build "$work/packs/build" >"$work/made" 2>&1 || { not_ok "$1"; tail -n 20 "$work/made" | sed 's/^/#   /'; return; }
+        check "$1" test "$(cd "$work/packs/build" && find . -name '*.noh' -newer ../mark | sort | tr '\n' ' ')" = "$2"
+    }
+    for generator in Ninja 'Unix Makefiles'; do
+        if [ "$generator" = Ninja ] && ! has ninja; then
+            skip 'noh_add_pack, Ninja' 'no ninja here'
+            continue
+        fi
+        rm -rf "$work/packs/build"
+        check "noh_add_pack, $generator: configures" cmake -G "$generator" -S "$work/packs" -B "$work/packs/build" "-DCMAKE_PREFIX_PATH=$prefix"
+        built "noh_add_pack, $generator: two packs" './data/the second.noh ./first.noh ' ''
+        built "noh_add_pack, $generator: nothing to do" '' ''
+        built "noh_add_pack, $generator: a .bin" './first.noh ' 'a b.bin'
+        built "noh_add_pack, $generator: a text" './first.noh ' face.recipe
+        built "noh_add_pack, $generator: a model" './data/the second.noh ' b.gltf
+        built "noh_add_pack, $generator: nothing to do then" '' ''
+    done
+    printf 'noh_add_pack(third OUTPUT x.noh)\n' >>"$work/packs/CMakeLists.txt"
+    check 'noh_add_pack without sources is an error' sh -c '! cmake -S "$1" -B "$1/build" 2>"$1/said" && grep -q "noh_add_pack(NAME SOURCES" "$1/said"' - "$work/packs"
+
     # From source, inside a game's own build.
     from_source() { # WHAT FOLDER LINES OPTIONS...
         what=$1 folder=$work/$2

@@ -40,6 +40,7 @@ packages_check='libcmocka-dev:unit tests
 libosmesa6:a second GL
 ?clang:a second compiler
 ?cmake:using the installed library
+?ninja-build:packs in a build system
 ?gcc-12-multilib:32 bits
 ?libsdl2-dev:the first program of the guide
 ?libglew-dev:noh_gl.h with its header

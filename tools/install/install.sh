@@ -85,7 +85,7 @@ fill() {
     rest=${VERSION#*.}
     sed "s|@PREFIX@|$PREFIX|g; s|@INCLUDEDIR@|$(of_prefix "$INCLUDEDIR")|g; s|@LIBDIR@|$(of_prefix "$LIBDIR")|g
          s|@DATADIR@|$(of_prefix "$DATADIR")|g; s|@VERSION@|$VERSION|g; s|@MAJOR@|${VERSION%%.*}|g; s|@MINOR@|${rest%%.*}|g
-         s|@TO_DATADIR@|$(within "$DATADIR")|g; s|@TO_INCLUDEDIR@|$(within "$INCLUDEDIR")|g; s|@GC@|$gc|g; s|@HAS_GC@|${gc:+ON}|g" "$1" >"$new.filled"
+         s|@TO_DATADIR@|$(within "$DATADIR")|g; s|@TO_INCLUDEDIR@|$(within "$INCLUDEDIR")|g; s|@TO_BINDIR@|$(within "$BINDIR")|g; s|@GC@|$gc|g; s|@HAS_GC@|${gc:+ON}|g" "$1" >"$new.filled"
     put 644 "$new.filled" "$2"
     rm -f "$new.filled"
 }

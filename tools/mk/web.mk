@@ -103,7 +103,7 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 # left out: what needs it is refused.
 WEB_CONVERT   := $(BUILD)/web-convert
 WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c model_none.c stb.c libraries.cpp) \
-                 tools/noh/build/cmd_build.c tools/noh/build/build_fail.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
+                 tools/noh/build/cmd_build.c tools/noh/build/build_fail.c tools/noh/build/depfile.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
                  $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) $(CONVERT_CC))) \
                  $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
 WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include

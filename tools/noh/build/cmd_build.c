@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "build/build_options.h"
+#include "build/depfile.h"
 #include "cli/args.h"
 #include "convert/convert.h"
 #include "convert/mocap/clean.h"
@@ -76,10 +77,10 @@ typedef struct terrain_args {
 } terrain_args;
 
 typedef struct build_args {
-    const char *inputs[INPUTS_MAX], *output, *rects, *only;
+    const char *inputs[INPUTS_MAX], *output, *depfile, *rects, *only;
     const char *texts[NOH_CHUNK_TYPES]; /* as in convert_options */
     option_list spring_lines;
-    int input_count, quiet;
+    int input_count, quiet, warnings;
     const char *error_um;
     clip_args clips;
     lod_args lod;
@@ -375,29 +376,38 @@ static int set_options(const build_args *a, convert_options *o)
     return status;
 }
 
+static int write_pack(const build_args *a, const input_list *inputs, const byte_buffer *pack, FILE *report)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    const int status = a->depfile ? depfile_write(a->depfile, a->output, inputs) : 0;
+    if (status) return status;
+    if (noh_file_write(a->output, pack->bytes, pack->count, &error)) {
+        return tool_fail(a->output, "cannot write: %s", error.what);
+    }
+    if (report) fprintf(report, "%s: %zu bytes\n", a->output, pack->count);
+    return 0;
+}
+
 static int run(void *args)
 {
     const build_args *a = args;
     convert_options o;
     convert_failure failure;
-    noh_error error = { NOH_OK, "", 0, 0 };
+    input_list inputs = { NULL, 0, 0 };
     byte_buffer pack = { NULL, 0, 0, 0 };
-    FILE *report = a->quiet ? NULL : report_stream(a->output);
+    FILE *report = a->quiet || a->warnings ? NULL : report_stream(a->output);
     int status = set_options(a, &o);
     if (status) {
         return status;
     }
     o.report = report;
-    o.progress = !a->quiet && isatty(STDERR_FILENO) ? stderr : NULL;
-    if (convert_files(a->inputs, a->input_count, &o, &pack, &failure)) {
-        return build_fail(&failure);
-    }
-    if (noh_file_write(a->output, pack.bytes, pack.count, &error)) {
-        status = tool_fail(a->output, "cannot write: %s", error.what);
-    } else if (report) {
-        fprintf(report, "%s: %zu bytes\n", a->output, pack.count);
-    }
+    o.warnings = a->warnings ? stderr : NULL;
+    o.progress = report && isatty(STDERR_FILENO) ? stderr : NULL;
+    o.inputs = a->depfile ? &inputs : NULL;
+    status = convert_files(a->inputs, a->input_count, &o, &pack, &failure) ? build_fail(&failure)
+                                                                           : write_pack(a, &inputs, &pack, report);
     buffer_free(&pack);
+    inputs_free(&inputs);
     return status;
 }
 
@@ -422,6 +432,18 @@ static const option options[] = {
       .value = "mesh|anim",
       .what = "write only meshes and skeletons, or only clips (for --anim)" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
+    { .name = "--warnings",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, warnings),
+      .what = "of the report, only the warnings, on stderr: for build systems",
+      .excludes = "--quiet" },
+    { .name = "--depfile",
+      .kind = OPTION_OUTPUT,
+      .at = offsetof(build_args, depfile),
+      .value = "FILE",
+      .what =
+          "write what was read, such as the .bin files and textures of a .gltf file, as a rule for Make and Ninja (depfile)",
+      .example = "face.noh.d" },
     { .name = "--error-um",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, error_um),
