@@ -9,6 +9,7 @@
 #include "convert/base/text_scan.h"
 
 #define KEY_BYTES NOH_NAME_BYTES_MAX
+#define WORD_MAX 60 /* bytes of a word of the table */
 
 /* side: 'l', 'r', 0: none, '*': of either, and `means` has a '*' for it */
 typedef struct name_row {
@@ -137,7 +138,7 @@ static int add_row(name_rows *all, name_kind kind, int is_own, const char *means
     row->is_own = is_own;
     row->side = 0;
     if (kind != NAME_MATERIAL) {
-        (void)snprintf(spelled, sizeof spelled, "%.*s%s%.60s", star ? (int)(star - name) : 60, name,
+        (void)snprintf(spelled, sizeof spelled, "%.*s%s%.60s", star ? (int)(star - name) : WORD_MAX, name,
                        star ? "_left_" : "", star ? star + 1 : "");
         row->side = key_of(spelled, key);
         if (star) row->side = '*';
@@ -174,8 +175,8 @@ static int read_line(text_scan *s, name_rows *all)
         if (!word.size) {
             return n > (kind == NAME_MATERIAL) ? 0 : text_fail(s, word.line, "a line is KIND WHAT NAME...");
         }
-        if (word.size >= KEY_BYTES - 8u) {
-            return text_fail(s, word.line, "'%s' is too long for a name", text_show(word, shown));
+        if (word.size > WORD_MAX) {
+            return text_fail(s, word.line, "'%s' is longer than %d bytes", text_show(word, shown), WORD_MAX);
         }
         (void)snprintf(name, sizeof name, "%.*s", (int)word.size, word.text);
         if (!n) memcpy(means, name, sizeof means);
@@ -271,7 +272,7 @@ int names_find(name_kind kind, const char *name, char means[NOH_NAME_BYTES_MAX],
     }
     if (!row) return 0;
     star = strchr(row->means, '*');
-    (void)snprintf(means, NOH_NAME_BYTES_MAX, "%.*s%s%.40s", star ? (int)(star - row->means) : 60, row->means,
+    (void)snprintf(means, NOH_NAME_BYTES_MAX, "%.*s%s%.60s", star ? (int)(star - row->means) : WORD_MAX, row->means,
                    !star               ? ""
                    : star > row->means ? (side == 'l' ? "Left" : "Right")
                    : side == 'l'       ? "left"

@@ -130,20 +130,25 @@ static int rest_alike(const matcher *m, uint32_t ours, uint32_t theirs)
     return fabs(a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]) > REST_ALIKE;
 }
 
-/* Joints that the table of names knows as the same bone of a person: hips, mixamorig:Hips and pelvis. */
-static void pair_by_meaning(matcher *m)
+/* Joints that the table of names knows as the same bone of a person: hips, mixamorig:Hips and pelvis. 1: out of memory.
+ */
+static int pair_by_meaning(matcher *m)
 {
     const raw_skeleton *s = &m->set->skeleton;
-    char ours[NOH_NAME_BYTES_MAX], theirs[NOH_NAME_BYTES_MAX];
+    char(*ours)[NOH_NAME_BYTES_MAX] = calloc(m->to->joint_count, sizeof *ours);
+    if (!ours) return 1;
     for (uint32_t j = 0; j < m->to->joint_count; j++) {
-        if (m->counterpart[j] != MODEL_NONE || !m->to->joints[j].name ||
-            !names_find(NAME_JOINT, m->to->joints[j].name, ours, NULL))
-            continue;
-        for (uint32_t k = 0; k < s->joint_count && m->counterpart[j] == MODEL_NONE; k++) {
-            if (m->taken[k] || !s->joints[k].name || !names_find(NAME_JOINT, s->joints[k].name, theirs, NULL)) continue;
-            if (strcmp(ours, theirs) == 0 && rest_alike(m, j, k)) pair(m, j, k);
+        if (m->to->joints[j].name) (void)names_find(NAME_JOINT, m->to->joints[j].name, ours[j], NULL);
+    }
+    for (uint32_t k = 0; k < s->joint_count; k++) {
+        char theirs[NOH_NAME_BYTES_MAX];
+        if (m->taken[k] || !s->joints[k].name || !names_find(NAME_JOINT, s->joints[k].name, theirs, NULL)) continue;
+        for (uint32_t j = 0; j < m->to->joint_count && !m->taken[k]; j++) {
+            if (strcmp(ours[j], theirs) == 0 && rest_alike(m, j, k)) pair(m, j, k);
         }
     }
+    free(ours);
+    return 0;
 }
 
 /* ---- places ---- */
@@ -390,7 +395,7 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
 {
     if (options->names && pair_by_file(m, options->names, error)) return JOINTS_FAILED;
     pair_by_name(m);
-    pair_by_meaning(m);
+    if (!is_whole(m) && pair_by_meaning(m)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
     if (!is_whole(m) && !((options->partial || options->by_rest) &&
                           (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
         return JOINTS_DIFFER;
