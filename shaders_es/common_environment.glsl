@@ -38,14 +38,30 @@ float noh_shadow_tap(vec3 at, float x, float y)
     return texture(noh_shadow_map, at + noh_lighting[13].w * vec3(x, y, 0.0)); /* w: three quarters of a texel */
 }
 
-/* 1: the key light reaches the point, 0: the point is in shadow. Hardware-filtered taps on a circle. The point is
- * offset along the normal, by the depth that a texel of the map may span on a slope. */
+#if NOH_SHADOW_TAPS == 4
+/* A tent four texels wide, in two dimensions the product of two, from four hardware-filtered taps: each reads the
+ * two texels between which it lies with the weights of the tent (I. Castano: Shadow mapping summary, part 1, 2013). */
+float noh_shadow_tent(vec3 at)
+{
+    float texel = noh_lighting[13].w / 0.75;
+    vec2 p = at.xy / texel, base = floor(p + 0.5), f = p + 0.5 - base;
+    vec2 low = 3.0 - 2.0 * f, high = 1.0 + 2.0 * f;
+    vec2 from = base - 0.5 + (2.0 - f) / low - 1.0, to = base - 0.5 + f / high + 1.0;
+    float sum = low.x * low.y * texture(noh_shadow_map, vec3(from * texel, at.z));
+    sum += high.x * low.y * texture(noh_shadow_map, vec3(to.x * texel, from.y * texel, at.z));
+    sum += low.x * high.y * texture(noh_shadow_map, vec3(from.x * texel, to.y * texel, at.z));
+    return (sum + high.x * high.y * texture(noh_shadow_map, vec3(to * texel, at.z))) / 4.0;
+}
+#endif
+
+/* 1: the key light reaches the point, 0: the point is in shadow. Hardware-filtered taps. The point is offset along the
+ * normal, by the depth that a texel of the map may span on a slope. */
 float noh_key_shadow(vec3 position, vec3 normal)
 {
     if (noh_lighting[13].z <= 0.0) {
         return 1.0;
     }
-    float slope = 1.0 - clamp(dot(normal, noh_key), 0.0, 1.0);
+    float facing = clamp(dot(normal, noh_key), 0.0, 1.0), slope = sqrt(1.0 - facing * facing);
     vec4 p = vec4(position + normal * (noh_lighting[13].z * (0.7 + 2.0 * slope)), 1.0);
     vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz * 0.5 + 0.5;
     at.z = min(at.z, 1.0) - 0.0003;
@@ -56,8 +72,7 @@ float noh_key_shadow(vec3 position, vec3 normal)
 #elif NOH_SHADOW_TAPS == 3
     float sum = noh_shadow_tap(at, 0.4, -1.0) + noh_shadow_tap(at, 0.67, 0.85) + noh_shadow_tap(at, -1.07, 0.15);
 #else
-    float sum = noh_shadow_tap(at, -1.0, -0.4) + noh_shadow_tap(at, 0.4, -1.0);
-    sum += noh_shadow_tap(at, 1.0, 0.4) + noh_shadow_tap(at, -0.4, 1.0);
+    float sum = noh_shadow_tent(at);
 #endif
     vec2 edge = noh_lighting[13].w * 2.0 + abs(at.xy - 0.5);
     bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map there is no shadow */

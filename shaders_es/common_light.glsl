@@ -169,7 +169,7 @@ vec3 noh_light(noh_surface s)
     vec3 color = matte * noh_matte_light(s, shadow);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     float open = noh_open();
-    mirrored *= open * open;
+    mirrored *= open * open * open * open; /* lips cover what grazing light would reach */
     shadow *= open;
 #if NOH_TRANSFER == 0
     color *= noh_bounced(s.albedo, open);

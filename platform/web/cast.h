@@ -13,7 +13,7 @@
 
 enum { WEB_BODY, WEB_FACE, WEB_LAYERS };
 
-#define WEB_SHADOW_PX 1024u /* as in `noh render` */
+#define WEB_SHADOW_PX 512u /* as in `noh render` */
 
 /* Options of the stage. */
 typedef struct web_wants {

@@ -193,7 +193,7 @@ static void a_square_casts_its_shadow(void **state)
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE) - shift[0], y = -pixel_at(p / SIDE) - shift[1];
         const double out = fmax(fabs(x), fabs(y)) - 0.3; /* of the shadow, as far as its edge */
-        if (fabs(out) < 3.0 * texel + 1.0 / SIDE) continue;
+        if (fabs(out) < 4.0 * texel + 1.0 / SIDE) continue;
         if (out < 0.0) {
             assert_true(rgba[4 * p] <= 1);
             dark++;

@@ -13,7 +13,7 @@ typedef struct light_options {
     double rotate;                                                /* degrees about the vertical axis */
 } light_options;
 
-#define LIGHTING_SHADOW_PX 1024u
+#define LIGHTING_SHADOW_PX 512u
 
 typedef enum lighting_background { BACKGROUND_PLAIN, BACKGROUND_GRADIENT, BACKGROUND_LIGHT } lighting_background;
 
