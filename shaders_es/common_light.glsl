@@ -112,7 +112,7 @@ float noh_rest_occlusion(noh_surface s)
 #endif
 
 /* The light that reaches a matte surface, relative to white. In a mouth the depth dims the key light, and the transfer,
- * if there is one, dims the rest, of which some is always left. */
+ * if there is one, dims the rest, but never all of it. */
 vec3 noh_matte_light(noh_surface s, float shadow)
 {
     vec3 key = noh_key_color * noh_key_matte(s, shadow);
