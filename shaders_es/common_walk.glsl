@@ -12,7 +12,7 @@
 #endif
 #endif
 
-uniform highp usampler2D noh_deltas; /* delta words in tiles of 4 x 4; with NOH_OCCLUSION, its delta as float bits too */
+uniform highp usampler2D noh_deltas; /* delta words in tiles of 4 x 4; with NOH_OCCLUSION, its delta as float bits */
 uniform highp usampler2D noh_lists;  /* entries (common_delta.glsl); the top bit of a fourth word: the list ends here */
 uniform highp usampler2D noh_starts; /* where each block's list begins */
 

@@ -17,7 +17,8 @@ void main()
     uvec3 words = texel.xyz;
     vec3 weights = uintBitsToFloat(f_entry.xyz);
 #ifdef OCCLUSION
-    o_position = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 0), weights.x), uintBitsToFloat(texel.w) * weights.x);
+    o_position = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 0), weights.x),
+                      uintBitsToFloat(texel.w) * weights.x);
 #else
     o_position = vec4(noh_delta_field(words, noh_entry_shifts(f_entry.w, 0), weights.x), 0.0);
 #endif

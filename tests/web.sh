@@ -137,7 +137,7 @@ add() {
 
 for pack in "$@"; do
     case $pack in /*) ;; *) pack=$PWD/$pack ;; esac
-    name=$(basename "$pack" .noh) clip=smile time=0.5 all=1 paths='auto mrt gather'
+    name=$(basename "$pack" .noh) clip=smile time=0.5 all=1 paths='auto mrt gather direct'
     figure=hair,spots,transfer,pushes,small # the parts of figure.js
     case $name in
     wig) all=0 figure=hair ;;

@@ -67,7 +67,8 @@ static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_
 
 static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
 {
-    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER };
+    static const noh_morph_path paths[] = { NOH_MORPH_CPU, NOH_MORPH_GATHER, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER,
+                                            NOH_MORPH_DIRECT };
     size_t most = 0;
     for (uint32_t i = 0; i < 4u * sizeof paths / sizeof *paths; i++) {
         const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0, 0 };

@@ -435,14 +435,17 @@ typedef struct noh_gl_input {
  *   char defines[NOH_GL_DEFINES_BYTES];
  *   noh_gl_variant_defines(key, defines);
  *   const char *parts[] = { "#version 300 es\n", defines, "precision highp float;\nprecision highp int;\n",
+ *                           noh_gl_shader_text("common_delta.glsl"), noh_gl_shader_text("common_walk.glsl"),
  *                           noh_gl_shader_text("common_layers.glsl"), noh_gl_shader_text("common_attributes.glsl"),
  *                           noh_gl_shader_text("common_skin.glsl"), your_text };
- *   glShaderSource(shader, 7, parts, NULL);
+ *   glShaderSource(shader, 9, parts, NULL);
  *
  * Threads: any; no GL is called. */
 
 /* The text of a file: GLSL ES 3.00 without a #version line and without comments, a zero-terminated string constant.
- * name    "common_layers.glsl"      noh_morph_fetch adds an instance's deltas
+ * name    "common_delta.glsl"       delta texels and entries of lists, for the path direct
+ *         "common_walk.glsl"        sums by lists, for the path direct; after common_delta.glsl
+ *         "common_layers.glsl"      noh_morph_fetch adds an instance's deltas; for the path direct after these two
  *         "common_attributes.glsl"  normals and tangents from the pack's integers
  *         "common_skin.glsl"        noh_skin_vertex moves a vertex by its joints; after common_layers.glsl
  *         "common_face.glsl"        vertex outputs for skin, eyes and teeth; after common_skin.glsl
@@ -490,6 +493,7 @@ const char *noh_gl_shader_text(const char *name);
  *   _init, _create, _restore,     nothing                         pixel store                   (1), and texture unit 0
  *   _fill, _upload                                                                              or the last used active
  *   noh_gl_mesh_bind, _unbind,    the program                     nothing                       what they bind
+ *   noh_gl_morph_bind,
  *   noh_gl_morph_bind_streams
  *   all others                    nothing                         nothing                       what was there
  *

@@ -199,8 +199,11 @@ typedef enum noh_quirk {
     NOH_QUIRK_SOFTWARE,    /* rasterises on the CPU: auto chooses the path cpu */
     NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto chooses gather for any number of targets */
     NOH_QUIRK_HALF_UNSURE, /* rounds halves irregularly: the probe sets half-float modes to NOH_HALF_UNKNOWN */
-    NOH_QUIRK_TILE_16, /* renders in tiles with 16 bytes per pixel: three float layers make tiles smaller, or spill */
-    NOH_QUIRK_TILE_32  /* renders in tiles with 32 bytes per pixel */
+    /* Renders in tiles with 16, 32 or 64 bytes per pixel: more bytes of float layers make tiles smaller, or spill. Of
+     * these, the first entry in the table applies */
+    NOH_QUIRK_TILE_16,
+    NOH_QUIRK_TILE_32,
+    NOH_QUIRK_TILE_64
 } noh_quirk;
 
 typedef struct noh_gl_quirk {
@@ -308,13 +311,14 @@ void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, f
  *   streams    ES 3.0                     no accumulation: the draw adds up to four targets as vertex streams
  *   direct     ES 3.0                     no accumulation: the draw's vertex shader sums the active targets
  *
- * Two policies choose a path: `auto` takes the cheapest on this GPU, which depends on the number of draws; `blend` takes layered draws if supported,
- * otherwise per-layer passes. Blending into the accumulation format needs an extension. Most phones have it for
- * float16, but not for float32 (EXT_float_blend).
+ * Two policies choose a path: `auto` takes the cheapest on this GPU for the expected targets and draws; `blend` takes
+ * layered draws if supported, otherwise per-layer passes. Blending into the accumulation format needs an extension.
+ * Most phones have it for float16, but not for float32 (EXT_float_blend).
  *
  * Threads: the context's own thread; any thread for noh_gl_morph_plan_make and the names. */
 
-/* The names "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams", "direct"; and "auto", "f32", "f16". */
+/* The names "auto", "layered", "mrt", "per-layer", "gather", "cpu", "blend", "streams", "direct"; and "auto", "f32",
+ * "f16". */
 const char *noh_morph_path_name(noh_morph_path path);
 const char *noh_accumulate_name(noh_accumulate accumulate);
 
@@ -452,8 +456,8 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
  * returns  the number of targets */
 uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
 
-/* Bind the textures of a binding to their units: the accumulated deltas to NOH_UNIT_LAYERS; on the path direct the three
- * tables to NOH_UNIT_LAYERS, NOH_UNIT_LISTS and the next. */
+/* Bind the textures of a binding to their units: the accumulated deltas to NOH_UNIT_LAYERS; on the path direct the
+ * three tables to NOH_UNIT_LAYERS, NOH_UNIT_LISTS and the next. */
 void noh_gl_morph_bind(const noh_gl_api *api, const noh_gl_morph_binding *binding);
 
 /* Point the attributes NOH_ATTRIBUTE_STREAMS and up of the bound vertex array to an instance's streams, and set the

@@ -755,7 +755,7 @@ static void automatic_weighs_blending_against_lists(void **state)
 }
 
 /* AUTO sums in the draws where that costs less than a pass with what draws then fetch: few draws, few entries for a
- * block, or a pass for a single instance. It may be told not to, and in halves it cannot. */
+ * block, or a pass for a single instance. A desc can exclude it, and halves do. */
 static void automatic_weighs_draws_against_a_pass(void **state)
 {
     static const uint32_t one[1] = { 1 }, many[1] = { 400 };
@@ -1001,6 +1001,36 @@ static void automatic_spares_mali_the_blending(void **state)
     assert_int_equal(plan.path, NOH_MORPH_MRT);
 }
 
+/* Tile memory by GPU: what fits is blended at full rate. */
+static void tile_memory_is_by_gpu(void **state)
+{
+    static const struct {
+        const char *renderer;
+        uint32_t bytes;
+    } cases[] = { { "a GPU", 0 },
+                  { "Mali-T860 (Panfrost)", 16 },
+                  { "Mali-G71", 16 },
+                  { "Mali-G72 MP12", 32 },
+                  { "Mali-G52 r1 (Panfrost)", 32 },
+                  { "Mali-G57", 32 },
+                  { "Mali-G610 (Panfrost)", 64 },
+                  { "Mali-G710", 64 },
+                  { "Apple A8 GPU", 32 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        noh_gl_morph_desc desc = desc_of((fixture_way){ NOH_MORPH_MRT, NOH_ACCUMULATE_F32 });
+        noh_gl_morph_plan plan, known;
+        noh_gl_caps caps;
+        noh_gl_caps_nominal(&caps);
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+        strcpy(caps.renderer, cases[i].renderer);
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &known, NULL), NOH_OK);
+        assert_int_equal(known.costs.tile_bytes, cases[i].bytes);
+        assert_int_equal(known.costs.pixel_bytes, 48);
+        assert_int_equal(known.costs.mrt > plan.costs.mrt, cases[i].bytes && cases[i].bytes < 48);
+    }
+}
+
 static void a_chosen_path_says_so(void **state)
 {
     const fixture_way way = { NOH_MORPH_CPU, NOH_ACCUMULATE_F16 };
@@ -1092,6 +1122,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(blending_is_layered_or_per_layer),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
     cmocka_unit_test(automatic_weighs_draws_against_a_pass),
+    cmocka_unit_test(tile_memory_is_by_gpu),
     cmocka_unit_test(direct_holds_no_accumulator),
     cmocka_unit_test(direct_refuses_too_many_instances),
     cmocka_unit_test(updates_send_what_the_plan_says),

@@ -85,7 +85,7 @@ static int open_face(face *f)
     morph.mesh_count = draws.mesh_count = 1;
     if (noh_gl_mesh_create(&f->gl, &f->ledger, &f->mesh, &f->gl_mesh, &error)) return fail("mesh", &error);
     if (noh_gl_morph_init(memory, sizeof memory, &device, &morph, &f->morph, &error)) return fail("morphs", &error);
-    draws.layers_uint = noh_gl_morph_plan_of(f->morph)->layer_format == GL_RGBA32UI;
+    draws.layers_uint = noh_gl_morph_binding_of(f->morph, 0).is_uint;
     if (noh_gl_renderer_create(&device, &draws, programs, sizeof programs, &f->renderer, &error))
         return fail("renderer", &error);
     for (uint32_t i = 0; i < f->pack.runs[NOH_CHUNK_TEXTURE].count && i < 64u; i++) {

@@ -7,7 +7,7 @@ export type Layer = 'body' | 'face';
 export type Shadow = 'on' | 'off' | 'blob';
 export type Background = 'light' | 'gradient' | 'plain';
 /** The accumulation path of targets: `auto` selects the best for this context. */
-export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'cpu' | 'blend';
+export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'direct' | 'cpu' | 'blend';
 
 export interface Clip { readonly name: string; readonly seconds: number }
 export interface PlayOptions {

@@ -4,7 +4,7 @@ import { importsOf, textAt } from './gl.js';
 const PAGE = 65536;
 const UNPACKING = 16; // first pages of a planning program: static data and stack; its memory may grow
 const MOST = 32768; // 2 GiB
-export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend'];
+export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend', 'streams', 'direct']; // by number
 
 const compiled = new Map(); // by address
 

@@ -5,6 +5,9 @@
 
 #define SOFTWARE_REASON "cpu: this GL is rasterised in software, so SIMD on the CPU is the least work"
 
+#define PANFROST_TILES \
+    "Mesa 25.0.7, panfrost's table of tile buffers, halved because two tiles are in flight: not measured here"
+
 static const noh_gl_quirk quirks[] = {
     { "llvmpipe", NOH_QUIRK_SOFTWARE, SOFTWARE_REASON,
       "noh bench, Mesa 22.3.6: runtime/gl/LOG.md; also names zink on lavapipe" },
@@ -15,8 +18,11 @@ static const noh_gl_quirk quirks[] = {
       "Direct3D's WARP under ANGLE; simdsoft/x-studio#602" },
     { "Mali", NOH_QUIRK_BLEND_DEAR, "gather: this GPU's vendor advises against blending into float framebuffers",
       "Arm GPU Best Practices Developer Guide (101897), Fragment shading, Blending" },
-    { "Mali", NOH_QUIRK_TILE_16, "tiles of full size have 128 bits a pixel",
-      "Arm GPU Best Practices Developer Guide (101897): reasoned, not measured here" },
+    { "Mali-G610", NOH_QUIRK_TILE_64, "tiles of 16 x 16 pixels have 64 bytes a pixel", PANFROST_TILES },
+    { "Mali-G710", NOH_QUIRK_TILE_64, "tiles of 16 x 16 pixels have 64 bytes a pixel", "as G610, with more cores" },
+    { "Mali-T", NOH_QUIRK_TILE_16, "tiles of 16 x 16 pixels have 16 bytes a pixel", PANFROST_TILES },
+    { "Mali-G71", NOH_QUIRK_TILE_16, "tiles of 16 x 16 pixels have 16 bytes a pixel", PANFROST_TILES },
+    { "Mali", NOH_QUIRK_TILE_32, "tiles of 16 x 16 pixels have 32 bytes a pixel", PANFROST_TILES },
     { "Apple", NOH_QUIRK_TILE_32, "tile memory has 32 bytes a pixel from A8 on",
       "Apple, Metal Feature Set Tables, maximum render target size per pixel: reasoned, not measured here" },
     { "SwiftShader", NOH_QUIRK_HALF_UNSURE,
@@ -42,7 +48,7 @@ static int contains(const char *text, const char *word)
 
 const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk)
 {
-    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_TILE_32);
+    NOH_ASSERT(renderer && quirk <= NOH_QUIRK_TILE_64);
     for (uint32_t i = 0; i < QUIRK_COUNT; i++) {
         if (quirks[i].quirk == quirk && contains(renderer, quirks[i].renderer)) {
             return &quirks[i];

@@ -7,11 +7,12 @@
  *           for halves, which GPUs blend at a higher rate; the clear
  *   gather  16 texels of each block at a factor, and 0.3 for each texel written once; the upload
  *   both    a pass, shared by all instances of an update, and a fetch of each moved vertex in each draw
- *   direct  in each draw, a turn for each moved vertex and active target of its block, and one for its start; the upload
+ *   direct  in each draw, a turn for each moved vertex and active target of its block, and its start; the upload
  *   cpu     pairs and vertices, and the upload: sums, or finished vertices
  * The factors for software, and for one GPU, an NVIDIA H100, were measured (runtime/deform/LOG.md); for other GPUs,
  * tilers above all, they are estimates: a game should calibrate (noh_gl_morph_calibrate). A turn of direct on a GPU was
- * not measured: it is taken for a turn of a loop over active targets, which fetches as often. */
+ * not measured: it is taken for a turn of a loop over active targets, which fetches as often. Tilers shade positions
+ * and varyings apart: by Mesa's model of a Mali-G52, 8.5 cycles where a turn of gather takes 2.5. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
@@ -26,10 +27,13 @@
 #define GATHER_GPU 0.3f
 #define HALF_BLEND_GPU 0.35f /* a blended texel of halves */
 #define WRITE 0.3f           /* a texel written once */
-#define FETCH_SOFTWARE 2.5f  /* the layers of a vertex, fetched by a draw */
+#define FETCH_SOFTWARE 1.5f  /* the layers of a vertex, fetched by a draw */
 #define FETCH_GPU 0.3f
-#define TURN_SOFTWARE 1.0f /* an entry of direct, added to a vertex */
+#define TURN_SOFTWARE 1.35f /* an entry of direct, added to a vertex */
 #define TURN_GPU 0.36f
+#define TURN_TILER 1.0f
+#define START_SOFTWARE 4.5f /* the start of a vertex's list */
+#define START_GPU 0.36f
 #define PASS_GPU 13000.0f    /* 18 us */
 #define UPLOADED_BYTES 32.0f /* that cost as much as one texel; estimated */
 #define CPU_PAIR 0.17f       /* 1.4 ns; a blended texel takes 8 ns on the same processor */
@@ -38,9 +42,16 @@
 /* Bytes per pixel that fit a GPU's tile memory at full tile size; 0: no tile memory, or unknown. */
 static uint32_t tile_bytes(const char *renderer)
 {
-    const noh_gl_quirk *quirk = noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_32);
-    if (quirk) return 32;
-    return noh_gl_quirk_find(renderer, NOH_QUIRK_TILE_16) ? 16 : 0;
+    static const noh_quirk sizes[] = { NOH_QUIRK_TILE_16, NOH_QUIRK_TILE_32, NOH_QUIRK_TILE_64 };
+    const noh_gl_quirk *first = NULL;
+    uint32_t bytes = 0;
+    for (uint32_t i = 0; i < 3u; i++) { /* the first in the table is the most special */
+        const noh_gl_quirk *quirk = noh_gl_quirk_find(renderer, sizes[i]);
+        if (!quirk || (first && first < quirk)) continue;
+        first = quirk;
+        bytes = 16u << i;
+    }
+    return bytes;
 }
 
 /* Bytes uploaded by the path cpu. */
@@ -62,18 +73,19 @@ static uint32_t strips_of(const noh_gl_morph_desc *desc, uint32_t mesh)
     return desc->coarse ? desc->later_strips : noh_gl_morph_strips(&desc->meshes[mesh]);
 }
 
-/* What paths with sums cost beside the sums; and the path direct. */
+/* What draws add to the paths with sums, and the pass; and the path direct. */
 static void weigh_draws(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan, int software,
                         noh_gl_morph_costs *c)
 {
-    const float turns = 16.0f * c->blocks + c->touched;
+    const float turn = software ? TURN_SOFTWARE : c->tile_bytes ? TURN_TILER : TURN_GPU;
+    const float start = software ? START_SOFTWARE : START_GPU;
     const float fetches = (software ? FETCH_SOFTWARE : FETCH_GPU) * c->touched * (float)c->draws;
     const float pass = software ? 0.0f : PASS_GPU * (float)desc->mesh_count / (float)plan->instance_count;
     c->mrt += pass + fetches;
     c->per_layer += pass * (float)plan->layer_count + fetches;
     c->gather += pass + fetches;
     c->cpu += fetches;
-    c->direct = (software ? TURN_SOFTWARE : TURN_GPU) * turns * (float)c->draws + c->upload_bytes / UPLOADED_BYTES;
+    c->direct = (16.0f * c->blocks * turn + c->touched * start) * (float)c->draws + c->upload_bytes / UPLOADED_BYTES;
 }
 
 void noh_gl_morph_weigh(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan)

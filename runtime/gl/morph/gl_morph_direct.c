@@ -3,7 +3,7 @@
  *
  * There is no pass, and no accumulator in memory. Each draw sums again, so it is the cheapest path where few targets
  * are active and an instance is drawn once or twice a frame. An instance has a range of the table of lists that holds
- * all of its targets, and a start for each of its blocks, so changed lists overwrite nothing of other instances. */
+ * all of its targets, and a start for each of its blocks, so changed lists leave other instances as they are. */
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "core/base/assert_internal.h"
@@ -25,10 +25,12 @@ static void upload_empty(const noh_gl_morph *m)
 
 noh_result noh_gl_morph_init_direct(noh_gl_morph *m, noh_error *error)
 {
-    noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, (uint32_t)m->batch.list_count,
-                                            &m->record_table, error);
-    if (!result)
-        result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, (uint32_t)m->batch.start_count, &m->starts, error);
+    const noh_gl_morph_mesh *last = &m->meshes[m->mesh_count - 1u];
+    const uint32_t entries = last->first_list + last->instance_count * last->list_count;
+    uint32_t starts = last->first_start;
+    noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, entries, &m->record_table, error);
+    if (last->mesh.header->touched_count) starts += last->instance_count * noh_gl_morph_positions(last->mesh.header);
+    if (!result) result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts ? starts : 1u, &m->starts, error);
     if (!result) upload_empty(m);
     return result;
 }

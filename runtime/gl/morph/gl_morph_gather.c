@@ -3,6 +3,8 @@
  * One fragment per vertex walks its block's list of active targets (gl_morph_lists.c) and writes the three layers once.
  * An update sends the lists of the changed instances, at most NOH_BATCH_ENTRIES entries at once unless one instance has
  * more. */
+#include <string.h>
+
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "noh/base.h"
@@ -11,8 +13,6 @@
 #include "noh/low_gl.h"
 #include "noh/pack.h"
 #include "shaders.gen.h"
-
-#include <string.h>
 
 /* ---- making ---- */
 

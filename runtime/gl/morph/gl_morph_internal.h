@@ -52,10 +52,9 @@ typedef struct noh_gl_blocks {
 
 /* Upper bounds of the data sent for one draw. */
 typedef struct noh_gl_batch {
-    uint32_t entries;                 /* points, quads, or entries of lists */
-    uint32_t positions, instances;    /* lists, and for gather their instances */
-    uint64_t bytes;                   /* blended paths: vertices of all batches of an update */
-    uint64_t list_count, start_count; /* direct: of all instances, in the tables */
+    uint32_t entries;              /* points, quads, or entries of lists */
+    uint32_t positions, instances; /* lists, and for gather their instances */
+    uint64_t bytes;                /* blended paths: vertices of all batches of an update */
 } noh_gl_batch;
 
 struct noh_gl_morph {

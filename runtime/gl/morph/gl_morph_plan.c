@@ -116,7 +116,7 @@ static noh_morph_path blending_path(noh_accumulate accumulate, const noh_gl_caps
 }
 
 static uint32_t has_occlusion(const noh_gl_morph_desc *desc);
-static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
+static int lists_fit(const noh_gl_morph_desc *desc);
 
 static int has_uv_targets(const noh_gl_morph_desc *desc)
 {
@@ -140,9 +140,7 @@ static int direct_is_cheaper(const noh_gl_morph_desc *desc, const noh_gl_morph_p
                         : plan->path == NOH_MORPH_MRT  ? c->mrt
                         : plan->path == NOH_MORPH_CPU  ? c->cpu
                                                        : c->per_layer;
-    const noh_gl_batch lists = lists_batch(desc, plan);
-    return !desc->without_direct && !missing(NOH_MORPH_DIRECT, plan->accumulate, NULL) &&
-           lists.list_count <= NOH_GL_TABLE_TEXELS_MAX && lists.start_count <= NOH_GL_TABLE_TEXELS_MAX &&
+    return !desc->without_direct && !missing(NOH_MORPH_DIRECT, plan->accumulate, NULL) && lists_fit(desc) &&
            c->direct < other;
 }
 
@@ -436,38 +434,56 @@ static uint64_t primitives_of(const noh_gl_morph_desc *desc, const noh_gl_morph_
     return count;
 }
 
+/* Entries and starts of the lists of all instances, with all targets active. */
+typedef struct list_sums {
+    uint64_t entries, starts;
+} list_sums;
+
+static list_sums sum_lists(const noh_gl_morph_desc *desc)
+{
+    list_sums sums = { 1, 0 }; /* the empty list */
+    for (uint32_t i = 0; i < desc->mesh_count; i++) {
+        if (!desc->meshes[i].header->touched_count) continue;
+        sums.entries += (uint64_t)instances_of(desc, i) * blocks_of(desc, i);
+        sums.starts += (uint64_t)instances_of(desc, i) * noh_gl_morph_positions(desc->meshes[i].header);
+    }
+    sums.starts += !sums.starts;
+    return sums;
+}
+
+static int lists_fit(const noh_gl_morph_desc *desc)
+{
+    const list_sums sums = sum_lists(desc);
+    return sums.entries <= NOH_GL_TABLE_TEXELS_MAX && sums.starts <= NOH_GL_TABLE_TEXELS_MAX;
+}
+
 /* gather draws many instances at once; direct sends the lists of one after the other. */
 static noh_gl_batch lists_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     const uint64_t least = plan->path == NOH_MORPH_GATHER ? NOH_BATCH_ENTRIES : 0;
-    uint64_t entries = 1, positions = 0, instances = 0, most = 0, widest = 1;
-    noh_gl_batch batch = { 0, 0, 0, 0, 0, 0 };
+    const list_sums sums = sum_lists(desc);
+    uint64_t entries = sums.entries < least ? sums.entries : least;
+    uint64_t positions = sums.starts < least ? sums.starts : least, instances = 0;
+    noh_gl_batch batch;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        const uint64_t own = noh_gl_morph_positions(desc->meshes[i].header), all = blocks_of(desc, i);
-        const uint32_t count = instances_of(desc, i);
-        if (!count || !desc->meshes[i].header->touched_count) continue;
-        entries += count * all;
-        positions += count * own;
-        instances += count;
-        most = all > most ? all : most;
-        widest = own > widest ? own : widest;
+        const uint64_t own = noh_gl_morph_positions(desc->meshes[i].header), all = 1u + (uint64_t)blocks_of(desc, i);
+        if (!instances_of(desc, i) || !desc->meshes[i].header->touched_count) continue;
+        instances += instances_of(desc, i);
+        entries = all > entries ? all : entries;
+        positions = own > positions ? own : positions;
     }
-    batch.list_count = entries;
-    batch.start_count = positions ? positions : 1u;
-    entries = entries < least ? entries : least;
-    positions = positions < least ? positions : least;
-    batch.entries = (uint32_t)(entries > most ? entries : most + 1u);
-    batch.positions = (uint32_t)(positions > widest ? positions : widest);
-    if (plan->path == NOH_MORPH_GATHER) {
-        batch.instances = (uint32_t)(instances < batch.positions ? instances ? instances : 1u : batch.positions);
-    }
+    instances = instances < positions ? instances : positions;
+    batch.entries = (uint32_t)(entries ? entries : 1u);
+    batch.positions = (uint32_t)(positions ? positions : 1u);
+    batch.instances = plan->path == NOH_MORPH_GATHER ? (uint32_t)(instances ? instances : 1u) : 0;
+    batch.bytes = 0;
     return batch;
 }
 
 noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan)
 {
     const uint64_t most = plan->points ? NOH_BATCH_POINTS : NOH_BATCH_QUADS;
-    noh_gl_batch batch = { 0, 0, 0, 0, 0, 0 };
+    noh_gl_batch batch = { 0, 0, 0, 0 };
     uint64_t all;
     if (noh_gl_morph_has_lists(plan->path)) return lists_batch(desc, plan);
     if (plan->path == NOH_MORPH_CPU || plan->path == NOH_MORPH_STREAMS) return batch;
@@ -614,8 +630,9 @@ static void set_gpu_bytes(const noh_gl_morph_desc *desc, noh_gl_morph_plan *plan
             plan->stream_bytes = 16u * (uint64_t)batch.instances + noh_gl_table_bytes(GL_RGBA32UI, batch.entries) +
                                  noh_gl_table_bytes(GL_R32UI, batch.positions);
         } else if (plan->path == NOH_MORPH_DIRECT) {
-            plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, (uint32_t)batch.list_count) +
-                                 noh_gl_table_bytes(GL_R32UI, (uint32_t)batch.start_count);
+            const list_sums sums = sum_lists(desc);
+            plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, (uint32_t)sums.entries) +
+                                 noh_gl_table_bytes(GL_R32UI, (uint32_t)sums.starts);
         } else {
             plan->stream_bytes = noh_gl_table_bytes(GL_RGBA32UI, plan->weight_count) + batch.bytes +
                                  (plan->points ? 0u : 12u) * (uint64_t)batch.entries;
@@ -646,14 +663,10 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     p.wide = p.occlusion || noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
     p.points = p.path != NOH_MORPH_LAYERED && blends(p.path) && caps->block_points &&
                noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
-    if (p.path == NOH_MORPH_DIRECT) {
-        const noh_gl_batch lists = lists_batch(desc, &p);
-        const uint64_t most = lists.list_count > lists.start_count ? lists.list_count : lists.start_count;
-        if (most > NOH_GL_TABLE_TEXELS_MAX) {
-            return noh_fail(error, NOH_ERR_LIMIT,
-                            "the lists of the path direct do not fit a texture: use fewer instances, or another path",
-                            NOH_GL_TABLE_TEXELS_MAX, most);
-        }
+    if (p.path == NOH_MORPH_DIRECT && !lists_fit(desc)) {
+        return noh_fail(error, NOH_ERR_LIMIT,
+                        "the lists of the path direct do not fit a texture: use fewer instances, or another path",
+                        NOH_GL_TABLE_TEXELS_MAX, sum_lists(desc).entries);
     }
     set_gpu_bytes(desc, &p);
     if (p.path == NOH_MORPH_STREAMS && p.delta_bytes > UINT32_MAX) {

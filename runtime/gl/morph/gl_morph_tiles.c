@@ -7,8 +7,8 @@
  * staging memory. On faces they take 1.02 to 1.14 times the texels of the pack.
  *
  * The blended paths need tiles in the order of targets, in which they draw. gather and direct read all targets of a
- * block in turn, so they need them by block, and within a block by target: `slots` has the position of each tile. (gather in the
- * order of targets, measured with 290 targets: 2.8 times slower on llvmpipe.) */
+ * block in turn, so they need them by block, and within a block by target: `slots` has the position of each tile.
+ * (gather in the order of targets, measured with 290 targets: 2.8 times slower on llvmpipe.) */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"

@@ -28,7 +28,7 @@ typedef struct measure {
     noh_stage_list *list; /* NULL: not wanted */
     uint64_t gpu_bytes;
     uint32_t morph_path;
-    int without_direct;
+    int direct; /* draws sum (noh_gl_sums_in_draws) */
 } measure;
 
 #define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
@@ -102,7 +102,8 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     }
     noh_gl_tiles_of(m->desc, m->plan, site, &tiles);
     d = noh_gl_site_morph(m->desc, &tiles); /* counts blocks and strips; the room below has no counts */
-    d.without_direct = m->without_direct;
+    if (m->direct) d.path = NOH_MORPH_DIRECT;
+    d.without_direct = 1;
     for (uint32_t i = 0; later && model && i < tiles.count; i++) {
         tiles.meshes[i] = noh_mesh_at_lod(&model->room, tiles.meshes[i].header->level);
     }
@@ -276,7 +277,7 @@ static noh_result visit(measure *m, noh_error *error)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     noh_result result = NOH_OK;
-    m->without_direct = noh_gl_mixes_paths(m->desc, m->plan, m->caps);
+    m->direct = noh_gl_sums_in_draws(m->desc, m->plan, m->caps);
     carve_head(m);
     carve_light(m);
     if (m->gl && m->desc->light) {
@@ -548,7 +549,7 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
     }
     noh_gl_tiles_of(&d, plan, first, &tiles);
     morph = noh_gl_site_morph(&d, &tiles);
-    morph.without_direct = noh_gl_mixes_paths(&d, plan, caps);
+    morph.without_direct = !noh_gl_sums_in_draws(&d, plan, caps);
     return noh_gl_morph_plan_make(&morph, caps, out, error);
 }
 

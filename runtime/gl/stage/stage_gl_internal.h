@@ -181,8 +181,9 @@ noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);
 noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
 
-/* Whether auto would take the path direct for some meshes at most. One renderer draws the whole stage, so it is then
- * taken for none. */
-int noh_gl_mixes_paths(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps);
+/* Whether the stage's path is `direct`. One renderer draws the whole stage, so `auto` takes it for all meshes or none:
+ * where it is the cheapest for each. That is settled before bounds make the plan smaller, or each step might change
+ * the path. */
+int noh_gl_sums_in_draws(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps);
 
 #endif

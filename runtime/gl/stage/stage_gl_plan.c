@@ -176,10 +176,14 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     return d;
 }
 
-int noh_gl_mixes_paths(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps)
+int noh_gl_sums_in_draws(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
-    while (!desc->morph_path && noh_gl_next_site(plan, desc->kind_count, &site)) {
+    int any = 0;
+    if (desc->morph_path || plan->morph_path) {
+        return (desc->morph_path ? desc->morph_path : plan->morph_path) == NOH_MORPH_DIRECT;
+    }
+    while (noh_gl_next_site(plan, desc->kind_count, &site)) {
         noh_gl_morph_desc d;
         noh_gl_morph_plan p;
         noh_gl_tiles tiles;
@@ -189,7 +193,8 @@ int noh_gl_mixes_paths(const noh_stage_desc *desc, const noh_stage_plan *plan, c
         }
         noh_gl_tiles_of(desc, plan, site, &tiles);
         d = noh_gl_site_morph(desc, &tiles);
-        if (noh_gl_morph_plan_make(&d, caps, &p, NULL) || p.path != NOH_MORPH_DIRECT) return 1;
+        if (noh_gl_morph_plan_make(&d, caps, &p, NULL) || p.path != NOH_MORPH_DIRECT) return 0;
+        any = 1;
     }
-    return 0;
+    return any;
 }

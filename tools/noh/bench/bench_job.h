@@ -175,7 +175,8 @@ int bench_check(bench_stage *s, const bench_method *m, const char *subject);
 int bench_open_unmorphed(bench_method *m, bench_stage *s);
 /* vertices: of the path cpu: finished ones, not sums in a texture */
 int bench_open_path(bench_method *m, bench_stage *s, noh_morph_path path, noh_accumulate accumulate, int vertices);
-int bench_open_dense(bench_method *m, bench_stage *s, int hoisted);
+typedef enum bench_loop { BENCH_LOOP_ALL, BENCH_LOOP_HOISTED, BENCH_LOOP_ACTIVE } bench_loop;
+int bench_open_dense(bench_method *m, bench_stage *s, bench_loop loop);
 int bench_open_filament(bench_method *m, bench_stage *s);
 /* artist[vertex_count]: pack vertex -> vertex of the asset; NULL: in the pack's order. */
 int bench_open_quads(bench_method *m, bench_stage *s, const uint32_t *artist);

@@ -5,10 +5,11 @@
  *                       and normal texels of every vertex side by side, weights in a uniform array;
  *                       the texel index is divided by the width inside the loop
  *   dense-hoisted       the same with that division done once per vertex: faster than three.js
+ *   dense-active-loop   the same again over a list of the active targets alone: the cheapest naive loop
  *   filament-layout     Filament: RGBA32F positions, and the morphed frames as quaternions in
  *                       RGBA16I; rows of 2048 texels, weights in a uniform block
  *
- * Both skip a target whose weight is zero, as the peers do. */
+ * The peers skip a target whose weight is zero. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -27,7 +28,8 @@ typedef struct loop_method {
     noh_gl_buffer block;          /* Filament's weights */
     const float *weights;
     float *padded; /* [targets][4] */
-    GLint u_weights[BENCH_PASS_COUNT];
+    GLint u_weights[BENCH_PASS_COUNT], u_count[BENCH_PASS_COUNT];
+    uint32_t active;
     uint32_t target_count;
 } loop_method;
 
@@ -128,6 +130,28 @@ static void bind_dense(void *self, bench_pass pass)
     gl->Uniform1fv(l->u_weights[pass], (GLsizei)l->target_count, l->weights);
 }
 
+/* Layers and weights of the active targets, as the shader reads them. */
+static void prepare_active(void *self, const float *weights)
+{
+    loop_method *l = (loop_method *)self;
+    l->active = 0;
+    for (uint32_t t = 0; t < l->target_count; t++) {
+        if (weights[t] == 0.0f) continue;
+        l->padded[2u * l->active] = (float)t;
+        l->padded[2u * l->active++ + 1u] = weights[t];
+    }
+}
+
+static void bind_active(void *self, bench_pass pass)
+{
+    const loop_method *l = (const loop_method *)self;
+    const noh_gl_api *gl = &l->stage->g->gl;
+    gl->ActiveTexture(GL_TEXTURE0);
+    gl->BindTexture(GL_TEXTURE_2D_ARRAY, l->first.name);
+    gl->Uniform4fv(l->u_weights[pass], (GLsizei)((l->target_count + 1u) / 2u), l->padded);
+    gl->Uniform1i(l->u_count[pass], (GLint)l->active);
+}
+
 static void close_loop(void *self)
 {
     loop_method *l = (loop_method *)self;
@@ -165,12 +189,15 @@ static void set_dense_constants(loop_method *l, const bench_method *m, uint32_t 
         gl->UseProgram(m->programs[pass]);
         gl->Uniform1i(gl->GetUniformLocation(m->programs[pass], "u_targets_width"), (GLint)width);
         l->u_weights[pass] = gl->GetUniformLocation(m->programs[pass], "u_weights");
+        l->u_count[pass] = gl->GetUniformLocation(m->programs[pass], "u_count");
     }
     gl->UseProgram(0);
 }
 
-int bench_open_dense(bench_method *m, bench_stage *s, int hoisted)
+int bench_open_dense(bench_method *m, bench_stage *s, bench_loop loop)
 {
+    static const char *const names[] = { "dense-vertex-loop", "dense-hoisted", "dense-active-loop" };
+    static const char *const lines[] = { "", "#define BENCH_HOISTED\n", "#define BENCH_ACTIVE\n" };
     const noh_mesh_header *h = s->mesh->header;
     uint32_t texels = 2u * h->vertex_count, most = s->g->caps.texture_size_max;
     uint32_t width = texels < most ? texels : most, height = (texels + width - 1u) / width;
@@ -181,16 +208,16 @@ int bench_open_dense(bench_method *m, bench_stage *s, int hoisted)
     if (h->target_count > s->g->caps.array_layers_max || h->target_count > UNIFORM_FLOATS) {
         return -1;
     }
-    l = begin_loop(m, s, hoisted ? "dense-hoisted" : "dense-vertex-loop");
+    l = begin_loop(m, s, names[loop]);
     if (!l) {
         return EXIT_FAILED;
     }
-    m->prepare = prepare_dense;
-    m->bind = bind_dense;
-    status = fill_dense(l, width, height);
+    m->prepare = loop == BENCH_LOOP_ACTIVE ? prepare_active : prepare_dense;
+    m->bind = loop == BENCH_LOOP_ACTIVE ? bind_active : bind_dense;
+    l->padded = calloc(h->target_count + 1u, 2u * sizeof *l->padded);
+    status = l->padded ? fill_dense(l, width, height) : tool_fail("bench", "out of memory");
     if (!status) {
-        snprintf(defines, sizeof defines, "#define BENCH_DENSE\n%s#define TARGETS %u\n",
-                 hoisted ? "#define BENCH_HOISTED\n" : "", h->target_count);
+        snprintf(defines, sizeof defines, "#define BENCH_DENSE\n%s#define TARGETS %u\n", lines[loop], h->target_count);
         status = bench_programs(s, m, defines);
     }
     if (!status) {

@@ -4,7 +4,8 @@
  *
  *   BENCH_LAYERS    ours: three accumulated layers, fetched by texel, or summed here from lists
  *   BENCH_DENSE     every target's position and normal for every vertex, summed here;
- *                   with BENCH_HOISTED the texels' place is found once, not for every target
+ *                   with BENCH_HOISTED the texels' place is found once, not for every target;
+ *                   with BENCH_ACTIVE it is, too, and the loop is over the active targets alone
  *   BENCH_FILAMENT  the same with the normal as a packed frame
  *   BENCH_QUADS     layers of all vertices, by vertex index
  *
@@ -40,7 +41,12 @@ out vec3 v_model;
 #if defined(BENCH_DENSE)
 uniform sampler2DArray u_targets; /* layer: target; two texels for each vertex, position and normal */
 uniform int u_targets_width;
+#if defined(BENCH_ACTIVE)
+uniform vec4 u_weights[(TARGETS + 1) / 2]; /* layer and weight of two active targets */
+uniform int u_count;
+#else
 uniform float u_weights[TARGETS];
+#endif
 
 ivec2 place_of(int offset)
 {
@@ -55,6 +61,20 @@ ivec2 place_of(int offset)
 #define PLACE(offset) place_of(offset)
 #endif
 
+#if defined(BENCH_ACTIVE)
+void morph(inout vec3 position, inout vec3 normal)
+{
+    ivec2 place0 = place_of(0), place1 = place_of(1);
+    for (int i = 0; i < u_count; i++) {
+        vec4 two = u_weights[i >> 1];
+        vec2 one = (i & 1) == 0 ? two.xy : two.zw;
+        int layer = int(one.x);
+        position += texelFetch(u_targets, ivec3(place0, layer), 0).xyz * one.y;
+        normal += texelFetch(u_targets, ivec3(place1, layer), 0).xyz * one.y;
+    }
+    normal = normalize(normal);
+}
+#else
 void morph(inout vec3 position, inout vec3 normal)
 {
 #if defined(BENCH_HOISTED)
@@ -72,6 +92,7 @@ void morph(inout vec3 position, inout vec3 normal)
     }
     normal = normalize(normal);
 }
+#endif
 #elif defined(BENCH_FILAMENT)
 uniform sampler2DArray u_positions; /* layer: target; a texel for each vertex */
 uniform isampler2DArray u_frames;   /* the frame of the morphed vertex as a quaternion, times 32767 */

@@ -8,7 +8,7 @@
 #include "cli/message.h"
 
 #define SAMPLE_NS 1e7
-#define METHODS_MAX 20 /* one floor, four baselines, 13 paths and formats, and one that is not here */
+#define METHODS_MAX 21 /* one floor, five baselines, 13 paths and formats, and two that are not here */
 #define FLOOR 0        /* methods[FLOOR] is the mesh that is not morphed */
 
 typedef enum work_kind { WORK_ONE_PASS, WORK_THREE_PASS, WORK_FRAME } work_kind;
@@ -62,8 +62,9 @@ static int open_methods(morph_job *j)
     static const noh_morph_path paths[] = { NOH_MORPH_LAYERED, NOH_MORPH_MRT, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER,
                                             NOH_MORPH_DIRECT,  NOH_MORPH_CPU, NOH_MORPH_STREAMS };
     int status = take(j, bench_open_unmorphed(&j->methods[FLOOR], &j->stage));
-    if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 0));
-    if (!status) status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, 1));
+    for (int loop = BENCH_LOOP_ALL; loop <= BENCH_LOOP_ACTIVE && !status; loop++) {
+        status = take(j, bench_open_dense(&j->methods[j->method_count], &j->stage, (bench_loop)loop));
+    }
     if (!status) status = take(j, bench_open_filament(&j->methods[j->method_count], &j->stage));
     if (!status) status = take(j, bench_open_quads(&j->methods[j->method_count], &j->stage, j->job->artist));
     if (!status) {

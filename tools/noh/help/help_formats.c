@@ -234,6 +234,7 @@ const char *const help_formats_text[] = {
     "   mrt        one additive pass with three outputs",
     "   per-layer  three additive passes",
     "   gather     no blending: each fragment sums its list of active targets",
+    "   direct     no pass and no sums: the vertex shader of each draw walks that list",
     "   cpu        SIMD on the CPU, then an upload",
     "# cameras (--camera)",
     "   face        frames the vertices that targets move",
