@@ -89,7 +89,7 @@ static int read_model(const char *path, const source_options *options, model **o
     const file_kind *kind = file_kind_of(path);
     const file_reader reader = kind ? kind->reader : READER_GLTF;
     switch (reader) {
-    case READER_FBX: inputs_note(path, 1); return fbx_read(path, &fbx, out, error);
+    case READER_FBX: return fbx_read(path, &fbx, out, error);
     case READER_OBJ: return obj_read(path, &obj, out, error);
     case READER_GLTF: return model_read_gltf(path, out, error);
     default:

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <filesystem>
 
+#include "convert/base/input_file.h"
+
 namespace fbx
 {
 
@@ -88,7 +90,11 @@ static std::string beside(const job &j, const std::string &path)
                                        "Textures/" + name, "../textures/" + name, "../Textures/" + name }) {
         const bool local = !try_at.empty() && try_at[0] != '/' && try_at.find(':') == std::string::npos &&
                            try_at.find('\0') == std::string::npos;
-        if (local && std::filesystem::is_regular_file(file.parent_path() / try_at, ignored)) return try_at;
+        if (!local) continue;
+        const std::filesystem::path picture = file.parent_path() / try_at;
+        const bool found = std::filesystem::is_regular_file(picture, ignored);
+        inputs_note(picture.c_str(), found);
+        if (found) return try_at;
     }
     return std::string();
 }
