@@ -1,5 +1,5 @@
-/* Tests of tools/convert/base/names.c and of what uses it: recipes by the names of targets (recipe_make.c), clips by the
- * names of joints (joint_match.c) are in test_sources.c. */
+/* Tests of tools/convert/base/names.c and of what uses it: recipes by the names of targets (recipe_make.c), clips by
+ * the names of joints (joint_match.c) are in test_sources.c. */
 #include "convert/base/names.h"
 #include "convert/base/names_table.h"
 

@@ -23,8 +23,8 @@ typedef enum name_kind { NAME_TARGET, NAME_JOINT, NAME_MATERIAL, NAME_STRIP } na
 int names_use(const char *path, model_error *error);
 void names_free(void);
 
-/* What a target or a joint of this name is: 1 and the table's own name for it, else 0. *is_own: 1 where the name is that
- * one already, but for case, separators and the way its side is written (NULL: not wanted). */
+/* What a target or a joint of this name is: 1 and the table's own name for it, else 0. *is_own: 1 where the name is
+ * that one already, but for case, separators and the way its side is written (NULL: not wanted). */
 int names_find(name_kind kind, const char *name, char means[NOH_NAME_BYTES_MAX], int *is_own);
 
 /* Whether a word, in small letters, is of a kind of material: "skin", "beside-eye". */

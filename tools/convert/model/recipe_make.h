@@ -14,13 +14,14 @@ int recipe_add_extras(recipe_text *recipe, model *m);
  * that target. 0, or 1 when out of memory. */
 int recipe_add_lips(recipe_text *recipe, const model *m);
 
-/* Add what targets are by the table of names (names.h): the mouth shapes of viseme_*, and for channels that ARKit's names
- * move the targets of their other names, such as Eye_Blink_L. Channels that the recipe has rows of are left as they are.
- * *count: rows. 0, or 1 when out of memory or there are too many rows. */
+/* Add what targets are by the table of names (names.h): the mouth shapes of viseme_*, and for channels that ARKit's
+ * names move the targets of their other names, such as Eye_Blink_L. Channels that the recipe has rows of are left as
+ * they are. *count: rows. 0, or 1 when out of memory or there are too many rows. */
 int recipe_add_known(recipe_text *recipe, const model *m, uint32_t *count);
 
-/* Add rows that name the joints of the face (joint-head, joint-neck, joint-chest, joint-eye-left, joint-eye-right) where
- * a skeleton has them by other names than the runtime's. 0, or 1 when out of memory or there are too many rows. */
+/* Add rows that name the joints of the face (joint-head, joint-neck, joint-chest, joint-eye-left, joint-eye-right)
+ * where a skeleton has them by other names than the runtime's. 0, or 1 when out of memory or there are too many rows.
+ */
 int recipe_add_joints(recipe_text *recipe, const char *const *joints, uint32_t joint_count);
 
 /* Add correctives by name: jawOpen_smile of jawOpen and smile, jawOpen50 as an in-between of jawOpen, jawOpen50_smile;

@@ -12,9 +12,9 @@ extern "C" {
 uint32_t surface_kind_named(const char *word);
 
 /* By the words of a material's name (names.h) in English, German, French, Spanish, Portuguese, Italian, Dutch, Polish,
- * Russian, Japanese, Chinese and Korean: "EyeLeft", "head_skin.001", "Haut", "N00_000_Body_00_SKIN". A word ends where letters
- * do, and before a capital behind a small letter. The surroundings of an eye are excluded: lashes, brows, lids,
- * shadows, glasses. name: UTF-8; other bytes match no word. */
+ * Russian, Japanese, Chinese and Korean: "EyeLeft", "head_skin.001", "Haut", "N00_000_Body_00_SKIN". A word ends where
+ * letters do, and before a capital behind a small letter. The surroundings of an eye are excluded: lashes, brows,
+ * lids, shadows, glasses. name: UTF-8; other bytes match no word. */
 uint32_t surface_kind_of_name(const char *name);
 
 /* Set a material's kind. Unlit materials stay plain. The default reflectance (0.04) becomes the surface's: 0.028 for

@@ -4,8 +4,8 @@
 
 #include "convert/base/input_file.h"
 
-/* Write the rule OUTPUT: INPUT..., and an empty rule for each input, so that Make goes on after one was removed. Returns
- * an exit code. */
+/* Write the rule OUTPUT: INPUT..., and an empty rule for each input, so that Make goes on after one was removed.
+ * Returns an exit code. */
 int depfile_write(const char *path, const char *output, const input_list *inputs);
 
 #endif

@@ -21,8 +21,8 @@ int content_hash_add_file(content_hash *h, const char *path);
  * Returns 1 and the bytes, to be freed, of a pack that was kept; 0: there is none. */
 int pack_cache_find(const char *model, content_hash begun, byte_buffer *pack);
 
-/* Keep a pack. inputs: all that was read to build it, which began at start_ns (of the system's clock, since 1970): where
- * one has changed since, nothing is kept. A failure is a warning on stderr, once. */
+/* Keep a pack. inputs: all that was read to build it, which began at start_ns (of the system's clock, since 1970):
+ * where one has changed since, nothing is kept. A failure is a warning on stderr, once. */
 void pack_cache_keep(const char *model, content_hash begun, const input_list *inputs, int64_t start_ns,
                      const byte_buffer *pack);
 

@@ -27,7 +27,8 @@ typedef struct view_load {
 
 int view_is_model(const char *path);
 
-/* levels: as noh build --lod; NULL: the full mesh only. One at a time: a running conversion is cancelled. Prints an error and returns an exit code; 0 on success. */
+/* levels: as noh build --lod; NULL: the full mesh only. One at a time: a running conversion is cancelled. Prints an
+ * error and returns an exit code; 0 on success. */
 int view_load_start(view_load *l, const char *path, const char *levels);
 /* Read its messages. VIEW_LOAD_FAILED: after an error was printed. */
 view_load_state view_load_poll(view_load *l);
