@@ -2264,6 +2264,20 @@ static void bad_transforms_are_ignored(void **state)
     }
 }
 
+/* A scene that lists all of its nodes, some twice: each is there once, below its parent. */
+static void nodes_are_in_the_scene_once(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest,
+           ",\"scenes\":[{\"nodes\":[1,0,0]}],\"nodes\":[{\"name\":\"up\",\"children\":[1],\"translation\":[0,2,0]},"
+           "{\"name\":\"low\",\"mesh\":0}]");
+    model *m = load(s);
+    assert_true(m->node_count == 2 && m->nodes[1].parent == 0 && m->nodes[1].world[13] == 2.0);
+    assert_true(has_warning(m, "is listed in the scene, and there already (and 1 more like it)"));
+    model_free(m);
+}
+
 static void bad_references(void **state)
 {
     (void)state;
@@ -2530,6 +2544,7 @@ int main(void)
         cmocka_unit_test(bad_sparse_indices_are_refused),
         cmocka_unit_test(bad_nodes_are_refused),
         cmocka_unit_test(bad_transforms_are_ignored),
+        cmocka_unit_test(nodes_are_in_the_scene_once),
         cmocka_unit_test(bad_references),
         cmocka_unit_test(instances_are_nodes),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),

@@ -42,11 +42,12 @@ static std::vector<bool> nodes_with_parent(const file &f)
     return has_parent;
 }
 
-/* The roots of the default scene, or all roots where the file has no scene. */
+/* The roots of the default scene, or all roots where the file has no scene. Some exporters list all nodes: those with a
+ * parent come last, and are skipped where the parent has brought them in. */
 static std::vector<size_t> root_nodes(const file &f)
 {
     std::vector<bool> has_parent = nodes_with_parent(f);
-    std::vector<size_t> roots;
+    std::vector<size_t> roots, below;
     if (f.json.scenes.empty()) {
         for (size_t i = 0; i < f.json.nodes.size(); ++i)
             if (!has_parent[i]) roots.push_back(i);
@@ -57,10 +58,9 @@ static std::vector<size_t> root_nodes(const file &f)
         fail("scene", text("scene %zu does not exist: the file has %zu", scene, f.json.scenes.size()));
     for (int node : f.json.scenes[scene].nodes) {
         check_node_index(f, node, text("scene %zu", scene));
-        if (has_parent[static_cast<size_t>(node)])
-            fail(where_of(f, static_cast<size_t>(node)), "the scene lists this node as a root, but it has a parent");
-        roots.push_back(static_cast<size_t>(node));
+        (has_parent[static_cast<size_t>(node)] ? below : roots).push_back(static_cast<size_t>(node));
     }
+    roots.insert(roots.end(), below.begin(), below.end());
     return roots;
 }
 
@@ -72,7 +72,10 @@ static void visit_below(file &f, const std::vector<size_t> &roots, std::vector<v
     while (!open.empty()) {
         visit v = open.back();
         open.pop_back();
-        if (f.node_of[v.node] != MODEL_NONE) fail(where_of(f, v.node), "the node is in the scene twice");
+        if (f.node_of[v.node] != MODEL_NONE) {
+            leave_out(f, where_of(f, v.node), " is listed in the scene, and there already");
+            continue;
+        }
         uint32_t index = static_cast<uint32_t>(order.size());
         f.node_of[v.node] = index;
         order.push_back(v);
