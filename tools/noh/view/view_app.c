@@ -377,7 +377,7 @@ int view_app_picture(view_app *a)
     if (a->is_drawn) return 0;
     a->is_drawn = 1;
     orbit_camera(&a->camera.orbit, &camera);
-    figure_set_floor(a->model->figure, a->compare.is.with == VIEW_COMPARE_OFF, (float)a->ground.height);
+    figure_set_floor(a->model->figure, 1, (float)a->ground.height);
     noh_gl_timer_begin(&t->draw_timer, gl);
     status = view_model_draw(a->model, &a->model->canvas, &a->overlay, &a->over, &camera);
     noh_gl_timer_end(&t->draw_timer, gl);

@@ -89,6 +89,7 @@ int view_compare_pose(view_compare *c, const view_model *m, const view_lod *show
     if (c->is.with == VIEW_COMPARE_LEVEL) view_lod_level(&second, c->is.level);
     hold(c, m);
     view_lod_look(&second, f);
+    figure_set_floor(f, m->figure->shows_floor, m->figure->floor);
     view_count = figure_views(f, camera, c->canvas.height, views);
     views[0].cut = 1;
     if (noh_stage_frame_begin(f->stage, views, view_count, &error)) return tool_fail_error(m->path, &error);
