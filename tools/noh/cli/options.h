@@ -136,13 +136,12 @@
         .what = "turn the environment light about the vertical axis, degrees", .example = "90", __VA_ARGS__ \
     }
 
-#define OPTION_LIGHT_TONEMAP(T, m, ...)                                                                                          \
-    {                                                                                                                            \
-        .name = "--tonemap", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "neutral|filmic|none",                          \
-        .initial = "neutral",                                                                                                    \
-        .what =                                                                                                                  \
-            "tone mapping of bright light: neutral, which keeps colours; filmic, a curve with a shoulder; none, which clips it", \
-        .example = "none", __VA_ARGS__                                                                                           \
+#define OPTION_LIGHT_TONEMAP(T, m, ...)                                                                      \
+    {                                                                                                        \
+        .name = "--tonemap", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "neutral|filmic|none",      \
+        .initial = "neutral",                                                                                \
+        .what = "tone mapping of bright light: neutral keeps colours; filmic has a shoulder; none clips it", \
+        .example = "none", __VA_ARGS__                                                                       \
     }
 
 /* Rows of draw/lighting.h; m: the light_options; text: the light by default; more: what every row needs or excludes */

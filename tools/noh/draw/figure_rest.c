@@ -1,5 +1,5 @@
-/* figure_rest.c: how a figure stands that no clip poses: as in a clip named idle, otherwise with its arms lowered, which
- * most bodies spread in their bind pose. */
+/* figure_rest.c: how a figure without a clip stands: as in a clip named idle, otherwise with lowered arms, which most
+ * bodies spread in their bind pose. */
 #include <math.h>
 #include <string.h>
 
