@@ -36,6 +36,7 @@ void noh_gl_table_upload(const noh_gl_api *api, const noh_gl_table *table, uint3
                          const void *data);
 
 /* The same, between noh_gl_unpack_begin and _end, with unit 0 active. */
-void noh_gl_table_put(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count, const void *data);
+void noh_gl_table_put(const noh_gl_api *api, const noh_gl_table *table, uint32_t first, uint32_t count,
+                      const void *data);
 
 #endif

@@ -4,7 +4,6 @@
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 
-
 #define CAPACITY_MAX (1u << 24)
 
 size_t noh_event_queue_size(uint32_t capacity)

@@ -8,7 +8,6 @@
 
 #include <string.h>
 
-
 typedef noh_cached_segment cached;
 
 #define SEGMENT_BYTES_MIN 16u

@@ -7,7 +7,6 @@
 
 #include <string.h>
 
-
 /* A segment of the view's own. It is kept from sample to sample, so a clip that plays without being requested is
  * decoded once per segment, not once per sample. */
 typedef struct spill {

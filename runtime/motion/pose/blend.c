@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-
 static float masked(const uint8_t *mask, uint32_t i, float weight)
 {
     return mask ? weight * ((float)mask[i] / 255.0f) : weight;

@@ -7,7 +7,6 @@
 #include "noh/clip.h"
 #include "noh/low_stage.h"
 
-
 static const char *bad_lod(const noh_lod *d, const noh_lod_table *table)
 {
     const uint32_t levels = table->mesh_level_count ? table->mesh_level_count : 1u;

@@ -11,7 +11,6 @@
 #include "noh/low_stage.h"
 #include "noh/pack.h"
 
-
 NOH_STATIC_ASSERT(NOH_CLIP_UPDATE_RATES == NOH_UPDATE_RATE_COUNT, clip_rates);
 
 /* The resolved desc. */

@@ -5,7 +5,6 @@
 
 #include <string.h>
 
-
 #define NOT_ASKED 0xffu /* in place.next: did not ask, */
 #define LEFT_OUT 0xfeu  /* is beyond shown_max, */
 #define RESTS 0xfdu     /* or found no slot */

@@ -7,7 +7,6 @@
 #include "noh/low_motion.h"
 #include "support/set_fixture.h"
 
-
 #define JOINTS 12u
 #define CLIPS 8u
 #define STEP 800u

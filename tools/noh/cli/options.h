@@ -95,11 +95,11 @@
         __VA_ARGS__                                                                                          \
     }
 
-#define OPTION_PATH(T, m, ...)                                                \
-    {                                                                         \
-        .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m),          \
-        .value = "auto|blend|layered|mrt|per-layer|gather|direct|cpu|streams",       \
-        .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__ \
+#define OPTION_PATH(T, m, ...)                                                 \
+    {                                                                          \
+        .name = "--path", .kind = OPTION_TEXT, .at = offsetof(T, m),           \
+        .value = "auto|blend|layered|mrt|per-layer|gather|direct|cpu|streams", \
+        .what = "how targets are accumulated (noh help FORMATS)", __VA_ARGS__  \
     }
 
 #define OPTION_ACCUMULATE(T, m, ...)                                                                \
