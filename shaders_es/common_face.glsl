@@ -35,7 +35,7 @@ out float noh_v_depth; /* behind the lips, in halves of their gap; 0 outside of 
 /* The half gap of the lips, in depths of the mouth: narrow at rest, wider where targets move what is inside. */
 float noh_half_gap(vec3 moved, float scale)
 {
-    return 0.14 + scale * length(moved);
+    return 0.24 + scale * length(moved);
 }
 #endif
 

@@ -296,7 +296,7 @@ static void teeth_are_dark_behind_the_lips(void **state)
     for (uint32_t x = SIDE / 2; x < SIDE * 9 / 10; x++) {
         const size_t p = 4 * ((size_t)(SIDE / 2) * SIDE + x);
         const double z = sqrt(1.0 - pixel_at(x) * pixel_at(x)), open = fmin(fmax(1.25 * z - 0.25, 0.0), 1.0);
-        const double depth = fmax(1.2 - open, 0.2) / 0.14, through = 1.0 / sqrt(1.0 + depth * depth);
+        const double depth = fmax(1.2 - open, 0.2) / 0.24, through = 1.0 / sqrt(1.0 + depth * depth);
         const double right = fmax(((0.892 * through - 2.235) * through + 2.343) * through, 0.24); /* an albedo of 0.6 */
         assert_true(fabs(decoded(rgba[1][p]) / decoded(rgba[0][p]) - right) < 0.03);
     }
