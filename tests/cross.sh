@@ -89,7 +89,7 @@ target() {
     done <"$folder/cross/programs" | sort -rn | cut -d' ' -f2)
     # shellcheck disable=SC2016
     echo "$tests" | xargs -P "${JOBS:-2}" -I '{}' sh -c \
-        'test=$1; shift; timeout -k 5 900 "$@" "$test" >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"; times >"$test.times"' sh '{}' "$@"
+        'test=$1; shift; (ulimit -S -t 900; exec timeout -k 5 3600 "$@" "$test") >"$test.tap" 2>&1 </dev/null; echo $? >"$test.code"; times >"$test.times"' sh '{}' "$@"
     for test in $tests; do
         count "${test#"$folder"/cross/}" "$test.tap" "$(cat "$test.code")"
     done
