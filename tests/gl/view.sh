@@ -57,19 +57,19 @@ ROOT hips
   CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
   JOINT knee
   {
-    OFFSET 0 -10 0
+    OFFSET 0 -80 0
     CHANNELS 3 Zrotation Xrotation Yrotation
     End Site
     {
-      OFFSET 0 -10 0
+      OFFSET 0 -80 0
     }
   }
 }
 MOTION
 Frames: 2
 Frame Time: 0.0333333
-0 20 0 0 0 0 0 0 0
-1 20 0 5 0 0 30 0 0
+0 160 0 0 0 0 0 0 0
+1 160 0 5 0 0 30 0 0
 BVH
 noh view "$work/leg.bvh" --frames 2 --size 700x400
 expect 0 'a clip is converted and its bones are shown'
