@@ -604,6 +604,25 @@ static void losses_are_warned_of(void **state)
     warns("node 'sheet' has a transform that is not finite");
 }
 
+/* As C libraries spell them; a comma may begin a line. */
+static void words_in_place_of_numbers_are_zero(void **state)
+{
+    model *m;
+    (void)state;
+    begin();
+    add("\tGeometry: 1, \"Geometry::t\", \"Mesh\" {\n\t\tVertices: *9 {\n\t\t\ta: 1.#IND,-nan(ind),snan\n"
+        "\t\t\t,1,infty,-1.#INF,2,1,nan\n\t\t}\n\t\tPolygonVertexIndex: *3 {\n\t\t\ta: 0,1,-3\n\t\t}\n\t}\n");
+    add_object("Model", 2, "sheet", "Mesh", "", "");
+    links(OO(2, 0) OO(1, 2));
+    m = load();
+    assert_true(has_warning(m, "numbers that are not finite"));
+    for (uint32_t i = 0; i < 9; i++) {
+        static const float wanted[9] = { 0, 0, 0, 1, 0, 0, 2, 1, 0 };
+        assert_true(m->meshes[0].position[i] == wanted[i]);
+    }
+    model_free(m);
+}
+
 static void refused(const void *bytes, size_t count, const char *what, const char *where)
 {
     const fbx_options plain = { 0.0 };
@@ -684,6 +703,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
     cmocka_unit_test(losses_are_warned_of),
+    cmocka_unit_test(words_in_place_of_numbers_are_zero),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(mutations_never_crash),
 };

@@ -94,10 +94,9 @@ const char *const names_table[] = {
     "joint *LittleIntermediate *HandPinky2 pinky_02_* *Pinky2",
     "joint *LittleDistal *HandPinky3 pinky_03_* *Pinky3",
     /* What stands in front of names, or behind them. */
-    "strip mixamorig J_Bip_C J_Bip J_Adj_C J_Adj J_Sec CC_Base Bip001 Bip01 DEF ORG ValveBiped_Bip01 "
-    "Armature",
-    "strip facs_bs facs_jnt facs_cbs facs_ctrl facs body_bs head_bs eCTRL head_eCTRL div2 Genesis8Female "
-    "Genesis8Male Genesis9",
+    "strip mixamorig J_Bip_C J_Bip J_Adj_C J_Adj J_Sec CC_Base Bip001 Bip01 DEF ORG ValveBiped_Bip01 Armature",
+    "strip facs_bs facs_jnt facs_cbs facs_ctrl facs body_bs head_bs eCTRL head_eCTRL div2",
+    "strip Genesis8Female Genesis8Male Genesis9",
     "strip head_facs_bs blendShape1 blendShape",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses. */

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <limits>
 
 namespace fbx
 {
@@ -21,6 +23,7 @@ struct ascii_reader {
     bool skip_comma();
     std::string token();
     bool read_number(value &out);
+    bool read_no_number(value &out);
     std::string read_quoted();
     value read_array();
     value read_value();
@@ -106,9 +109,9 @@ bool ascii_reader::read_number(value &out)
             out = real;
             end = real_end;
         }
-        if (*end == '#') { /* Windows: 1.#IND, 1.#INF */
-            while (is_word(*end) || *end == '#') ++end;
-            out = 0.0;
+        if (*end == '#' || !std::isfinite(real)) { /* Windows: 1.#IND, 1.#INF; others: nan(ind), infty */
+            while (is_word(*end) || is_in(*end, "()#")) ++end;
+            out = std::numeric_limits<double>::quiet_NaN();
         }
     }
     at = static_cast<size_t>(end - bytes.c_str());
@@ -130,12 +133,21 @@ std::string ascii_reader::read_quoted()
     return out;
 }
 
+/* A word in place of a number, such as snan. */
+bool ascii_reader::read_no_number(value &out)
+{
+    const size_t from = at;
+    while (is_word(now()) || is_in(now(), "()#")) ++at;
+    out = std::numeric_limits<double>::quiet_NaN();
+    return at > from;
+}
+
 value ascii_reader::read_array()
 {
     numbers out;
     value one;
     skip_blank();
-    while (at < bytes.size() && read_number(one)) {
+    while (at < bytes.size() && (read_number(one) || read_no_number(one))) {
         const int64_t *whole = std::get_if<int64_t>(&one);
         out.values.push_back(whole ? static_cast<double>(*whole) : std::get<double>(one));
         out.whole = out.whole && whole;

@@ -48,7 +48,7 @@ bool read_element(job &j, size_t geometry, const char *const names[3], size_t wi
         return false;
     }
     out.width = width;
-    out.values = list_of(*first, names[1]).values;
+    out.values = finite_list(j, *first, names[1]);
     if (!reference || reference->text(0) != "Direct") out.index = list_of(*first, names[2]).values;
     return out.values.size() >= width;
 }

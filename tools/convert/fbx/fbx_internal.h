@@ -64,6 +64,9 @@ struct job {
 };
 
 /* --- fbx_output.cpp --- */
+/* list_of, of coordinates: a number that is not finite or too large becomes 0, with a warning, before it spreads to the
+ * other axes. */
+std::vector<double> finite_list(job &j, const node &parent, const char *child);
 /* type: TINYGLTF_TYPE_*. Numbers that are not finite or too large become 0, with a warning. */
 int add_view(job &j, const void *bytes, size_t size);
 int add_floats(job &j, std::vector<float> values, int type);

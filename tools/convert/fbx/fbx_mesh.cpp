@@ -180,7 +180,7 @@ static void read_geometry(mesh_job &m)
     static const char *const uvs[3] = { "LayerElementUV", "UV", "UVIndex" };
     static const char *const colors[3] = { "LayerElementColor", "Colors", "ColorIndex" };
     static const char *const materials[3] = { "LayerElementMaterial", "Materials", "" };
-    const std::vector<double> points = list_of(*m.j.in.objects[m.geometry].from, "Vertices").values;
+    const std::vector<double> points = finite_list(m.j, *m.j.in.objects[m.geometry].from, "Vertices");
     m.has_normals = read_element(m.j, m.geometry, normals, 3, m.normals);
     m.has_uvs = read_element(m.j, m.geometry, uvs, 2, m.uvs);
     m.has_colors = read_element(m.j, m.geometry, colors, 4, m.colors);

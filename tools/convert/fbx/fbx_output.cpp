@@ -35,13 +35,20 @@ static int add_accessor(job &j, int view, int component, int type, size_t values
     return static_cast<int>(j.out.accessors.size() - 1);
 }
 
-static void make_finite(job &j, std::vector<float> &values)
+template <class T> static void make_finite(job &j, std::vector<T> &values)
 {
-    for (float &v : values) {
-        if (std::fabs(v) <= value_max) continue;
-        v = 0.0f;
+    for (T &v : values) {
+        if (std::fabs(v) <= static_cast<T>(value_max)) continue;
+        v = 0;
         j.in.warn("the file", " has numbers that are not finite or too large, which became 0: export it again");
     }
+}
+
+std::vector<double> finite_list(job &j, const node &parent, const char *child)
+{
+    std::vector<double> values = list_of(parent, child).values;
+    make_finite(j, values);
+    return values;
 }
 
 int add_floats(job &j, std::vector<float> values, int type)

@@ -16,7 +16,7 @@ static const double percent_max = 1e6;
 static target_deltas read_deltas(job &j, const std::string &where, const node &shape, const std::vector<double> &mask,
                                  size_t point_count)
 {
-    const std::vector<double> places = list_of(shape, "Indexes").values, moves = list_of(shape, "Vertices").values;
+    const std::vector<double> places = list_of(shape, "Indexes").values, moves = finite_list(j, shape, "Vertices");
     target_deltas out;
     for (size_t i = 0; i < places.size() && i * 3 + 2 < moves.size(); ++i) {
         const double share = i < mask.size() ? mask[i] / 100.0 : 1.0;
