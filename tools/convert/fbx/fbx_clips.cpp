@@ -30,7 +30,7 @@ struct track {
     }
 };
 
-/* The accessors of the times of all frames, and of the first and the last. */
+/* The accessors of the times of all frames, and of the first and the last: the same where there are no others. */
 struct clip_times {
     int all, ends;
 };
@@ -48,10 +48,12 @@ static void add_channel(job &j, tinygltf::Animation &a, size_t node, const track
     tinygltf::AnimationSampler sampler;
     tinygltf::AnimationChannel channel;
     std::vector<float> values = t.values;
-    const bool ends = t.is_constant();
-    if (ends) values.assign(t.values.begin(), t.values.begin() + static_cast<std::ptrdiff_t>(t.width));
-    if (ends && times.all != times.ends)
-        values.insert(values.end(), t.values.begin(), t.values.begin() + static_cast<std::ptrdiff_t>(t.width));
+    const bool ends = times.all != times.ends && t.is_constant();
+    const auto one = t.values.begin() + static_cast<std::ptrdiff_t>(t.width);
+    if (ends) {
+        values.assign(t.values.begin(), one);
+        values.insert(values.end(), t.values.begin(), one);
+    }
     sampler.interpolation = "LINEAR";
     sampler.input = ends ? times.ends : times.all;
     sampler.output = add_floats(j, values, t.type);
