@@ -67,7 +67,7 @@ budget_of() { # PATH plain|lit still|alive CPU GPU
     set -- "$@" $(echo "$plan" | sed -n 's/^hair //p')
     cpu=$((cpu + ${6:-0} + ${7:-0})) gpu=$((gpu + ${8:-0}))
     # a cube of 64 x 64 with its levels, and a shadow map
-    if [ "$2" = lit ]; then gpu=$((gpu + 130944 + 2 * 1024 * 1024)); fi
+    if [ "$2" = lit ]; then gpu=$((gpu + 130944 + 2 * 512 * 512)); fi
     if [ "$5" = "$gpu" ]; then ok; else not_ok "$1 $2 $3 takes $5 bytes of the GPU, noh budget says $gpu"; fi
     if [ "$4" -le $((cpu + 1024)) ] && [ "$4" -ge $((cpu * 3 / 4)) ]; then ok; else not_ok "$1 $2 $3 takes $4 bytes, noh budget says $cpu"; fi
 }
@@ -114,16 +114,16 @@ END
     shown_pack=$build/web/$name/page.noh # as rounded for the wire form
     for shown in 'rest --light none --weight smile=0' 'smile --light none --weight smile=1' "clip --light none --clip $clip --time $time"; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size --camera full --pose rest ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in $paths; do compare "${path}_${shown%% *}"; done
     done
     for shown in 'room --light room' 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
         # shellcheck disable=SC2086
-        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size ${shown#* } >/dev/null || not_ok "noh render $shown"
+        "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size --camera full --pose rest ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in $paths; do [ ! -f "$out/${path}_${shown%% *}.png" ] || compare "${path}_${shown%% *}"; done
     done
     [ -f "$out/level.png" ] || return
-    "$build/noh" render "$shown_pack" --light none -o "$out/native.png" --size ${size}x$size --light none --lod 2 >/dev/null || not_ok 'noh render --lod'
+    "$build/noh" render "$shown_pack" --light none -o "$out/native.png" --size ${size}x$size --camera full --pose rest --lod 2 >/dev/null || not_ok 'noh render --lod'
     compare level
 }
 

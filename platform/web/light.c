@@ -131,7 +131,7 @@ void web_light_spots(void)
     const noh_ground ground = { &world, NULL, NULL };
     const int spots = web.light.shadow == WEB_SHADOW_SPOTS;
     const int contact = web.light.shadow == WEB_SHADOW_MAP && web.light.on_floor && web.light.ground.drawable.gl;
-    if (!is_lit() || (!spots && !contact)) return;
+    if (!is_lit() || (!spots && !contact) || web.view.eye[1] <= web.light.floor) return; /* none from below */
     for (uint32_t i = 0; i < web.figure_count; i++) {
         noh_blob blobs[NOH_BLOBS_MAX];
         const web_figure *f = &web.figures[i];

@@ -57,7 +57,7 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
 {
     const uint32_t kind = (uint32_t)(k - s->kinds);
     noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
-    const char *name;
+    const char *name = NULL;
     float best = 0.0f;
     *chosen = NOH_NONE;
     memset(tried, 0, sizeof tried);

@@ -257,8 +257,7 @@ static void poses_are_added_relative_to_a_clip(void **state)
 {
     static const char *const texts[] = {
         "clip b clip1 paused=yes start=0.1\n",
-        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\n"
-        "add c a b by=1 reference=clip0\n",
+        "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\nadd c a b by=1 reference=clip0\n",
         "clip a clip0 paused=yes\nclip b clip1 paused=yes start=0.1\nadd c a b by=1\n"
     };
     const set_fixture kept = fixture;
