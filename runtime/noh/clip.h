@@ -437,8 +437,7 @@ typedef struct noh_mask_view {
  * before the next is posed.)
  *
  * Threads: a controller and a scratch belong to one thread at a time. Several threads may pose controllers of one set,
- * each with its own scratch, if set->sample allows it. With a noh_clip_bank give each thread its own view
- *. */
+ * each with its own scratch, if set->sample allows it. With a noh_clip_bank give each thread its own view. */
 
 /* Working memory for posing. It holds no state between calls, so instances of a set that are posed one after another
  * share it. The exception: while an inertial transition begins it holds the captured poses. */
