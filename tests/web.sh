@@ -117,7 +117,9 @@ END
         "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size --camera full --pose rest ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in $paths; do compare "${path}_${shown%% *}"; done
     done
-    for shown in 'room --light room' 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
+    room='room --light room'
+    [ "$name" != puppet_levels ] || room="$room --shadow off" # as page.js draws a body
+    for shown in "$room" 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
         # shellcheck disable=SC2086
         "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size --camera full --pose rest ${shown#* } >/dev/null || not_ok "noh render $shown"
         for path in $paths; do [ ! -f "$out/${path}_${shown%% *}.png" ] || compare "${path}_${shown%% *}"; done

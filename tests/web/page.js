@@ -200,7 +200,7 @@ async function bodies(browser) {
 // ---- light ----
 
 async function lights(browser, forced) {
-    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&light=room${owns ? '' : '&floor=on'}`); // bodies stand on a floor
+    const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `path=${forced}&clip=none&light=room${owns ? '' : '&shadow=off'}`); // floors() has the floor of a body
     const budget = async (words) => {
         const m = await page.evaluate(() => window.noh.memory), path = await page.evaluate(() => window.noh.path);
         console.log(`# budget ${path} ${words} ${m.cpu} ${m.gpu}`);
