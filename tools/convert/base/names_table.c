@@ -101,18 +101,18 @@ const char *const names_table[] = {
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
-    "material eye eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas auge "
-    "augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy глаз глаза *目 *瞳 *眼 "
-    "*눈",
-    "material teeth tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive "
-    "gencives langue diente dientes encía encia lengua dente dentes gengiva língua lingua denti lingue "
-    "tand tanden tong zęby zeby język jezyk зуб зубы язык дёсны десны *歯 *舌 *牙 *齿 *이빨 *혀",
+    "material eye eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
+    "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
+    "material eye глаз глаза *目 *瞳 *眼 *눈",
+    "material teeth tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive",
+    "material teeth gencives langue diente dientes encía encia lengua dente dentes gengiva língua lingua denti lingue",
+    "material teeth tand tanden tong zęby zeby język jezyk зуб зубы язык дёсны десны *歯 *舌 *牙 *齿 *이빨 *혀",
     "material toon toon mtoon celshade",
-    "material beside-eye line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid "
-    "lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture "
-    "eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets "
-    "eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas "
-    "ciglia sopracciglia ресницы брови *睫 *眉 *影 *眼鏡 *眼镜 *안경 *눈썹",
+    "material beside-eye line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid",
+    "material beside-eye lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture",
+    "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",
+    "material beside-eye eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas",
+    "material beside-eye ciglia sopracciglia ресницы брови *睫 *眉 *影 *眼鏡 *眼镜 *안경 *눈썹",
     NULL
 };
 /* clang-format on */

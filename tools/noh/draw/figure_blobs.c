@@ -51,7 +51,6 @@ void figure_draw_blobs(figure *f)
     const noh_world floor_world = { .planes = &floor_plane, .plane_count = 1 };
     const noh_ground ground = { on_own_ground(f) ? &f->desc.body->world : &floor_world, NULL, NULL };
     if (!f->desc.light->has_blobs && !f->shows_floor && !on_own_ground(f)) return;
-    if (!on_own_ground(f) && f->seen.eye[1] <= f->floor) return; /* from below there is no floor */
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         noh_blob blobs[NOH_BLOBS_MAX];
         const uint32_t count = noh_actor_blobs(f->stage, f->actors[k], &f->blob_rigs[k], &ground, blobs);
