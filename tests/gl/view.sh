@@ -57,23 +57,23 @@ ROOT hips
   CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
   JOINT knee
   {
-    OFFSET 0 -80 0
+    OFFSET 0 -10 0
     CHANNELS 3 Zrotation Xrotation Yrotation
     End Site
     {
-      OFFSET 0 -80 0
+      OFFSET 0 -10 0
     }
   }
 }
 MOTION
 Frames: 2
 Frame Time: 0.0333333
-0 160 0 0 0 0 0 0 0
-1 160 0 5 0 0 30 0 0
+0 20 0 0 0 0 0 0 0
+1 20 0 5 0 0 30 0 0
 BVH
 noh view "$work/leg.bvh" --frames 2 --size 700x400
 expect 0 'a clip is converted and its bones are shown'
-check 'without a complaint' test ! -s "$work/err"
+check 'without a complaint, but of its size' sh -c '! grep -v "try --unit-cm" "$1"' - "$work/err"
 # The leg runs away and the camera follows, unless it is fixed: then only the times in the panels change.
 sed 's/^Frames: .*/Frames: 3/; s/^Frame Time: .*/Frame Time: 0.5/; /^Frame Time/q' "$work/leg.bvh" >"$work/run.bvh"
 printf '0 0 0 0 0 0 0 0 0\n0 0 100 0 0 0 0 0 0\n100 0 0 0 0 0 0 0 0\n' >>"$work/run.bvh"
