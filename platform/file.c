@@ -71,3 +71,8 @@ uint64_t noh_cpu_clock_ns(void)
 {
     return read_clock(CLOCK_PROCESS_CPUTIME_ID);
 }
+
+uint64_t noh_thread_clock_ns(void)
+{
+    return read_clock(CLOCK_THREAD_CPUTIME_ID);
+}

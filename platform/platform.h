@@ -3,7 +3,7 @@
  *   noh_platform_find      a platform by name: "egl", "angle", "osmesa", "glfw", "null"
  *   noh_platform_names     all names, for messages
  *   noh_file_map / noh_file_unmap / noh_file_write
- *   noh_clock_ns / noh_cpu_clock_ns
+ *   noh_clock_ns / noh_cpu_clock_ns / noh_thread_clock_ns
  *
  * A game replaces this folder with its own: start from template.c, with README.md as the guide. It may use libc; the
  * library in runtime/ never calls it. GL libraries are opened when a context is created, so a program that never draws
@@ -87,5 +87,9 @@ uint64_t noh_clock_ns(void);
 
 /* Nanoseconds of processor time used by this process, summed over all threads. */
 uint64_t noh_cpu_clock_ns(void);
+
+/* Nanoseconds of processor time used by the calling thread. Linux reads it exactly; under a limit of processor time
+ * (`ulimit -t`) it counts a process's time in ticks of 1 to 10 ms. */
+uint64_t noh_thread_clock_ns(void);
 
 #endif

@@ -55,6 +55,11 @@ uint64_t noh_cpu_clock_ns(void)
     return noh_clock_ns();
 }
 
+uint64_t noh_thread_clock_ns(void)
+{
+    return noh_clock_ns();
+}
+
 #define HEADER 64u /* of a block, with its size */
 
 void windows_free(void *block)

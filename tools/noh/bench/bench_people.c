@@ -4,11 +4,9 @@
  * The CPU's part is a step of the agents, their walkers, a step of the stage, its frame and its draw, on a GL that does
  * nothing. There are 60 frames a second, so that every other frame has a step of the agents: shares are of two
  * frames. The agents are dense1000, one on each square metre, and open10000, one on four. */
-#define _POSIX_C_SOURCE 200809L
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "bench_job.h"
 #include "cli/message.h"
@@ -21,6 +19,7 @@
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
+#include "platform.h"
 #include "crowd/crowd_scene.h"
 #include "crowd/place_people.h"
 
@@ -48,13 +47,6 @@ typedef struct people {
     double agents_ns;     /* so far */
     double *parts[PARTS]; /* [STEPS_MAX] nanoseconds of a frame */
 } people;
-
-static double cpu_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
 
 /* ---- opening ---- */
 
@@ -147,22 +139,22 @@ static void close_people(people *p)
 static void run_step(people *p, uint32_t at)
 {
     const uint32_t ticks = NOH_CROWD_STEP_TICKS / FRAMES;
-    double walkers = 0.0, agents, start;
+    double walkers = 0.0;
     (void)crowd_scene_step(p->scene);
-    agents = crowd_scene_cpu_ns(p->scene) - p->agents_ns; /* without what measures the scene */
-    start = cpu_ns();
+    const double agents = crowd_scene_cpu_ns(p->scene) - p->agents_ns; /* without what measures the scene */
+    const uint64_t start = noh_thread_clock_ns();
     for (uint32_t i = 0; i < FRAMES; i++) {
-        const double before = cpu_ns();
+        const uint64_t before = noh_thread_clock_ns();
         (void)noh_walkers_step(p->walkers, crowd_scene_crowd(p->scene), p->stage, &p->who.feet.ground, ticks, NULL);
         (void)noh_walkers_near(p->walkers, p->stage, p->view.eye);
-        walkers += cpu_ns() - before;
+        walkers += (double)(noh_thread_clock_ns() - before);
         (void)noh_stage_frame(p->stage, ticks, &p->view, NULL, NULL, NULL);
         (void)noh_stage_draw(p->stage, NOH_PASS_COLOR, 0, NULL, NULL); /* a frame with a view was before */
     }
     p->agents_ns += agents;
     p->parts[AGENTS][at] = agents;
     p->parts[WALKERS][at] = walkers;
-    p->parts[FRAME][at] = agents + cpu_ns() - start;
+    p->parts[FRAME][at] = agents + (double)(noh_thread_clock_ns() - start);
 }
 
 static void add_row(people *p, const char *scene, const char *part, const double *cost, uint32_t steps)

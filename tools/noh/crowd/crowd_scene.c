@@ -1,16 +1,15 @@
 /* crowd_scene.c: the starts and goals of agents. */
-#define _POSIX_C_SOURCE 200809L
 #include "crowd_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "noh/base.h"
 #include "noh/crowd.h"
 #include "noh/low_core.h"
 #include "cli/message.h"
+#include "platform.h"
 #include "convert/base/nearest.h"
 #include "crowd_measure.h"
 
@@ -423,13 +422,6 @@ void crowd_scene_close(crowd_scene *s)
 
 /* ---- steps ---- */
 
-static double cpu_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 static void count_arrived(crowd_scene *s)
 {
     uint32_t count = 0;
@@ -457,9 +449,9 @@ int crowd_scene_step(crowd_scene *s)
     look_ahead(s);
     s->before = s->now;
     s->now = agents;
-    const double start = cpu_ns();
+    const uint64_t start = noh_thread_clock_ns();
     (void)noh_crowd_step(s->crowd, NOH_CROWD_STEP_TICKS);
-    s->cpu_ns += cpu_ns() - start;
+    s->cpu_ns += (double)(noh_thread_clock_ns() - start);
     s->step++;
     for (uint32_t i = 0; i < s->agents; i++) (void)noh_crowd_agent_stepped(s->crowd, i, &s->now[i]);
     crowd_meter_add(&s->meter, s->before, s->now, (const float(*)[2])s->ahead, &s->measures);

@@ -1,15 +1,14 @@
-#define _POSIX_C_SOURCE 200809L
 #include "place_life.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "noh/base.h"
 #include "noh/crowd.h"
 #include "noh/low_core.h"
 #include "cli/message.h"
+#include "platform.h"
 #include "place_people.h"
 
 #define STEPS_PER_S 30u
@@ -293,13 +292,6 @@ static void look_ahead(place_life *l, uint32_t index)
     (void)noh_crowd_field_at(l->crowd, h->goal, a->position, l->ahead[index]);
 }
 
-static double cpu_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 static void count_arrived(place_life *l)
 {
     const double now = (double)l->step / (double)STEPS_PER_S;
@@ -315,10 +307,10 @@ void place_life_step(place_life *l)
     for (uint32_t i = 0; i < l->agents; i++) look_ahead(l, i);
     l->before = l->now;
     l->now = agents;
-    const double start = cpu_ns();
+    const uint64_t start = noh_thread_clock_ns();
     (void)noh_crowd_step(l->crowd, NOH_CROWD_STEP_TICKS);
     if (l->smart) noh_smart_step(l->smart, NOH_CROWD_STEP_TICKS);
-    l->cpu_ns += cpu_ns() - start;
+    l->cpu_ns += (double)(noh_thread_clock_ns() - start);
     l->step++;
     for (uint32_t i = 0; i < l->agents; i++) (void)noh_crowd_agent_stepped(l->crowd, i, &l->now[i]);
     crowd_meter_add(&l->meter, l->before, l->now, (const float(*)[2])l->ahead, &l->measures);

@@ -1,12 +1,10 @@
 /* drop_scene.c: ragdolls thrown at random, each from its own height over one floor. Dolls do not meet each other. */
-#define _POSIX_C_SOURCE 200809L
 
 #include "drop_scene.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 #include "noh/base.h"
 #include "noh/body.h"
@@ -15,6 +13,7 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "cli/message.h"
+#include "platform.h"
 
 #define FRICTION 0.6f
 #define HEIGHT \
@@ -156,13 +155,6 @@ void drop_scene_close(drop_scene *s)
 
 /* ---- steps ---- */
 
-static double cpu_ns(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e9 * (double)t.tv_sec + (double)t.tv_nsec;
-}
-
 static void keep_larger(float *most, float value)
 {
     *most = value > *most ? value : *most;
@@ -183,9 +175,9 @@ static void measure(drop_scene *s)
 void drop_scene_step(drop_scene *s)
 {
     const uint32_t awake = s->dolls - drop_scene_asleep(s);
-    const double start = cpu_ns();
+    const uint64_t start = noh_thread_clock_ns();
     (void)noh_ragdolls_step(s->set, &s->world, NOH_RAGDOLL_STEP_TICKS);
-    s->cpu_ns += cpu_ns() - start;
+    s->cpu_ns += (double)(noh_thread_clock_ns() - start);
     s->step++;
     measure(s);
     s->awake_steps += awake;
