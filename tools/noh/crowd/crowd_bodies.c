@@ -259,15 +259,19 @@ void crowd_frame(crowd *c, uint32_t ticks, const noh_stage_view *view)
     c->seen = *view;
 }
 
+/* Many bodies at once: a draw has a fixed cost. */
 static void draw_spots(crowd *c)
 {
     const noh_plane plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
     const noh_world world = { .planes = &plane, .plane_count = 1 };
     const noh_ground ground = { &world, NULL, NULL };
+    noh_blob blobs[16u * NOH_BLOBS_MAX];
+    uint32_t count = 0;
     for (uint32_t i = 0; i < c->options.count; i++) {
-        noh_blob blobs[NOH_BLOBS_MAX];
-        noh_stage_blob_draw(&c->blob, &c->seen, blobs,
-                            noh_actor_blobs(c->stage, c->actors[i], &c->rig, &ground, blobs));
+        count += noh_actor_blobs(c->stage, c->actors[i], &c->rig, &ground, blobs + count);
+        if (count + NOH_BLOBS_MAX <= sizeof blobs / sizeof blobs[0] && i + 1u < c->options.count) continue;
+        noh_stage_blob_draw(&c->blob, &c->seen, blobs, count);
+        count = 0;
     }
 }
 

@@ -236,8 +236,8 @@ void figure_want_fall(figure *f);
  * begin with get_up. */
 int figure_fall(figure *f, const float impulse[3], double seconds);
 
-/* The world bounds of the part of the pose that a camera frames, by the coarsest levels, whichever is shown: pictures of
- * all levels can be compared, also with a stripped pack. A face is what targets move, with room for its hair. */
+/* The world bounds of the part of the pose that a camera frames, by the coarsest levels, whichever is shown: pictures
+ * of all levels can be compared, also with a stripped pack. A face is what targets move, with room for its hair. */
 bounds figure_bounds(const figure *f, view_frame frame);
 /* 1 where a face is most of it. */
 int figure_is_head(const figure *f);
