@@ -484,6 +484,29 @@ static void takes_have_their_span(void **state)
     model_free(m);
 }
 
+/* What stands still in a take of two frames has both. */
+static void a_take_of_two_frames_is_whole(void **state)
+{
+    model *m;
+    (void)state;
+    begin();
+    add_triangle(1, "");
+    add_object("Model", 2, "t", "Mesh", "", "");
+    add_take(10, "go", "1924423250");
+    add("\tAnimationLayer: 11, \"AnimLayer::base\", \"\" {\n\t}\n");
+    add_object("AnimationCurveNode", 12, "T", "", P1("d|X", "0") P1("d|Y", "0") P1("d|Z", "0"), "");
+    add_curve(13, "0," SECOND, "4,4", "4", "0,0,0,0", "");
+    links(OO(2, 0) OO(1, 2) OO(11, 10) OO(12, 11) OP(12, 2, "Lcl Translation") OP(13, 12, "d|X"));
+    m = load();
+    assert_int_equal(m->warning_count, 0);
+    assert_int_equal(m->clip_count, 1);
+    assert_near((double)m->clips[0].duration_s, 1.0 / 24.0);
+    assert_int_equal(m->clips[0].channels[0].key_count, 2);
+    assert_near((double)m->clips[0].channels[0].values[0], 4.0);
+    assert_near((double)m->clips[0].channels[0].values[3], 4.0);
+    model_free(m);
+}
+
 /* ---- shapes ---- */
 
 /* full: percentages of FullWeights; two: whether there is a second shape. */
@@ -700,6 +723,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weighted_tangents),
     cmocka_unit_test(layers_are_blended),
     cmocka_unit_test(takes_have_their_span),
+    cmocka_unit_test(a_take_of_two_frames_is_whole),
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
     cmocka_unit_test(losses_are_warned_of),

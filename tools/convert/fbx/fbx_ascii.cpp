@@ -23,7 +23,7 @@ struct ascii_reader {
     bool skip_comma();
     std::string token();
     bool read_number(value &out);
-    bool read_no_number(value &out);
+    bool skip_no_number();
     std::string read_quoted();
     value read_array();
     value read_value();
@@ -96,6 +96,16 @@ std::string ascii_reader::token()
     return bytes.substr(from, at - from);
 }
 
+static const double no_number = std::numeric_limits<double>::quiet_NaN();
+
+/* A word in place of a number, such as snan, or what is left of one; false: there is none. */
+bool ascii_reader::skip_no_number()
+{
+    const size_t from = at;
+    while (is_word(now()) || is_in(now(), "()#")) ++at;
+    return at > from;
+}
+
 bool ascii_reader::read_number(value &out)
 {
     const char *from = bytes.c_str() + at;
@@ -110,8 +120,10 @@ bool ascii_reader::read_number(value &out)
             end = real_end;
         }
         if (*end == '#' || !std::isfinite(real)) { /* Windows: 1.#IND, 1.#INF; others: nan(ind), infty */
-            while (is_word(*end) || is_in(*end, "()#")) ++end;
-            out = std::numeric_limits<double>::quiet_NaN();
+            at = static_cast<size_t>(end - bytes.c_str());
+            (void)skip_no_number();
+            out = no_number;
+            return true;
         }
     }
     at = static_cast<size_t>(end - bytes.c_str());
@@ -133,21 +145,16 @@ std::string ascii_reader::read_quoted()
     return out;
 }
 
-/* A word in place of a number, such as snan. */
-bool ascii_reader::read_no_number(value &out)
-{
-    const size_t from = at;
-    while (is_word(now()) || is_in(now(), "()#")) ++at;
-    out = std::numeric_limits<double>::quiet_NaN();
-    return at > from;
-}
-
 value ascii_reader::read_array()
 {
     numbers out;
     value one;
     skip_blank();
-    while (at < bytes.size() && (read_number(one) || read_no_number(one))) {
+    while (at < bytes.size()) {
+        if (!read_number(one)) {
+            if (!skip_no_number()) break;
+            one = no_number;
+        }
         const int64_t *whole = std::get_if<int64_t>(&one);
         out.values.push_back(whole ? static_cast<double>(*whole) : std::get<double>(one));
         out.whole = out.whole && whole;

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <iterator>
 
+#include "noh/base.h"
+
 namespace fbx
 {
-
-static const double value_max = 1e12; /* of a transform; gltf/ reads no larger one */
 
 static const double shear_max = 1e-5; /* of the longest axis */
 
@@ -57,7 +57,8 @@ static bool is_usable(const parts &p)
 {
     const double all[] = { p.translation[0], p.translation[1], p.translation[2], p.scale[0],   p.scale[1],
                            p.scale[2],       p.rotation.x,     p.rotation.y,     p.rotation.z, p.rotation.w };
-    return std::all_of(std::begin(all), std::end(all), [](double v) { return std::fabs(v) < value_max; });
+    return std::all_of(std::begin(all), std::end(all),
+                       [](double v) { return std::fabs(v) <= static_cast<double>(NOH_NUMBER_MAX); });
 }
 
 parts parts_of(job &j, const std::vector<placed> &pose, size_t model)

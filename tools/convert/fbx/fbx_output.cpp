@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "noh/base.h"
+
 namespace fbx
 {
-
-static const float value_max = 1e12f; /* gltf/ reads no larger one */
 
 int add_view(job &j, const void *bytes, size_t size)
 {
@@ -38,7 +38,7 @@ static int add_accessor(job &j, int view, int component, int type, size_t values
 template <class T> static void make_finite(job &j, std::vector<T> &values)
 {
     for (T &v : values) {
-        if (std::fabs(v) <= static_cast<T>(value_max)) continue;
+        if (std::fabs(v) <= static_cast<T>(NOH_NUMBER_MAX)) continue;
         v = 0;
         j.in.warn("the file", " has numbers that are not finite or too large, which became 0: export it again");
     }
@@ -51,11 +51,16 @@ std::vector<double> finite_list(job &j, const node &parent, const char *child)
     return values;
 }
 
+static int add_finite(job &j, const std::vector<float> &values, int type)
+{
+    return add_accessor(j, add_view(j, values.data(), values.size() * sizeof(float)), TINYGLTF_COMPONENT_TYPE_FLOAT,
+                        type, values.size());
+}
+
 int add_floats(job &j, std::vector<float> values, int type)
 {
     make_finite(j, values);
-    return add_accessor(j, add_view(j, values.data(), values.size() * sizeof(float)), TINYGLTF_COMPONENT_TYPE_FLOAT,
-                        type, values.size());
+    return add_finite(j, values, type);
 }
 
 static void add_bounds(tinygltf::Accessor &a, const std::vector<float> &values, bool with_zero)
@@ -75,7 +80,7 @@ static void add_bounds(tinygltf::Accessor &a, const std::vector<float> &values, 
 int add_positions(job &j, std::vector<float> values)
 {
     make_finite(j, values);
-    const int index = add_floats(j, values, TINYGLTF_TYPE_VEC3);
+    const int index = add_finite(j, values, TINYGLTF_TYPE_VEC3);
     add_bounds(j.out.accessors.back(), values, false);
     return index;
 }
