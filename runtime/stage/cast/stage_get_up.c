@@ -50,37 +50,50 @@ static noh_result bodies_of(noh_stage *s, noh_stage_kind *k, const noh_stage_act
     return NOH_OK;
 }
 
-/* The clip for getting up whose first pose is most like the ragdoll, and its bodies then; NOH_NONE: no clip was asked
- * for, and the bodies are posed by the clips that play. */
+/* The clip whose first pose is most like the ragdoll, and its bodies then. */
+typedef struct likeness {
+    uint32_t clip; /* NOH_NONE: none was compared */
+    float like;
+    noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
+} likeness;
+
+static noh_result compare_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, const noh_stage_body *b,
+                               uint32_t clip, likeness *best, noh_error *error)
+{
+    noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
+    memset(tried, 0, sizeof tried);
+    const noh_result result = bodies_of(s, k, a, b, clip, tried, error);
+    if (result != NOH_OK) return result;
+    const float like = noh_ragdoll_similarity(tried, b->bodies[0]);
+    if (best->clip != NOH_NONE && !(like > best->like)) return NOH_OK;
+    best->clip = clip;
+    best->like = like;
+    memcpy(best->bodies, tried, sizeof tried);
+    return NOH_OK;
+}
+
+/* Among the named clips, or those that begin with NOH_GET_UP_CLIPS. Without any the bodies are posed by the clips that
+ * play. */
 static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_actor *a, const noh_stage_body *b,
-                              const noh_get_up *how, uint32_t *chosen, noh_ragdoll_pose *bodies, noh_error *error)
+                              const noh_get_up *how, likeness *best, noh_error *error)
 {
     const uint32_t kind = (uint32_t)(k - s->kinds);
-    noh_ragdoll_pose tried[NOH_RAGDOLL_BODIES_MAX];
-    const char *name = NULL;
-    float best = 0.0f;
-    *chosen = NOH_NONE;
-    memset(tried, 0, sizeof tried);
-    for (uint32_t i = 0; how->clips ? i < how->clip_count : (name = noh_stage_name(s, kind, NOH_NAME_CLIP, i)) != NULL;
-         i++) {
-        if (how->clips)
-            name = how->clips[i];
-        else if (!noh_name_begins(name, NOH_GET_UP_CLIPS))
-            continue;
-        const uint32_t clip = noh_stage_find(s, kind, NOH_NAME_CLIP, name);
+    const char *name;
+    noh_result result = NOH_OK;
+    memset(best, 0, sizeof *best);
+    best->clip = NOH_NONE;
+    for (uint32_t i = 0; how->clips && i < how->clip_count && result == NOH_OK; i++) {
+        const uint32_t clip = noh_stage_find(s, kind, NOH_NAME_CLIP, how->clips[i]);
         if (clip == NOH_NONE)
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name to get up by", i, 0);
-        const noh_result result = bodies_of(s, k, a, b, clip, tried, error);
-        if (result != NOH_OK) return result;
-        const float like = noh_ragdoll_similarity(tried, b->bodies[0]);
-        if (*chosen != NOH_NONE && !(like > best)) continue;
-        best = like;
-        *chosen = clip;
-        memcpy(bodies, tried, sizeof tried);
+        result = compare_clip(s, k, a, b, clip, best, error);
     }
-    if (*chosen != NOH_NONE) return NOH_OK;
-    memset(bodies, 0, sizeof tried);
-    return bodies_of(s, k, a, b, NOH_NONE, bodies, error);
+    for (uint32_t i = 0; !how->clips && result == NOH_OK; i++) {
+        name = noh_stage_name(s, kind, NOH_NAME_CLIP, i);
+        if (!name) break;
+        if (noh_name_begins(name, NOH_GET_UP_CLIPS)) result = compare_clip(s, k, a, b, i, best, error);
+    }
+    return result == NOH_OK && best->clip == NOH_NONE ? bodies_of(s, k, a, b, NOH_NONE, best->bodies, error) : result;
 }
 
 /* ---- where it stands ---- */
@@ -275,29 +288,29 @@ static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_bo
 noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *ticks, noh_error *error)
 {
     static const noh_get_up plain;
-    noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX];
+    likeness best;
     noh_stage_actor *a;
     noh_stage_kind *k;
     noh_stage_body *b = NULL;
-    uint32_t clip, lasts;
+    uint32_t lasts;
     noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     if (!how) how = &plain;
     if (ticks) *ticks = 0;
     if (!b || b->state == NOH_BODY_STANDS) return result;
     if (b->dead) return noh_fail(error, NOH_ERR_ARG, "the actor is dead: noh_actor_revive lets it get up", 0, 0);
     const uint32_t blend = lasts = how->blend_ticks ? how->blend_ticks : BLEND_TICKS;
-    result = choose_clip(stage, k, a, b, how, &clip, bodies, error);
-    if (result == NOH_OK && clip != NOH_NONE) {
+    result = choose_clip(stage, k, a, b, how, &best, error);
+    if (result == NOH_OK && best.clip != NOH_NONE) {
         const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
         const noh_clip_set *set;
-        result = noh_stage_leap_to(stage, actor, how->layer, clip, blend, shared->fit.joints, shared->fit.body_count,
-                                   error);
-        if (noh_actor_controller(stage, actor, &set) && set->clips[clip].duration_ticks > lasts) {
-            lasts = set->clips[clip].duration_ticks;
+        result = noh_stage_leap_to(stage, actor, how->layer, best.clip, blend, shared->fit.joints,
+                                   shared->fit.body_count, error);
+        if (noh_actor_controller(stage, actor, &set) && set->clips[best.clip].duration_ticks > lasts) {
+            lasts = set->clips[best.clip].duration_ticks;
         }
     }
     if (result != NOH_OK) return result;
-    if (noh_stage_falls_free(b)) stand_under(k, a, b, bodies);
+    if (noh_stage_falls_free(b)) stand_under(k, a, b, best.bodies);
     leave_doll(stage, k, b, blend);
     if (ticks) *ticks = lasts;
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
