@@ -81,7 +81,7 @@ static const file_kind kinds[] = {
 
 #define KIND_COUNT (sizeof kinds / sizeof kinds[0])
 
-static int has_ending(const char *path, const char *ending)
+int file_has_ending(const char *path, const char *ending)
 {
     const size_t length = strlen(path), tail = strlen(ending);
     if (length < tail) return 0;
@@ -112,7 +112,7 @@ const file_kind *file_kind_of(const char *path)
     int is_there;
     const file_kind *began = by_beginning(path, &is_there), *ends = NULL;
     for (size_t i = 0; i < KIND_COUNT && !ends; i++) {
-        if (kinds[i].ending && has_ending(path, kinds[i].ending)) ends = &kinds[i];
+        if (kinds[i].ending && file_has_ending(path, kinds[i].ending)) ends = &kinds[i];
     }
     if (began && began->reader != READER_NONE) return began;
     if (!is_there && ends && ends->reader == READER_NONE) return NULL;

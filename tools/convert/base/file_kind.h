@@ -28,6 +28,9 @@ typedef struct file_kind {
 /* By the first bytes, else by the ending. NULL: of no kind, or a missing file that no reader would take. */
 const file_kind *file_kind_of(const char *path);
 
+/* ending: in small letters, such as ".png"; the path may have capitals. */
+int file_has_ending(const char *path, const char *ending);
+
 /* 1 where noh build makes a pack of it. */
 int file_kind_is_built(const file_kind *kind);
 

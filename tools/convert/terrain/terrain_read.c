@@ -4,16 +4,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/base/file_kind.h"
 #include "convert/base/image_file.h"
 #include "convert/model/model.h"
 
 #define POINTS 257u
-
-static int has_ending(const char *path, const char *ending)
-{
-    const size_t length = strlen(path), count = strlen(ending);
-    return length > count && strcmp(path + length - count, ending) == 0;
-}
 
 static int check_sides(uint32_t width, uint32_t depth, model_error *error)
 {
@@ -233,9 +228,9 @@ int terrain_read(const char *path, const terrain_options *options, terrain *out,
 {
     int failed;
     memset(out, 0, sizeof *out);
-    if (has_ending(path, ".png") || has_ending(path, ".PNG")) {
+    if (file_has_ending(path, ".png")) {
         failed = read_picture(path, options, out, error);
-    } else if (has_ending(path, ".glb") || has_ending(path, ".gltf")) {
+    } else if (file_has_ending(path, ".glb") || file_has_ending(path, ".gltf")) {
         failed = read_model(path, options, out, error);
     } else {
         failed = model_fail(error, "", "a terrain must be a .png, .glb or .gltf file");

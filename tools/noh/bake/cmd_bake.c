@@ -9,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
+#include "convert/base/file_kind.h"
 #include "convert/base/image_file.h"
 #include "convert/normal/normal_bake.h"
 #include "convert/normal/normal_height.h"
@@ -22,12 +23,6 @@ typedef struct bake_args {
     double depth, size, reach_mm;
     int tiles, as_json, quiet;
 } bake_args;
-
-static int has_ending(const char *path, const char *ending)
-{
-    const size_t length = strlen(path), own = strlen(ending);
-    return length >= own && strcmp(path + length - own, ending) == 0;
-}
 
 static void report(const bake_args *a, uint32_t width, uint32_t height, const normal_map *map)
 {
@@ -80,8 +75,8 @@ static int read_model(const char *path, model **out)
 {
     const obj_options obj = { 0.0, NULL };
     model_error error = { "", "" };
-    const int failed = has_ending(path, ".obj") ? obj_read(path, &obj, out, &error)
-                                                : model_read_gltf(path, out, &error);
+    const int failed = file_has_ending(path, ".obj") ? obj_read(path, &obj, out, &error)
+                                                     : model_read_gltf(path, out, &error);
     return failed
                ? tool_fail(path, "%s%s%s%s", error.what, *error.where ? " (" : "", error.where, *error.where ? ")" : "")
                : 0;
@@ -113,7 +108,7 @@ static int run(void *args)
 {
     const bake_args *a = args;
     if (a->as_json && report_stream(a->output) != stdout) return tool_usage("--json and -o both write to stdout");
-    if (has_ending(a->file, ".png") == (a->from != NULL)) {
+    if (file_has_ending(a->file, ".png") == (a->from != NULL)) {
         return tool_usage("noh bake needs a height map (.png), or a model with --from FINE");
     }
     if (!a->from) {

@@ -3,12 +3,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-
-static int ends_in(const char *path, const char *end)
-{
-    const size_t length = strlen(path), size = strlen(end);
-    return length >= size && strcmp(path + length - size, end) == 0;
-}
+#include "convert/base/file_kind.h"
 
 static int open_pack(ground_file *file, const char *path)
 {
@@ -26,7 +21,7 @@ int ground_file_open(ground_file *file, const char *path)
     const terrain_options options = { 0.0, 0.0, 0 };
     model_error error = { "", "" };
     memset(file, 0, sizeof *file);
-    if (ends_in(path, ".noh") || ends_in(path, ".nohz")) return open_pack(file, path);
+    if (file_has_ending(path, ".noh") || file_has_ending(path, ".nohz")) return open_pack(file, path);
     if (terrain_read(path, &options, &file->land, &error)) {
         return tool_fail(path, *error.where ? "%s (%s)" : "%s", error.what, error.where);
     }

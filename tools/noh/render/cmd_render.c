@@ -11,6 +11,7 @@
 #include "cli/options.h"
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
+#include "convert/base/input_file.h"
 
 typedef struct render_args {
     const char *pack, *output, *pose, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind,
@@ -51,14 +52,15 @@ static int parse_wind(const char *text, float wind[3])
 }
 
 /* The picture's name without -o: the pack's, in the working folder. */
-static void name_output(render_args *a)
+static int name_output(render_args *a)
 {
-    const char *name = strrchr(a->pack, '/'), *dot;
-    name = name ? name + 1 : a->pack;
-    dot = strrchr(name, '.');
-    if (a->output) return;
-    snprintf(a->own_output, sizeof a->own_output, "%.*s.png", (int)(dot ? dot - name : 200), name);
+    char *stem = a->output ? NULL : input_stem(a->pack);
+    if (a->output) return 0;
+    if (!stem) return tool_fail(a->pack, "out of memory");
+    snprintf(a->own_output, sizeof a->own_output, "%s.png", stem);
+    free(stem);
     a->output = a->own_output;
+    return 0;
 }
 
 /* How it stands that no clip poses. */
@@ -198,8 +200,8 @@ static int run(void *args)
     if (!status) {
         status = pack_file_open(&file, a->pack);
         if (!status) {
-            name_output(a);
-            status = choose_pose(a, &file.pack);
+            status = name_output(a);
+            if (!status) status = choose_pose(a, &file.pack);
             if (!status) status = render(a, &file);
             pack_file_close(&file);
         }
