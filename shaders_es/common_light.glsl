@@ -24,8 +24,8 @@ float noh_open()
 }
 
 /* The share of light that leaves a hollow that lets this share in, by channel: light that is reflected on the way out
- * takes the colour of the walls (Jimenez et al.: Practical realtime strategies for accurate indirect occlusion, SIGGRAPH
- * 2016). Teeth stand among red walls: as if their albedo were at most 0.6. The deepest mouth is dark red. */
+ * takes the colour of the walls (Jimenez et al.: Practical realtime strategies for accurate indirect occlusion,
+ * SIGGRAPH 2016). Teeth stand among red walls: as if their albedo were at most 0.6. The deepest mouth is dark red. */
 vec3 noh_bounced(vec3 albedo, float open)
 {
     albedo = min(albedo, vec3(0.6));

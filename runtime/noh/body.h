@@ -342,8 +342,8 @@ noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *err
  *   noh_ik_look_step    turn towards a target, within a cone, at a limited speed
  *   noh_ik_share        a fraction of a rotation, to share a turn among spine, neck and head
  *
- * For chains of more bones see noh_ik_chain_solve. All positions and directions of a call are in the same space, which may be
- * any; rotations are applied in that space, on the left of a joint's rotation.
+ * For chains of more bones see noh_ik_chain_solve. All positions and directions of a call are in the same space, which
+ * may be any; rotations are applied in that space, on the left of a joint's rotation.
  *
  * No solution uses an arc cosine: bends come from lengths, and rotations from sums of vectors, so targets out of reach,
  * at the root or in line with the pole give a pose and never NaN.

@@ -57,8 +57,8 @@ extern "C" {
  *          and modeling, 1993 (speed by slope)
  * Threads: a crowd belongs to one thread at a time; only noh_crowd_job may be called from several at once. */
 
-/* The agent steers only by the rules of low_stage.h: neighbours and obstacles repel it. FLOCK: it also moves along with its
- * neighbours. */
+/* The agent steers only by the rules of low_stage.h: neighbours and obstacles repel it. FLOCK: it also moves along with
+ * its neighbours. */
 #define NOH_CROWD_FORCES 2u
 #define NOH_CROWD_FLOCK 6u
 
@@ -206,9 +206,9 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
  * and below a quarter of the walk's speed it takes shorter steps: the walk blended with idle.
  *
  * The kind's clips must not move the actor themselves: set root_axes to NOH_ROOT_X | NOH_ROOT_Z (the heading of a root
- * stays in the pose), root_up to 1 and root_by_game to 1. Init measures how far the root moves in one loop; its sway about
- * the straight line is added to the actor's place. The layer is a base layer whose tracks belong to the walkers; play
- * other clips on layers above it.
+ * stays in the pose), root_up to 1 and root_by_game to 1. Init measures how far the root moves in one loop; its sway
+ * about the straight line is added to the actor's place. The layer is a base layer whose tracks belong to the walkers;
+ * play other clips on layers above it.
  *
  * Walkers are one block without pointers. A copy of it, of the crowd and of the stage's state continues with the same
  * bits.

@@ -21,8 +21,8 @@ extern "C" {
  * that any target moves. For each target, in index order, and each of its delta texels:
  *   layer += weight * delta
  * with one product and one sum per value, never fused. noh_morph_accumulate uses the instructions that the library was
- * compiled for (AVX2, SSE2, NEON, else scalar); with gcc and clang on x86 the processor is queried for AVX2. All give the
- * scalar bits.
+ * compiled for (AVX2, SSE2, NEON, else scalar); with gcc and clang on x86 the processor is queried for AVX2. All give
+ * the scalar bits.
  *
  * source  Microsoft, SparseMorphTargets (DirectX SDK): additive blending of sparse rectangles into three render
  *         targets. There the accumulator starts as the mesh; here it starts at 0, so that half floats round the small

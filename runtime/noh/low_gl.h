@@ -589,7 +589,8 @@ noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const floa
 noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error);
 
 /* Upload the range of rows changed since the last update, in one call.
- * state   the table in gl_device.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row changed
+ * state   the table in gl_device.h: the texture of unit 0, or the uniform buffer, is 0. No state is changed if no row
+ *         changed
  * errors  none: init checked everything */
 void noh_gl_skin_update(noh_gl_skin *skin);
 

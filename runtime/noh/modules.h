@@ -257,8 +257,8 @@ typedef struct noh_get_up {
 } noh_get_up;
 
 /* Make an actor get up and free its ragdoll. No effect if it stands. If there is no clip for getting up, it blends back
- * to the clips that play. Joints without a body, such as fingers, blend only with noh_kind_desc.inertia; without it they
- * jump.
+ * to the clips that play. Joints without a body, such as fingers, blend only with noh_kind_desc.inertia; without it
+ * they jump.
  * how      NULL: zeros
  * ticks    until it is up; may be NULL
  * errors   also NOT_FOUND the kind has no such clip (where: which); ARG it is dead, or the layer; LIMIT as

@@ -1,5 +1,5 @@
-/* bounds_internal.h: bounds of a character from its joints, for culling and for the distance used by LOD. When morph weights are
- * known (stage_bounds.c), the radii are for weight 0 and targets add their boxes.
+/* bounds_internal.h: bounds of a character from its joints, for culling and for the distance used by LOD. When morph
+ * weights are known (stage_bounds.c), the radii are for weight 0 and targets add their boxes.
  *
  *   noh_joint_bounds          a box and a sphere around a posed skeleton
  *   noh_skeleton_radius       a radius that no pose exceeds, for use before the first pose

@@ -1,4 +1,5 @@
-/* test_rest_fit.c: a VRM animation played by a body whose joints rest otherwise, and one joint that the animation lacks. */
+/* test_rest_fit.c: a VRM animation played by a body whose joints rest otherwise, and one joint that the animation
+ * lacks. */
 #include "support/support.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
-/* Tests of halved clips (noh_clip_desc.sample_rate_needed): which frames are decoded, that these have the bits that they
- * have in the whole clip, and what lies between them.
+/* Tests of halved clips (noh_clip_desc.sample_rate_needed): which frames are decoded, that these have the bits that
+ * they have in the whole clip, and what lies between them.
  * cross: slow, encodes clips */
 #include "support/support.h"
 

@@ -18,8 +18,9 @@ int joint_order_sets(raw_set **sets, uint32_t set_count, model *m);
 
 /* LOD levels of a skeleton: all joints, then about 60, 35, 20 and 10 % of them, each cut where the extent falls most
  * near that share; never between joints of one class, and never without all joints that have no parent. Where no such
- * cut exists the level is left out, so a skeleton in another order has fewer. shapes  counts[NOH_LOD_LEVELS_MAX]
- * returns how many levels; 0 when out of memory */
+ * cut exists the level is left out, so a skeleton in another order has fewer.
+ * shapes   counts[NOH_LOD_LEVELS_MAX]
+ * returns  how many levels; 0 when out of memory */
 uint32_t joint_levels(const raw_skeleton *skeleton, uint32_t *counts);
 
 #endif

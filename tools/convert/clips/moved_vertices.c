@@ -5,8 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define WEIGHT_LEAST 0.05f /* weights below this do not count for a reach: other joints place the vertex */
-
 /* ---- vertices ---- */
 
 static int grow(moved_vertices *v, uint32_t vertices, uint32_t holds)
@@ -169,7 +167,7 @@ void moved_vertices_reach(const moved_vertices *v, const raw_skeleton *skeleton,
     for (uint32_t i = 0; i < v->hold_count; i++) {
         const vertex_hold *h = &v->holds[i];
         float point[3];
-        if (h->weight < WEIGHT_LEAST) continue;
+        if (h->weight < MOVED_WEIGHT_LEAST) continue;
         transform(pose + 12u * (size_t)h->joint, h->place, point);
         for (uint32_t j = h->joint; j != MODEL_NONE; j = own ? MODEL_NONE : skeleton->joints[j].parent) {
             const double *at = pose + 12u * (size_t)j + 9;

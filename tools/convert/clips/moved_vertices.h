@@ -8,6 +8,8 @@
 extern "C" {
 #endif
 
+#define MOVED_WEIGHT_LEAST 0.05f /* a joint with less weight does not place the vertex: others do */
+
 /* A vertex lies at the sum of weight * pose[joint] * place over its holds, the strongest first. */
 typedef struct vertex_hold {
     uint32_t joint;
@@ -37,7 +39,7 @@ void moved_vertices_free(moved_vertices *v);
 double moved_vertices_apart(const moved_vertices *v, const double *a, const double *b, double floor, double *scratch);
 
 /* Raise out[joint_count] to the distance, in centimetres, from each joint to the vertices that it and the joints below
- * it hold with a weight of at least 0.05, in a pose; `own` != 0: to those that it holds itself. */
+ * it hold with a weight of at least MOVED_WEIGHT_LEAST, in a pose; `own` != 0: to those that it holds itself. */
 void moved_vertices_reach(const moved_vertices *v, const raw_skeleton *skeleton, const double *pose, int own,
                           double *out);
 

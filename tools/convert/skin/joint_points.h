@@ -14,8 +14,9 @@ typedef struct joint_points {
 
 /* Choose the vertices that move most: for each joint the farthest that it moves, in any direction and along its axes,
  * by distance times weight; the extremes of the bounding box; then, again and again, the vertex farthest from all
- * chosen so far (farthest-point sampling). m       NULL: no meshes; else bound (skins.h) errors  1: out of memory;
- * there is then nothing to free */
+ * chosen so far (farthest-point sampling).
+ * m       NULL: no meshes; else bound (skins.h)
+ * errors  1: out of memory; there is then nothing to free */
 int joint_points_choose(const model *m, uint32_t set, uint32_t joint_count, joint_points *out);
 
 void joint_points_free(joint_points *p);

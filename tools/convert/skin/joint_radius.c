@@ -18,7 +18,7 @@ static float distance(const float *inverse_bind, const float *position)
 static void add_mesh(const model_mesh *mesh, const model_skin *skin, float *out)
 {
     for (size_t i = 0; i < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; i++) {
-        if (mesh->joint_weights[i] >= JOINT_RADIUS_WEIGHT) {
+        if (mesh->joint_weights[i] >= MOVED_WEIGHT_LEAST) {
             const uint32_t place = mesh->joints[i];
             float *radius = &out[skin->skeleton_joints[place]];
             *radius = fmaxf(*radius, distance(skin->inverse_bind + 16 * (size_t)place,

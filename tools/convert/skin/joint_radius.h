@@ -2,13 +2,13 @@
 #ifndef NOH_CONVERT_SKIN_JOINT_RADIUS_H
 #define NOH_CONVERT_SKIN_JOINT_RADIUS_H
 
-#include "convert/clips/raw_clip.h"
-
-#define JOINT_RADIUS_WEIGHT 0.05f /* weights below this do not count: other joints place the vertex */
+#include "convert/clips/moved_vertices.h"
 
 /* For each joint of a set's skeleton, the distance of the farthest vertex that it moves with a weight of at least
- * JOINT_RADIUS_WEIGHT, in the bind pose and in the joint's own space; -1 if it moves none. m    NULL: no meshes; else
- * bound (skins.h) out  [joint_count] returns 0 if no mesh is bound to the skeleton: all are -1 */
+ * MOVED_WEIGHT_LEAST, in the bind pose and in the joint's own space; -1 if it moves none.
+ * m        NULL: no meshes; else bound (skins.h)
+ * out      [joint_count]
+ * returns  0 if no mesh is bound to the skeleton: all are -1 */
 int joint_radius(const model *m, uint32_t set, uint32_t joint_count, float *out);
 
 #endif
