@@ -277,8 +277,6 @@ void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, f
  * Morph targets accumulated on the GPU, for many instances at once.
  *
  *   noh_gl_morph_plan_make    choose the path and compute its exact bytes, without GL calls
- *   noh_gl_morph_calibrate    choose the path by measuring at start-up
- *   noh_gl_morph_calibrate_size
  *   noh_gl_morph_init         build the accumulator in your memory and make its GL objects
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make the GL objects again after a lost context
@@ -330,7 +328,7 @@ typedef struct noh_gl_morph_desc {
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_morph_path path;             /* 0: the cheapest on this GPU; or the policy blend, or a path */
     noh_accumulate accumulate;       /* 0: f32 */
-    float expected_active;           /* for auto and calibration: share of targets active at once, 0..1; 0: 0.5 */
+    float expected_active;           /* for auto: share of targets active at once, 0..1; 0: 0.5 */
     int without_tangents;            /* 1: two layers, a third less memory, if no shader reads morphed tangents */
     /* For levels loaded later: `meshes` are levels of one mesh, and only their headers are read, which must stay. Until
      * noh_gl_morph_use is called, this coarser level of the same mesh, possibly of another pack, is the finest that is
@@ -365,34 +363,6 @@ typedef struct noh_gl_morph_stats {
  *         capability); LIMIT the atlas or a table exceeds the texture size */
 noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, noh_gl_morph_plan *plan,
                                   noh_error *error);
-
-/* Returns the time in nanoseconds after the GPU has finished: call glFinish first, or, if it returns at once as in
- * browsers, read a pixel back. The library has no clock of its own. */
-typedef uint64_t (*noh_gl_clock)(void *user);
-
-/* Results of noh_gl_morph_calibrate. */
-typedef struct noh_gl_morph_times {
-    noh_morph_path path;               /* the fastest */
-    uint64_t ns[NOH_MORPH_PATH_COUNT]; /* by path: the fastest update of all instances; 0: not measured */
-    uint32_t rounds[NOH_MORPH_PATH_COUNT];
-} noh_gl_morph_times;
-
-/* The memory for noh_gl_morph_calibrate.
- * errors  as noh_gl_morph_plan_make */
-noh_result noh_gl_morph_calibrate_size(const noh_gl_morph_desc *desc, const noh_gl_caps *caps, uint64_t *bytes,
-                                       noh_error *error);
-
-/* Measure gather, mrt and cpu, as far as they run here, on this driver with your meshes; then set desc.path =
- * times->path for noh_gl_morph_init. Weights change in each round, with the share desc.expected_active of the targets
- * active; a round is an update and the wait for it. desc.path is not read, and desc.coarse must be NULL.
- * shapes  memory[bytes], at least noh_gl_morph_calibrate_size; free again afterwards
- * ranges  budget_ns: rounds begin until it is spent, at least one for each path; 50,000,000 is enough. Making the
- *         objects and compiling shaders is not included
- * state   as after noh_gl_morph_update; all GL objects it makes are deleted
- * errors  as noh_gl_morph_init */
-noh_result noh_gl_morph_calibrate(void *memory, size_t bytes, const noh_gl_device *device,
-                                  const noh_gl_morph_desc *desc, noh_gl_clock clock, void *user, uint64_t budget_ns,
-                                  noh_gl_morph_times *times, noh_error *error);
 
 /* Build an accumulator in memory[bytes], aligned to NOH_MEMORY_ALIGN and at least plan.cpu_bytes long, and make its GL
  * objects, counted in the device's ledger. All weights are initially 0. On error all GL objects made so far are

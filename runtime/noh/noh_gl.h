@@ -159,8 +159,7 @@ typedef enum noh_accumulate {
 
 /* Costs compared by `auto`, for a frame of one instance of each mesh with the expected share of its targets active. The
  * unit is a texel blended into three layers of RGBA32F; paths that cannot run here also have a cost. Factors were
- * measured on a software rasteriser and one GPU ; noh_gl_morph_calibrate measures on the player's
- * GPU */
+ * measured on a software rasteriser and one GPU */
 typedef struct noh_gl_morph_costs {
     float texels, quads, blocks, pairs;        /* of the active targets: delta texels, strips, blocks of 4 x 4, pairs */
     float touched;                             /* vertices that any target moves */

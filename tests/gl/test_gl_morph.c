@@ -911,55 +911,6 @@ static void updates_send_what_the_plan_says(void **state)
     for_every_way(check_sent);
 }
 
-typedef struct fake_clock {
-    const noh_gl_morph_times *times;
-    uint64_t now, calls;
-} fake_clock;
-
-/* Ten milliseconds for each call, and one while mrt is measured, or cpu where mrt does not run. */
-static uint64_t tell_time(void *user)
-{
-    fake_clock *c = (fake_clock *)user;
-    c->calls++;
-    c->now += c->times->ns[NOH_MORPH_GATHER] && !c->times->ns[NOH_MORPH_MRT] ? 1000000u : 10000000u;
-    return c->now;
-}
-
-static void calibration_takes_the_fastest_path(void **state)
-{
-    const fixture_way way = { NOH_MORPH_AUTO, NOH_ACCUMULATE_AUTO };
-    const noh_gl_morph_desc desc = desc_of(way);
-    gpu *g = fixture_gpu();
-    const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, NULL, 0 };
-    const noh_gl_ledger before = g->ledger;
-    noh_gl_morph_times times;
-    fake_clock clock = { &times, 5, 0 };
-    noh_morph_path fast;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    uint64_t bytes;
-    uint8_t *memory;
-    (void)state;
-    assert_int_equal(noh_gl_morph_calibrate_size(&desc, &g->caps, &bytes, NULL), NOH_OK);
-    memory = test_aligned(NULL, (size_t)bytes);
-    assert_int_equal(noh_gl_morph_calibrate(memory, (size_t)bytes - 1u, &device, &desc, tell_time, &clock, 90000000u,
-                                            &times, &error),
-                     NOH_ERR_MEMORY);
-    assert_int_equal(error.need, bytes);
-    assert_int_equal(
-        noh_gl_morph_calibrate(memory, (size_t)bytes, &device, &desc, tell_time, &clock, 90000000u, &times, NULL),
-        NOH_OK);
-    assert_int_equal(times.ns[NOH_MORPH_GATHER], 10000000);
-    assert_int_equal(times.rounds[NOH_MORPH_GATHER], 3); /* a third of the budget for each path */
-    fast = times.rounds[NOH_MORPH_MRT] ? NOH_MORPH_MRT : NOH_MORPH_CPU;
-    assert_int_equal(times.path, fast);
-    assert_int_equal(times.ns[fast], 1000000);
-    assert_int_equal(times.rounds[fast], 30);
-    assert_int_equal(times.ns[NOH_MORPH_CPU], fast == NOH_MORPH_CPU ? 1000000 : 10000000);
-    assert_memory_equal(&before, &g->ledger, sizeof before);
-    free(memory);
-    fixture_expect_no_errors();
-}
-
 static void automatic_takes_the_cpu_on_a_software_rasteriser(void **state)
 {
     static const char *const names[] = { "llvmpipe (LLVM 15.0.6, 256 bits)", "softpipe",
@@ -1126,7 +1077,6 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(direct_holds_no_accumulator),
     cmocka_unit_test(direct_refuses_too_many_instances),
     cmocka_unit_test(updates_send_what_the_plan_says),
-    cmocka_unit_test(calibration_takes_the_fastest_path),
     cmocka_unit_test(automatic_takes_the_cpu_on_a_software_rasteriser),
     cmocka_unit_test(automatic_spares_mali_the_blending),
     cmocka_unit_test(a_chosen_path_says_so),

@@ -186,12 +186,6 @@ INIT(pose_scratch_init)
     return noh_pose_scratch_init(memory, bytes, s.controller.set, 1, &scratch, error);
 }
 
-INIT(event_queue_init)
-{
-    noh_event_queue queue;
-    return noh_event_queue_init(memory, bytes, 9, &queue, error);
-}
-
 INIT(graph_state_init)
 {
     noh_graph_state *graph;
@@ -428,23 +422,6 @@ INIT(gl_morph_init)
     return result;
 }
 
-static uint64_t count_calls(void *calls)
-{
-    return ++*(uint64_t *)calls;
-}
-
-INIT(gl_morph_calibrate)
-{
-    const noh_gl_device on = device();
-    noh_gl_morph_desc desc;
-    noh_gl_morph_times times;
-    uint64_t calls = 0;
-    memset(&desc, 0, sizeof desc);
-    desc.meshes = &s.mesh;
-    desc.mesh_count = 1;
-    return noh_gl_morph_calibrate(memory, bytes, &on, &desc, count_calls, &calls, 3, &times, error);
-}
-
 INIT(gl_skin_init)
 {
     const noh_gl_device on = device();
@@ -496,7 +473,6 @@ static const struct {
     ROW(clip_bank_view_init),
     ROW(controller_init),
     ROW(pose_scratch_init),
-    ROW(event_queue_init),
     ROW(graph_state_init),
     ROW(graph_scratch_init),
     ROW(graph_pack_init),
@@ -523,7 +499,6 @@ static const struct {
     ROW(reflection_init),
     ROW(pick),
     ROW(gl_morph_init),
-    ROW(gl_morph_calibrate),
     ROW(gl_skin_init),
     ROW(stage_init),
 };

@@ -10,9 +10,9 @@
  *   direct  in each draw, a turn for each moved vertex and active target of its block, and its start; the upload
  *   cpu     pairs and vertices, and the upload: sums, or finished vertices
  * The factors for software, and for one GPU, an NVIDIA H100, were measured (runtime/deform/LOG.md); for other GPUs,
- * tilers above all, they are estimates: a game should calibrate (noh_gl_morph_calibrate). A turn of direct on a GPU was
- * not measured: it is taken for a turn of a loop over active targets, which fetches as often. Tilers shade positions
- * and varyings apart: by Mesa's model of a Mali-G52, 8.5 cycles where a turn of gather takes 2.5. */
+ * tilers above all, they are estimates: a game that knows better pins the path (desc.path). A turn of direct on a GPU
+ * was not measured: it is taken for a turn of a loop over active targets, which fetches as often. Tilers shade
+ * positions and varyings apart: by Mesa's model of a Mali-G52, 8.5 cycles where a turn of gather takes 2.5. */
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"

@@ -193,11 +193,6 @@ static noh_result skeleton_check(noh_error *e)
     DESC(noh_skeleton);
     return noh_skeleton_check(&desc, e);
 }
-static noh_result queue_init(noh_error *e)
-{
-    noh_event_queue q;
-    return noh_event_queue_init(NULL, 0, 4, &q, e);
-}
 static noh_result schedule_init(noh_error *e)
 {
     noh_schedule q;
@@ -260,11 +255,6 @@ static noh_result lod_pack_init(noh_error *e)
     DESC(noh_lod_pack_desc);
     return noh_lod_pack_init(s.memory.bytes, 64, &desc, &made, e);
 }
-static noh_result queue_of_none(noh_error *e)
-{
-    noh_event_queue q;
-    return noh_event_queue_init(s.memory.bytes, 64, 0, &q, e);
-}
 static noh_result schedule_of_none(noh_error *e)
 {
     noh_schedule q;
@@ -323,16 +313,15 @@ static const struct {
     ROW(clip_init, VERSION),      ROW(cache_size, ARG),
     ROW(cache_init, ARG),         ROW(set_size, ARG),
     ROW(set_init, ARG),           ROW(clip_set_check, ARG),
-    ROW(skeleton_check, ARG),     ROW(queue_init, ARG),
+    ROW(skeleton_check, ARG),     
     ROW(schedule_init, ARG),      ROW(settings_check, ARG),
     ROW(table_check, ARG),        ROW(pools_init, ARG),
     ROW(triangulate, DATA),       ROW(controller_init, ARG),
     ROW(character_init, ARG),     ROW(character_scratch_init, ARG),
     ROW(graph_check, ARG),        ROW(lod_pack_init, ARG),
-    ROW(queue_of_none, ARG),      ROW(schedule_of_none, ARG),
-    ROW(time_measure, ARG),       ROW(joint_measure, ARG),
-    ROW(shares_check, ARG),       ROW(hysteresis_check, ARG),
-    ROW(lead_check, ARG),
+    ROW(schedule_of_none, ARG),   ROW(time_measure, ARG),
+    ROW(joint_measure, ARG),      ROW(shares_check, ARG),
+    ROW(hysteresis_check, ARG),   ROW(lead_check, ARG),
 };
 
 /* Two words or more, as a message goes on after "error: ": no full stop, no line break. */

@@ -202,20 +202,16 @@ static void measured_lod(void **state)
     }
 }
 
-static void event_queues_and_schedules(void **state)
+static void schedules(void **state)
 {
     static const uint32_t past[] = { 0, NOH_SCHEDULE_MAX + 1u, 0x80000000u, UINT32_MAX };
     noh_error error = { NOH_OK, NULL, 0, 0 };
-    noh_event_queue queue;
     noh_schedule schedule;
     (void)state;
     assert_true(noh_schedule_size(NOH_SCHEDULE_MAX) == NOH_SCHEDULE_MAX * sizeof(noh_schedule_item));
-    assert_true(noh_event_queue_size(1u << 24) == ((size_t)1 << 24) * sizeof(noh_event));
     for (size_t i = 0; i < TEST_COUNT(past); i++) {
-        const uint32_t capacity = i == 1 ? (1u << 24) + 1u : past[i];
-        assert_true(noh_schedule_size(past[i]) == 0 && noh_event_queue_size(capacity) == 0);
+        assert_true(noh_schedule_size(past[i]) == 0);
         expect_refused(noh_schedule_init(&small, sizeof small, past[i], &schedule, &error), &error);
-        expect_refused(noh_event_queue_init(&small, sizeof small, capacity, &queue, &error), &error);
     }
 }
 
@@ -456,7 +452,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(pose_scratches),
     cmocka_unit_test(graphs),
     cmocka_unit_test(measured_lod),
-    cmocka_unit_test(event_queues_and_schedules),
+    cmocka_unit_test(schedules),
     cmocka_unit_test(lod_pools),
     cmocka_unit_test(segments_of_a_cache_are_not_wrapped),
     cmocka_unit_test(cached_segments),
