@@ -16,7 +16,7 @@ echo
 "$noh" sheet "$build/mask.noh" -o "$build/mask_targets.png" --path "$path"
 "$noh" sheet "$build/mask.noh" -o "$build/mask_faces.png" --target smile --target surprise --target anger --target blink \
     --columns 5 --tile 288 --camera 14,4 --path "$path"
-"$noh" budget "$build/mask.noh" --path "$path"
+"$noh" budget "$build/mask.noh" --path layered --nominal
 echo
 echo 'LOD levels (--lod-fast; without it their errors are smaller, and the build takes a minute):'
 "$noh" build "$build/mask.glb" -o "$build/mask_levels.noh" --lod 4 --lod-fast --quiet

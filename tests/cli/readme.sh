@@ -1,5 +1,5 @@
 #!/bin/sh
-# The README's table of bytes equals the output of `noh budget`. Its program compiles, links only the library, and runs;
+# The README's table of bytes equals the output of `noh budget`, as `make demo` prints it. Its program compiles, links only the library, and runs;
 # with an unsuitable pack it prints an error.
 . "$(dirname "$0")/lib.sh"
 flags=
@@ -7,7 +7,7 @@ flags=
 
 # The table's rows, without the head, whose width follows the pack's path; the tool also prints rows of zeros.
 awk '/^build\/mask.noh .*CPU bytes/ { inside = 1; next } inside && /^```/ { exit } inside' README.md >"$work/table"
-noh budget "$build/mask.noh" --path cpu --accumulate f32 --nominal
+noh budget "$build/mask.noh" --path layered --nominal
 expect 0 'the budget of the mask'
 awk 'NR == 1 { next } /^[^ ]/ { exit } !($NF == "0" && $(NF - 1) == "0")' "$work/out" >"$work/rows"
 check 'the README has its rows' diff "$work/table" "$work/rows"
