@@ -30,7 +30,7 @@ installs 'make install-lib without a C++ compiler' install-lib PREFIX="$prefix" 
 check 'the library alone: no program' test ! -e "$prefix/bin" -a -f "$prefix/lib/libnoh.a"
 installs 'make install over it' install PREFIX="$prefix"
 for file in bin/noh bin/noh-embed lib/libnoh.a lib/pkgconfig/noh.pc lib/cmake/noh/nohConfig.cmake lib/cmake/noh/nohConfigVersion.cmake \
-    include/noh/noh.h share/noh/shaders/common_layers.glsl share/noh/examples/walker.c share/noh/platform/template.c share/noh/guide/figures.md; do
+    include/noh/noh.h share/noh/shaders/common_layers.glsl share/noh/examples/walker.c share/noh/platform/template.c share/noh/guide/index.md share/noh/guide/figures.md; do
     check "$file" test -s "$prefix/$file"
 done
 [ ! -f "$build/noh.1" ] || check 'the man page' test -s "$prefix/share/man/man1/noh.1"
@@ -50,6 +50,12 @@ check 'the public headers and no other' cmp "$work/public" "$work/headers"
     done <"$work/files"
 } >"$work/nowhere"
 check 'headers point to files that are installed' sh -c 'test -s "$1" && ! grep . "$2"' - "$work/files" "$work/nowhere"
+for page in "$prefix"/share/noh/guide/*.md; do
+    grep -o ']([^)]*)' "$page" | sed 's/^](//; s/)$//; s/#.*//' | grep -v '^https*:\|^$' | while read -r link; do
+        [ -e "$prefix/share/noh/guide/$link" ] || echo "${page##*/}: $link"
+    done
+done >"$work/dead"
+check 'no link of the guide is dead there' sh -c '! grep . "$1"' - "$work/dead"
 check 'the template compiles there' gcc -std=c99 -fsyntax-only "-I$prefix/include" "$prefix/share/noh/platform/template.c"
 version=$(sed -n 's/^#define NOH_VERSION "\(.*\)"/\1/p' runtime/noh/base.h)
 (cd "$prefix" && find . -type f | sort) >"$work/before"

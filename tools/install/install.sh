@@ -110,8 +110,17 @@ done
 for file in template.c platforms.h platform.h README.md; do
     put 644 "platform/$file" "$DATADIR/noh/platform/$file"
 done
-for page in tools/docs/*.md; do
-    put 644 "$page" "$DATADIR/noh/guide/${page##*/}"
+# The guide without its pages on changing noh. Links to what is not installed become plain text.
+for page in tools/docs/guide/*.md tools/docs/*.md; do
+    case $page in */find_your_way.md | */add_*.md) continue ;; esac
+    sed 's|](../../examples/|](../examples/|g; s|](../figures.md)|](figures.md)|g; s|](guide/|](|g
+        /^!\[.*\](\(\.\.\/\)*demo_assets\//d
+        s/\[\([^]]*\)\](\(\.\.\/\.\.\/[^)]*\|find_your_way\.md\|add_[a-z_]*\.md\|\.\.\/[a-z_]*\/README\.md\|[.\/]*runtime\/[^)]*\))/\1/g' "$page" >"$new.page"
+    put 644 "$new.page" "$DATADIR/noh/guide/${page##*/}"
+    rm -f "$new.page"
+done
+for picture in tools/docs/guide/*.svg tools/docs/guide/pictures/*; do
+    put 644 "$picture" "$DATADIR/noh/guide/${picture#tools/docs/guide/}"
 done
 fill tools/install/noh.pc.in "$LIBDIR/pkgconfig/noh.pc"
 fill tools/install/nohConfig.cmake.in "$LIBDIR/cmake/noh/nohConfig.cmake"
