@@ -75,7 +75,9 @@ cppcheck:static analysis'
 packages_long='?valgrind:memcheck
 ?afl++:fuzzing noh build
 ?frama-c-base:proofs of the checkers
-?firefox-esr:the page in a second browser'
+?firefox-esr:the page in a second browser
+?debhelper:Debian packages
+?lintian:the check of Debian packages'
 packages_ear='libespeak-ng-dev:formants in every language
 flite:statistics of four voices
 festival:voices cut out of recordings

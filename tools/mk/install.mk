@@ -45,6 +45,10 @@ $(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|start.h' tools/examples/$*.c),-lEGL) \
 	    $(if $(shell grep -ls measure.h tools/examples/$*.c),$(addprefix -Wl$(comma)--wrap=,malloc calloc realloc))
 
+# A release: archive, Debian packages, npm package, port, recipe, list of files, checksums.
+release:
+	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/release/release.sh $(BUILD)/release
+
 # Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
 sizes:
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/sizes.sh

@@ -1,0 +1,16 @@
+# An overlay port: put noh-@VERSION@.tar.gz into vcpkg's folder "downloads", then
+#     vcpkg install noh --overlay-ports=FOLDER
+set(archive "${DOWNLOADS}/noh-@VERSION@.tar.gz")
+if(NOT EXISTS "${archive}")
+    message(FATAL_ERROR "noh: ${archive} is missing; put the release's source archive there")
+endif()
+file(SHA512 "${archive}" sum)
+if(NOT sum STREQUAL "@SHA512@")
+    message(FATAL_ERROR "noh: ${archive} is not the archive of noh @VERSION@: its SHA-512 differs")
+endif()
+vcpkg_extract_source_archive(source ARCHIVE "${archive}")
+vcpkg_cmake_configure(SOURCE_PATH "${source}/runtime" OPTIONS -DNOH_INSTALL=ON)
+vcpkg_cmake_install()
+vcpkg_cmake_config_fixup(CONFIG_PATH lib/cmake/noh)
+file(REMOVE_RECURSE "${CURRENT_PACKAGES_DIR}/debug/include" "${CURRENT_PACKAGES_DIR}/debug/share")
+vcpkg_install_copyright(FILE_LIST "${source}/LICENSE")
