@@ -151,7 +151,7 @@ fi
 export DEBIAN_FRONTEND=noninteractive LC_ALL=C
 
 # apt-get ARGUMENT...: on a fresh machine another process often holds one of apt's locks; apt itself waits for dpkg's,
-# not for that of the package lists. Tries for five minutes.
+# not for the lock of the package lists. Tries for five minutes.
 apt() {
     deadline=$(($(date +%s) + 300))
     until said=$($sudo apt-get -o DPkg::Lock::Timeout=300 -qq "$@" 2>&1); do

@@ -14,7 +14,7 @@ table=tools/sizes.txt
 mkdir -p "$work"
 
 # The library's objects, by its sources: an archive's members have no folders, and two may have one name; objects of
-# files that have moved may still lie beside them.
+# files that have moved may still lie next to them.
 files() { # TARGET
     { find runtime -name '*.c' | sed 's/c$/o/' && echo gen/shaders.gen.o; } | sed "s|^|$work/$1/|" | sort
 }

@@ -1,5 +1,5 @@
 #!/bin/sh
-# web_sizes.sh FOLDER: what of a page goes over the wire, in bytes.
+# web_sizes.sh FOLDER: the bytes that each part of a page takes over the wire.
 set -eu
 cd "$1"
 zipped() { gzip -9 -c "$@" | wc -c; }

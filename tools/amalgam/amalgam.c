@@ -1,4 +1,4 @@
-/* amalgam: the library as one source file, noh.c. It is compiled with the public headers in a folder noh/ beside it.
+/* amalgam: the library as one source file, noh.c. It is compiled with the public headers in a folder noh/ next to it.
  *
  *   amalgam -o FOLDER -I FOLDER... FILE...      files are named from an -I folder, e.g. deform/morph/morph.c
  *
@@ -266,7 +266,7 @@ static void write_prefix(FILE *out, const char *file)
 /* What renaming needs to know of the tokens before: whether they are ., -> or the beginning of a struct. */
 typedef struct {
     token before, before_that;
-    int struct_braces; /* how many are open, counted from that of the outermost struct or union */
+    int struct_braces; /* how many are open, counted from the brace of the outermost struct or union */
 } place;
 
 static int is_struct(token t)

@@ -4,7 +4,7 @@
  *
  * Each FILE becomes a `noh_gl_source` (see low_gl.h) named after
  * it: probe_store.frag gives noh_shader_probe_store_frag. Its #version line is kept apart, so that a program can put
- * its own lines right after it or ask for another version. #include "x" is replaced by that file, found beside the
+ * its own lines right after it or ask for another version. #include "x" is replaced by that file, found next to the
  * including one, once per FILE, whatever #if stands around it; the #line numbers
  * tell source files apart, and a comment in OUT.c says which number is which file.
  * Comments, indents and blanks at line ends are left out; a run of lines without code
@@ -246,7 +246,7 @@ static void write_line(flattened *out, const char *path, unsigned line, const ch
     free(code.data);
 }
 
-/* The path of an #include's file: beside the file that includes it. */
+/* The path of an #include's file: next to the file that includes it. */
 static char *include_path(const char *from, unsigned line, const char *rest)
 {
     const char *start = skip_blanks(rest);

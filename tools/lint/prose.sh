@@ -8,8 +8,10 @@ cd "$(dirname "$0")/../.." || exit 1
 
 # Folders and files that are clean and must stay clean.
 clean='README.md CONTRIBUTING.md platform runtime shaders_es'
-clean="$clean tests/*.sh tests/cli tests/fuzz tests/gl tests/support tests/web tests/unit"
-clean="$clean tools/README.md tools/convert tools/docs tools/noh"
+clean="$clean CHANGELOG.md Makefile .ci/run tests/*.sh tests/README.md tests/cli tests/cross tests/fuzz tests/gl"
+clean="$clean tests/golden tests/memory tests/support tests/web tests/unit tools/*.sh tools/*.md tools/amalgam"
+clean="$clean tools/clip_tables tools/convert tools/docs tools/embed tools/install tools/lod_compare tools/mk tools/noh"
+clean="$clean tools/release tools/web_convert"
 
 if ! command -v perl >/dev/null 2>&1; then
     echo 'prose skipped: perl is not installed'

@@ -1,7 +1,7 @@
 /* compare.h: shared by the files of the comparison with meshoptimizer.
  *
  *   peer_levels     the levels of Debian's meshoptimizer at our triangle counts
- *   peer_npm_*      those of npm's, which is given the targets, too
+ *   peer_npm_*      the levels of npm's version, which is given the targets, too
  *   shapes_*        poses that the builder did not see, named faces
  *   faults_of       turned UVs, non-manifold edges
  *   canvas_*        a software z-buffer, for what shows and for pictures
@@ -59,7 +59,7 @@ void shapes_mixed(const model_mesh *mesh, const float *weights, float *position,
 /* ---- faults: faults.c ---- */
 
 typedef struct faults {
-    uint32_t uv_flips;     /* triangles whose UVs run against those of most triangles of their island */
+    uint32_t uv_flips;     /* triangles whose UVs run against the UVs of most triangles of their island */
     uint32_t non_manifold; /* edges of more than two triangles, with vertices at one position counted as one */
 } faults;
 

@@ -140,7 +140,7 @@ static int measure_npm(const model *m, const lod *ours, const settings *s, const
     return 1;
 }
 
-/* Vertices of its own for the coarsest level, as in packs. The poses are made anew, since the mesh has more vertices
+/* Vertices of its own for the coarsest level, as in packs. The poses are made again, since the mesh has more vertices
  * then. */
 static void own_vertices(model *m, uint32_t index, lod *ours, shapes *unseen)
 {
@@ -152,7 +152,7 @@ static void own_vertices(model *m, uint32_t index, lod *ours, shapes *unseen)
         if (lod_fit(mesh, &ours->levels[k], &error)) {
             exit(fail(error.what, error.where));
         }
-        printf(" vertices of its own: %u in level %u, beside the mesh's %u\n", mesh->vertex_count - before, k, before);
+        printf(" vertices of its own: %u in level %u, the mesh has %u\n", mesh->vertex_count - before, k, before);
         shapes_free(unseen);
         shapes_make(m, index, UNSEEN_MIXES, UNSEEN_FRAMES, unseen);
     }

@@ -162,7 +162,7 @@ $(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --transfer 4 --quiet
 
 PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
-# Under sanitizers these two take minutes, and the other packs the same ways: they are those of `make check`, where it has
+# Under sanitizers these two take minutes, and the other packs the same ways: they are copied from `make check`, where it has
 # made them (NOH_LONG=1: never).
 ifneq ($(and $(SANITIZED),$(filter-out build,$(BUILD)),$(wildcard build/demo/puppet_levels.noh)),)
 $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/%.noh: build/demo/%.noh

@@ -47,7 +47,7 @@ web-bench: deps-web
 	$(MAKE) --no-print-directory DEPS=0 web WEB_WIRE= WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
 	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
 
-# Pictures beside those of three.js's standard materials.
+# Pictures compared with three.js's standard materials.
 LOOKS ?= $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb $(BUILD)/mask.glb
 look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
 	@NOH_BUILD="$(BUILD)" sh tests/web_look.sh $(LOOKS)

@@ -42,8 +42,8 @@ static inline int noh_is_number(float x)
 
 #define NOH_NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
 
-/* Where to count from instead of the origin: 0 for what is near it, else a multiple of 16 beside x, which is an exact
- * float, as is its difference to what is near x. */
+/* The point to count from instead of the origin: 0 for an x near it, else a multiple of 16 close to x, which is an exact
+ * float, as is its difference from floats near x. */
 static inline float noh_on_grid(float x)
 {
     if (!(x > NOH_NEAR_ORIGIN || x < -NOH_NEAR_ORIGIN) || !noh_is_number(x)) return 0.0f;
