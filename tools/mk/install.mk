@@ -45,6 +45,9 @@ $(BUILD)/examples/%: $(BUILD)/tools/examples/%.o $(BUILD)/libnoh.a
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ $(if $(shell grep -lsE '<EGL/|start.h' tools/examples/$*.c),-lEGL) \
 	    $(if $(shell grep -ls measure.h tools/examples/$*.c),$(addprefix -Wl$(comma)--wrap=,malloc calloc realloc))
 
+# api-update: the API of this version, to which later ones are compared (tests/check_api.sh).
+api-update:
+	@{ echo 'noh $(VERSION)'; sh tools/release/api.sh; } >tools/release/api.new && mv tools/release/api.new tools/release/api.txt
 # A release: archive, Debian packages, npm package, port, recipe, list of files, checksums.
 release:
 	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/release/release.sh $(BUILD)/release

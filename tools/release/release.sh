@@ -28,6 +28,11 @@ if [ -z "${SOURCE_DATE_EPOCH:-}" ]; then
 fi
 export SOURCE_DATE_EPOCH
 
+# A version is released with its heading in the CHANGELOG and its API in api.txt.
+grep -q "^## $VERSION\$" CHANGELOG.md || { echo "release: CHANGELOG.md has no heading '## $VERSION'; add it" >&2; exit 1; }
+[ "$(head -n 1 tools/release/api.txt)" = "noh $VERSION" ] ||
+    { echo "release: tools/release/api.txt is the API of $(head -n 1 tools/release/api.txt); run 'make api-update'" >&2; exit 1; }
+
 wants() { # PART
     case " $parts " in *" $1 "*) return 0 ;; *) return 1 ;; esac
 }
