@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "noh/base.h"
+#include "convert/base/refused_memory.h"
 #include "help/help.h"
 #include "cli/json.h"
 #include "cli/message.h"
@@ -108,7 +109,9 @@ static int run(int argc, char **argv)
 
 int main(int argc, char **argv)
 {
-    int status = run(argc, argv), code = 0;
+    int status, code = 0;
+    exit_where_memory_is_refused();
+    status = run(argc, argv);
     if (fflush(stdout) || ferror(stdout)) {
         code = errno;
         status = tool_fail("standard output", "cannot write: %s", code ? strerror(code) : "input/output error");

@@ -5,6 +5,7 @@
 
 #include "byte_buffer.h"
 #include "noh/base.h"
+#include "noh/low_core.h"
 
 void *buffer_append(byte_buffer *b, const void *bytes, size_t count)
 {
@@ -79,4 +80,11 @@ uint32_t string_offset(string_table *strings, const char *name)
     }
     buffer_append(&strings->bytes, cut, strlen(cut) + 1);
     return (uint32_t)(strings->bytes.count - strlen(cut) - 1);
+}
+
+uint32_t string_hash(const char *name)
+{
+    char cut[NOH_NAME_BYTES_MAX];
+    string_cut(name, cut);
+    return noh_hash_name(cut);
 }

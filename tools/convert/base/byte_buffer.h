@@ -34,4 +34,7 @@ void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX]);
 /* The offset of a name, cut likewise; added if it is new. */
 uint32_t string_offset(string_table *strings, const char *name);
 
+/* noh_hash_name of a name, cut likewise. */
+uint32_t string_hash(const char *name);
+
 #endif

@@ -249,7 +249,8 @@ static void rename_meshopt(json &document)
         auto list = document.find(name);
         if (list == document.end() || !list->is_array()) continue;
         for (json &item : *list) {
-            if (item == ratified) item = old;
+            /* json's own == ends the program where memory is refused */
+            if (item.is_string() && item.get_ref<const std::string &>() == ratified) item = old;
             auto extensions = item.is_object() ? item.find("extensions") : item.end();
             if (extensions == item.end() || !extensions->is_object() || !extensions->contains(ratified)) continue;
             (*extensions)[old] = (*extensions)[ratified];

@@ -1,13 +1,11 @@
 #include "mesh_layout.h"
 
-#include <meshoptimizer.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "convert/pack/triangle_order.h"
 #include "convert/skin/palette_deal.h"
-
-#define OVERDRAW_LOSS 1.05f /* vertex cache misses may grow by this factor for less overdraw */
 
 typedef struct layout_job {
     const model_mesh *mesh;
@@ -135,16 +133,9 @@ static int store_palettes(layout_job *j)
 
 /* ---- triangles ---- */
 
-/* Sort for the vertex cache, then for little overdraw: outer triangles first. */
-static void optimize(const layout_job *j, uint32_t *indices, uint32_t count)
-{
-    meshopt_optimizeVertexCache(indices, indices, count, j->out->vertex_count);
-    meshopt_optimizeOverdraw(indices, indices, count, j->positions, j->out->vertex_count, 12, OVERDRAW_LOSS);
-}
-
 /* The triangles of one submesh that use one palette. Triangles of blended materials keep the artist's order, in which
- * they are drawn over each other. */
-static void add_part(layout_job *j, uint32_t level, uint32_t s, uint32_t palette)
+ * they are drawn over each other. Returns 1: out of memory. */
+static int add_part(layout_job *j, uint32_t level, uint32_t s, uint32_t palette)
 {
     const part from = part_of(j, level, s);
     mesh_layout *out = j->out;
@@ -160,13 +151,14 @@ static void add_part(layout_job *j, uint32_t level, uint32_t s, uint32_t palette
         }
     }
     if (!to->index_count && j->deal.palette_count > 1) {
-        return;
+        return 0;
     }
-    if (to->index_count && !j->blends[s]) {
-        optimize(j, indices, to->index_count);
+    if (to->index_count && !j->blends[s] && triangle_order(indices, to->index_count, j->positions, out->vertex_count)) {
+        return 1;
     }
     out->index_count += to->index_count;
     out->submesh_count += 1;
+    return 0;
 }
 
 static int add_parts(layout_job *j, uint32_t level, model_error *error)
@@ -181,7 +173,7 @@ static int add_parts(layout_job *j, uint32_t level, model_error *error)
                                   "palettes of %u joints cut it into more than %u draws: raise --palette",
                                   j->deal.limit, j->submesh_capacity);
             }
-            add_part(j, level, s, p);
+            if (add_part(j, level, s, p)) return model_fail(error, "", "out of memory");
         }
     }
     l->index_count = j->out->index_count - l->first_index;

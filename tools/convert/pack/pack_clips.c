@@ -334,7 +334,7 @@ static void append_event(const raw_clip *clip, const raw_event *from, string_tab
     memset(&to, 0, sizeof to);
     to.tick = event_tick(clip, from);
     to.name = string_offset(strings, from->name);
-    to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+    to.name_hash = string_hash(from->name);
     memcpy(to.payload, from->payload, sizeof to.payload);
     to.weight_min = from->weight_min;
     buffer_append(out, &to, sizeof to);
@@ -345,7 +345,7 @@ static void append_marker(const raw_clip *clip, const raw_event *from, string_ta
     noh_clip_marker to;
     to.tick = event_tick(clip, from);
     to.name = string_offset(strings, from->name);
-    to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+    to.name_hash = string_hash(from->name);
     buffer_append(out, &to, sizeof to);
 }
 

@@ -22,7 +22,7 @@ static void append(packer *p, void *record, size_t bytes, const char *name)
 {
     uint32_t head[2];
     head[0] = string_offset(p->strings, name);
-    head[1] = p->strings->bytes.failed ? 0 : noh_hash_name((const char *)p->strings->bytes.bytes + head[0]);
+    head[1] = string_hash(name);
     memcpy(record, head, sizeof head);
     buffer_append(p->out, record, bytes);
 }

@@ -167,7 +167,7 @@ static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32
     noh_target to;
     memset(&to, 0, sizeof to);
     to.name = string_offset(strings, m->targets[t].name);
-    to.name_hash = noh_hash_name((const char *)strings->bytes.bytes + to.name);
+    to.name_hash = string_hash(m->targets[t].name);
     to.first_rect = from->first_rect;
     to.rect_count = part->rect_count;
     to.first_texel = from->first_texel;

@@ -24,7 +24,7 @@ const chunk_maker *chunk_maker_of(noh_chunk_type type)
 void chunk_name(pack_writer *w, const char *text, uint32_t *name, uint32_t *hash)
 {
     *name = string_offset(&w->strings, text ? text : "");
-    *hash = noh_hash_name((const char *)w->strings.bytes.bytes + *name);
+    *hash = string_hash(text ? text : "");
 }
 
 void chunk_begin(pack_writer *w, noh_chunk_type type, const char *name)
