@@ -18,6 +18,7 @@
 #include "convert/model/priority.h"
 #include "convert/model/tint.h"
 #include "convert/pack/size_warn.h"
+#include "convert/skin/skin_mirror.h"
 #include "convert/texture/texture_trim.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -281,7 +282,9 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     settings.m = s->m;
     failed = make_wrinkles(s, chunks[NOH_CHUNK_RECIPE], options, error);
     set_textures(s, options);
-    if (!failed && options->only != CONVERT_MESH && size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm)) {
+    if (!failed && options->only != CONVERT_MESH &&
+        (size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm) ||
+         clips_mirror_warn(s->m, s->sets, s->set_count))) {
         failed = out_of_memory(error);
     }
     if (options->warnings || options->report) {

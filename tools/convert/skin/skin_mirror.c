@@ -120,3 +120,45 @@ int skins_mirror(model *m)
     }
     return failed;
 }
+
+/* ---- in clips ---- */
+
+static int is_mirrored(const float scale[3])
+{
+    return scale[0] * scale[1] * scale[2] < 0.0f;
+}
+
+static int culls_faces(const model *m)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t k = 0; k < m->meshes[i].submesh_count; k++) {
+            const uint32_t material = m->meshes[i].submeshes[k].material;
+            if (material == MODEL_NONE || !m->materials[material].double_sided) return 1;
+        }
+    }
+    return 0;
+}
+
+static int warn_of_clip(model *m, const raw_skeleton *skeleton, const raw_clip *clip)
+{
+    for (size_t i = 0; i < (size_t)clip->frame_count * clip->joint_count; i++) {
+        const raw_joint *joint = &skeleton->joints[i % clip->joint_count];
+        if (is_mirrored(clip->scales + 3 * i) == is_mirrored(joint->scale)) continue;
+        return model_warn(m,
+                          "clip '%.60s': it mirrors joint '%.60s' by a scale below 0, and faces that follow it are "
+                          "drawn inside out (model the mirrored mesh, or make its material double-sided)",
+                          clip->name, joint->name);
+    }
+    return 0;
+}
+
+int clips_mirror_warn(model *m, raw_set *const *sets, uint32_t set_count)
+{
+    int failed = 0;
+    for (uint32_t s = 0; s < set_count && culls_faces(m); s++) {
+        for (uint32_t c = 0; !failed && c < sets[s]->clip_count; c++) {
+            failed = warn_of_clip(m, &sets[s]->skeleton, &sets[s]->clips[c]);
+        }
+    }
+    return failed;
+}
