@@ -6,12 +6,14 @@
 #include <string.h>
 
 #include "convert/clips/bvh_read.h"
+#include "convert/clips/face_csv.h"
 #include "convert/base/file_kind.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "convert/clips/rcl.h"
 #include "convert/clips/resample.h"
+#include "convert/clips/shape_match.h"
 #include "convert/fbx/fbx_read.h"
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
@@ -66,7 +68,9 @@ static int read_clip_file(const char *path, file_reader reader, const source_opt
                           model_error *error)
 {
     bvh_options bvh = { options->unit_cm, 0 };
-    int failed = reader == READER_RCL ? rcl_read(path, &s->single, error) : bvh_read(path, &bvh, &s->single, error);
+    int failed = reader == READER_RCL    ? rcl_read(path, &s->single, error)
+                 : reader == READER_FACE ? face_csv_read(path, &s->single, error)
+                                         : bvh_read(path, &bvh, &s->single, error);
     if (failed) {
         return 1;
     }
@@ -154,7 +158,7 @@ int source_read(const char *path, const source_options *options, source *s, mode
 {
     const file_kind *kind = file_kind_of(path);
     memset(s, 0, sizeof *s);
-    return kind && (kind->reader == READER_BVH || kind->reader == READER_RCL)
+    return kind && (kind->reader == READER_BVH || kind->reader == READER_RCL || kind->reader == READER_FACE)
                ? read_clip_file(path, kind->reader, options, s, error)
                : read_model_file(path, options, s, error);
 }
@@ -352,6 +356,10 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
     raw_set *to = NULL;
     if (clip->joint_count ? find_set(base, base_path, from, &to, error) : any_set(base, &to, error)) {
         return 1;
+    }
+    if (base->m->mesh_count && clip->float_count && clip->floats[0].node == MODEL_NONE &&
+        shapes_match(base->m, base_path, clip)) {
+        return out_of_memory(error);
     }
     if (bind_weights(base, base_path, clip, error) || (has_clip(to, clip->name) && rename_clip(clip, path, error))) {
         return 1;

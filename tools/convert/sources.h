@@ -2,7 +2,8 @@
  *
  * One of them is the base: its model and its skeletons are the pack's. From the others only clips are added: clips of
  * joints if their skeleton has the same joints as one of the base's (names and parents; joint_match.h), morph weights
- * if the base has a node of the same name with as many targets. */
+ * if the base has a node of the same name with as many targets, facial capture by the names of targets
+ * (shape_match.h). */
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
 
@@ -15,7 +16,7 @@
 typedef struct source {
     model *m;          /* of a glTF file; an empty one otherwise */
     model_clips *made; /* of a glTF file */
-    raw_set *single;   /* of a .bvh or .rcl file; or clips added to a glTF file that has none of its own */
+    raw_set *single;   /* of a .bvh, .rcl or .csv file; or clips added to a glTF file that has none of its own */
     raw_set **sets;    /* [set_count] the sets of `made`, or `single` */
     uint32_t set_count;
 } source;

@@ -28,6 +28,7 @@ static const file_kind kinds[] = {
     { ".obj", NULL, READER_OBJ, "an OBJ file", NULL },
     { ".bvh", "HIERARCHY", READER_BVH, "a BVH file", NULL },
     { ".rcl", "RCL1", READER_RCL, "a raw clip", NULL },
+    { ".csv", NULL, READER_FACE, "a table of facial capture", NULL },
     { ".blend", "BLENDER", READER_NONE, "a Blender file", BLENDER },
     { ".blend1", NULL, READER_NONE, "a backup of a Blender file", BLENDER },
     { ".dae", NULL, READER_NONE, "a COLLADA file", TO_GLTF },

@@ -14,7 +14,8 @@ typedef enum file_reader {
     READER_FBX,
     READER_OBJ,
     READER_BVH,
-    READER_RCL
+    READER_RCL,
+    READER_FACE
 } file_reader;
 
 typedef struct file_kind {

@@ -1,4 +1,4 @@
-/* cmd_build.c: glTF, .bvh and .rcl in, one pack out: the model of the first file that has meshes, the clips of all. */
+/* cmd_build.c: models and clips in, one pack out: the model of the first file that has meshes, the clips of all. */
 #define _POSIX_C_SOURCE 200809L /* isatty */
 
 #include <math.h>
@@ -929,7 +929,7 @@ static const option options[] = {
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .fbx, .obj, .bvh and .rcl files to one pack: the first model, the clips of all",
+    .what = "convert .gltf, .glb, .fbx, .obj, .bvh, .csv and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1\n--terrain hill.png -o hill.noh --terrain-size 64 --terrain-height 8",
     .options = options,

@@ -18,6 +18,12 @@ const char *const help_formats_text[] = {
     ".fbx: FBX 2011 and later, and version 6, binary and ASCII: meshes, skins, blend shapes, materials; a clip for each take, with pivots, "
     "inherit types, layers and tangents, sampled at the file's frames. Constraints, NURBS and caches are left out with a warning.",
     ".bvh: motion capture. Channels may be in any order; end sites do not become joints. --unit-cm is the length of a unit.",
+    ".csv: facial capture of ARKit's shapes, a row for each frame. The first line names the columns, separated by commas or semicolons: "
+    "Timecode (HOURS:MINUTES:SECONDS:FRAME) or Time (seconds), and shapes (EyeBlinkLeft, jaw_open). Rows may be missing. Given with a "
+    "model, the clip moves its targets of these names, in any spelling that noh knows (--names adds yours); a target without a side takes "
+    "the mean of left and right. Rotations of head and eyes are left out.",
+    "   Timecode,BlendShapeCount,EyeBlinkLeft,EyeBlinkRight,JawOpen",
+    "   10:30:00:00.000,3,0.012,0.011,0.250",
     ".rcl: raw clips, joints only, as noh clip --dump writes them. Little-endian, 32-bit floats, centimetres:",
     "   char[4] \"RCL1\"; u32 joints; u32 frames; f32 rate_hz; u32 length; char name[length]",
     "   per joint: i32 parent (-1: a root; parents first); u32 flags (1 rotation, 2 translation, 4 scale animated);",

@@ -1,0 +1,114 @@
+#include "shape_match.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/base/names.h"
+#include "convert/model/model_build.h"
+#include "raw_set.h"
+
+/* The scalar that means the same as a name with a side behind it. */
+static uint32_t find_scalar(const raw_clip *clip, uint32_t count, const char *name, const char *side)
+{
+    char full[2 * NOH_NAME_BYTES_MAX], means[NOH_NAME_BYTES_MAX];
+    (void)snprintf(full, sizeof full, "%s%s", name, side);
+    if (!names_find(NAME_TARGET, full, means, NULL)) return MODEL_NONE;
+    for (uint32_t i = 0; i < count; i++) {
+        if (strcmp(clip->floats[i].name, means) == 0) return i;
+    }
+    return MODEL_NONE;
+}
+
+/* The scalars that give a target its weight: two, which may be the same, or none. */
+static void sources_of(const raw_clip *clip, uint32_t count, const char *target, uint32_t from[2])
+{
+    from[0] = from[1] = find_scalar(clip, count, target, "");
+    if (from[0] != MODEL_NONE) return;
+    from[0] = find_scalar(clip, count, target, "_Left");
+    from[1] = find_scalar(clip, count, target, "_Right");
+    if (from[0] == MODEL_NONE || from[1] == MODEL_NONE) from[0] = from[1] = MODEL_NONE;
+}
+
+/* Centimetres by which a weight of 1 moves the surface. */
+static float reach_cm(const model *m, uint32_t mesh, uint32_t target)
+{
+    const model_mesh *x = &m->meshes[mesh];
+    const float *p = x->targets[target].position;
+    double most = 0.0;
+    for (size_t v = 0; v < x->vertex_count; v++) {
+        most = fmax(most, hypot(hypot((double)p[3 * v], (double)p[3 * v + 1]), (double)p[3 * v + 2]));
+    }
+    return (float)(100.0 * most * (double)model_mesh_scale(m, mesh));
+}
+
+static void fill(const raw_clip *clip, const uint32_t from[2], float standing, raw_floats *out, uint32_t target)
+{
+    for (size_t k = 0; k < clip->frame_count; k++) {
+        float *to = &out->values[k * out->width + target];
+        *to = from[0] == MODEL_NONE ? standing
+                                    : 0.5f * (clip->floats[from[0]].values[k] + clip->floats[from[1]].values[k]);
+    }
+}
+
+/* The weights of one node, behind the clip's `count` scalars; left out where none of its targets is named. */
+static int add_node(const model *m, uint32_t node, uint32_t count, raw_clip *clip, uint8_t *taken)
+{
+    const uint32_t mesh = m->nodes[node].mesh, targets = mesh == MODEL_NONE ? 0 : m->meshes[mesh].target_count;
+    const float *own = m->nodes[node].weights;
+    raw_floats *out = &clip->floats[clip->float_count];
+    int any = 0;
+    if (!targets) return 0;
+    memset(out, 0, sizeof *out);
+    if (raw_floats_alloc(out, clip->frame_count, targets)) return 1;
+    out->node = node;
+    out->name = model_string(m->nodes[node].name);
+    out->radius = model_zeros(targets, sizeof *out->radius);
+    clip->float_count++;
+    if (!out->name || !out->radius) return 1;
+    for (uint32_t t = 0; t < targets; t++) {
+        uint32_t from[2];
+        sources_of(clip, count, m->meshes[mesh].targets[t].name, from);
+        out->radius[t] = reach_cm(m, mesh, t);
+        fill(clip, from, own ? own[t] : m->meshes[mesh].weights[t], out, t);
+        if (from[0] == MODEL_NONE) continue;
+        taken[from[0]] = taken[from[1]] = 1;
+        any = 1;
+    }
+    if (!any) raw_floats_clear(&clip->floats[--clip->float_count]);
+    return 0;
+}
+
+static int warn(model *m, const char *path, const raw_clip *clip, uint32_t count, const uint8_t *taken)
+{
+    uint32_t lost = 0, first = 0;
+    for (uint32_t i = count; i-- > 0;) {
+        if (!taken[i]) lost++, first = i;
+    }
+    if (lost == count) {
+        return model_warn(m,
+                          "clip '%.60s': %.100s has no target named as a shape of ARKit: its %u scalars move nothing",
+                          clip->name, path, count);
+    }
+    return lost && model_warn(m, "clip '%.60s': %.100s has no target '%s'%s: %u of %u shapes were left out", clip->name,
+                              path, clip->floats[first].name, lost > 1 ? " and others" : "", lost, count);
+}
+
+int shapes_match(model *m, const char *path, raw_clip *clip)
+{
+    const uint32_t count = clip->float_count;
+    raw_floats *grown = realloc(clip->floats, ((size_t)count + m->node_count + 1u) * sizeof *grown);
+    uint8_t *taken = model_zeros(count, 1);
+    int failed = !grown || !taken;
+    if (grown) clip->floats = grown;
+    for (uint32_t n = 0; n < m->node_count && !failed; n++) failed = add_node(m, n, count, clip, taken);
+    failed = failed || warn(m, path, clip, count, taken);
+    if (!failed && clip->float_count > count) {
+        for (uint32_t i = 0; i < count; i++) raw_floats_clear(&clip->floats[i]);
+        memmove(clip->floats, clip->floats + count, (clip->float_count - count) * sizeof *clip->floats);
+        clip->float_count -= count;
+    }
+    free(taken);
+    return failed;
+}
