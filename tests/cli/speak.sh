@@ -10,6 +10,31 @@ says '--face'
 noh speak 'Hello' --wav
 expect 2 'an option without its value'
 
+# Phones as a person wrote them, without a voice.
+printf '0.10 0.30 P\n0.30 0.50 AA1\n\n0.60 0.80 M\n0.80 0.90 QQ\n' >"$work/line.phones"
+noh speak 'Palm' --labels "$work/line.phones" --json
+expect 0 'phones are given'
+says "line 5: the phone 'QQ' is neither of ARPABET nor of IPA"
+if [ -n "$json" ]; then
+    for expression in 'j.source === "labels" && Math.abs(j.seconds - 0.9) < 1e-9' \
+        'j.phones.map(p => p.phone).join() === ",P,AA1,,M,QQ"' \
+        'j.phones.map(p => p.start_s).join() === "0,0.1,0.3,0.5,0.6,0.8"' \
+        'j.frames.viseme[20] === "PP" && j.frames.viseme[40] === "aa" && j.frames.viseme[70] === "PP"' \
+        'j.frames.open[40] > 0.6 && j.frames.open[70] < 0.05'; do
+        if $json "$expression" <"$work/out"; then ok "$expression"; else not_ok "$expression"; fi
+    done
+fi
+noh speak 'Palm' --labels "$work/line.phones" --face "$build/mask.noh" -o "$work/palm.noh"
+expect 0 'they make a clip'
+noh info "$work/palm.noh"
+check 'of 59 floats' grep -q "clip 'speech': 1.200 s, 0 joints, 59 floats" "$work/out"
+noh speak 'Palm' --labels "$work/line.phones" --wav "$work/palm.wav"
+expect 2 'which have no sound'
+printf '0.5 0.6 P\n0.1 0.2 P\n' >"$work/back.phones"
+noh speak 'Palm' --labels "$work/back.phones"
+expect 1 'phones that go back'
+says 'line 2: it starts before the line above'
+
 noh speak 'Papa bought me five boats.' --json
 if grep -q 'eSpeak NG is not installed' "$work/err"; then
     expect 1 'without eSpeak NG it is an error that says what to install'
@@ -46,6 +71,16 @@ for p in j["phones"]:
 ' "$work/speech.json"
 fi
 
+# phones in eSpeak NG's spelling
+noh speak "Say [[p'A:m]]." --json
+expect 0 'phones in brackets'
+if [ -n "$json" ]; then
+    if $json 'j.phones.map(p => p.viseme).slice(2, 5).join() === "PP,aa,PP"' <"$work/out"; then
+        ok 'are said, not spelled'
+    else
+        not_ok 'are said, not spelled'
+    fi
+fi
 noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh" --wav "$work/line.wav"
 expect 0 'a clip for the mask'
 check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test "$(wc -c <"$1")" -gt 40000' - "$work/line.wav"

@@ -28,8 +28,6 @@ expect 2 'words, or an ear'
 noh speak 'Hello' --live
 expect 2 'a text is not heard'
 says 'recording without words'
-noh speak 'Hello' --labels "$work/said.wav"
-expect 2 'labels want a recording'
 
 # ---- sound files of every kind: the phones of one text stay where they are ----
 cat >"$work/kinds.py" <<'PY'

@@ -103,7 +103,11 @@ static int print_json(const speak_args *a, const spoken *s)
 {
     json j = json_begin();
     json_number(&j, "seconds", s->track.seconds);
-    json_text(&j, "source", s->heard ? "recording" : s->recorded ? "recording and text" : "text");
+    json_text(&j, "source",
+              s->heard      ? "recording"
+              : s->recorded ? "recording and text"
+              : a->labels   ? "labels"
+                            : "text");
     json_number(&j, "latency_ms", s->heard ? hearing_latency_ms(&a->how) : 0.0);
     if (s->heard) {
         json_text(&j, "method", a->how.amplitude ? "amplitude" : "ear");
@@ -200,7 +204,9 @@ static int take_text(const speak_args *a, spoken *s)
         return tool_usage("speak: --live and --amplitude need a recording without words");
     }
     if ((s->recorded || s->heard) && a->wav) return tool_usage("speak: --wav has no effect with a recording");
-    if (!s->recorded && !s->heard && a->labels) return tool_usage("speak: --labels needs a recording");
+    if (!s->recorded && !s->heard && a->labels && a->wav) {
+        return tool_usage("speak: --wav has no effect with --labels, which have no sound");
+    }
     if (s->heard) text = "";
     if (a->text_file) return read_text_file(a->text_file, &s->text);
     if (strlen(text) > TEXT_BYTES_MAX) return tool_fail("speak", "the text is longer than %u bytes", TEXT_BYTES_MAX);
@@ -299,7 +305,11 @@ static int say(const speak_args *a, spoken *s)
 {
     int status = take_text(a, s);
     if (!status && s->heard) return hear(a, s);
-    if (!status) status = s->recorded ? align(a, s) : synthesis_make(s->text, a->language, &s->said);
+    if (!status) {
+        status = s->recorded ? align(a, s)
+                 : a->labels ? labels_say(a->labels, &s->said)
+                             : synthesis_make(s->text, a->language, &s->said);
+    }
     synthesis_end();
     if (!status) status = speech_track_make(&s->said, &s->track);
     return status;
@@ -342,7 +352,8 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, labels),
       .value = "FILE",
-      .what = "measure the result against known phones: lines of start, end (s) and phone",
+      .what =
+          "phones and their times: lines of start, end (s) and phone, of ARPABET or IPA. With a text: the mouth says these, without a voice; with a recording: the result is measured against them",
       .example = "line.phones" },
     { .name = "--live",
       .kind = OPTION_FLAG,
@@ -396,7 +407,7 @@ const verb verb_speak = {
     .files = "TEXT|IN.wav",
     .what = "make phones and a mouth clip for a face from a text, a recording, or both",
     .more =
-        "eSpeak NG speaks a text (Debian: libespeak-ng1, espeak-ng-data), and phones are exact to the sample. Mouth shapes blend as they do in speech, and the lips meet for every p, b and m. Words become callback keys of the clip. With --text, the words are found in a recording (8 to 32 bits or floats, any rate, up to ten minutes; Debian: libsndfile1) by aligning it with several voices of eSpeak NG, in any of its languages; a warning says if the words do not seem to match. A recording without words goes through the same ear as a microphone: fewer shapes are right, but any language works.",
+        "eSpeak NG speaks a text (Debian: libespeak-ng1, espeak-ng-data), and phones are exact to the sample. [[h@l'oU]] in a text is phones in its own spelling. To edit phones, write the lines that --labels reads from the phones of --json. Mouth shapes blend as they do in speech, and the lips meet for every p, b and m. Words become callback keys of the clip. With --text, the words are found in a recording (8 to 32 bits or floats, any rate, up to ten minutes; Debian: libsndfile1) by aligning it with several voices of eSpeak NG, in any of its languages; a warning says if the words do not seem to match. A recording without words goes through the same ear as a microphone: fewer shapes are right, but any language works.",
     .example =
         "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json\n"
         "line.wav --text \"Hello.\" --face face.noh -o line.noh\nline.wav --face face.noh -o line.noh",

@@ -11,10 +11,13 @@
 #define RATE 100.0
 #define NEAR_S 0.15
 #define LABELS_MAX 20000u
+#define SAID_RATE 48000u
 
 typedef struct label {
     double start, end;
     noh_viseme first, second; /* NOH_VISEME_COUNT: unknown; only one */
+    size_t line;
+    spoken_phone phone; /* its name */
 } label;
 
 typedef struct label_list {
@@ -22,7 +25,7 @@ typedef struct label_list {
     size_t count;
 } label_list;
 
-static int add(label_list *l, double start, double end, const char *phone)
+static int add(label_list *l, double start, double end, const char *phone, size_t line)
 {
     label *more = l->count % 256u ? l->items : realloc(l->items, (l->count + 256u) * sizeof *more);
     if (!more) return 1;
@@ -30,6 +33,8 @@ static int add(label_list *l, double start, double end, const char *phone)
     more[l->count].start = start;
     more[l->count].end = end;
     more[l->count].first = noh_viseme_of_phone(phone, &more[l->count].second);
+    more[l->count].line = line;
+    snprintf(more[l->count].phone.name, sizeof more->phone.name, "%s", phone);
     l->count++;
     return 0;
 }
@@ -46,7 +51,7 @@ static int read_line(const char *path, size_t number, const char *line, label_li
     }
     if (out->count >= LABELS_MAX) return tool_fail(path, "line %zu: more than %u phones", number, LABELS_MAX);
     if (!strcmp(phone, "NS") || !strcmp(phone, "BREATH")) memcpy(phone, "SIL", 4); /* noise: shut lips */
-    return add(out, start, end, phone) ? tool_fail(path, "out of memory") : 0;
+    return add(out, start, end, phone, number) ? tool_fail(path, "out of memory") : 0;
 }
 
 static int read_labels(const char *path, label_list *out)
@@ -67,7 +72,8 @@ static int of_synthesis(const synthesis *s, label_list *out)
 {
     for (size_t i = 0; i < s->phone_count; i++) {
         const size_t end = i + 1u < s->phone_count ? s->phones[i + 1u].sample : s->sample_count;
-        if (add(out, (double)s->phones[i].sample / s->sample_rate, (double)end / s->sample_rate, s->phones[i].name)) {
+        if (add(out, (double)s->phones[i].sample / s->sample_rate, (double)end / s->sample_rate, s->phones[i].name,
+                0)) {
             return tool_fail("speak", "out of memory");
         }
     }
@@ -192,5 +198,54 @@ int labels_score(const char *path, const synthesis *said, label_score *out)
     }
     free(wanted.items);
     free(got.items);
+    return status;
+}
+
+/* ---- spoken ---- */
+
+static uint32_t sample_of(double seconds)
+{
+    return (uint32_t)(seconds * SAID_RATE + 0.5);
+}
+
+static void say_phone(synthesis *s, uint32_t sample, const char *name)
+{
+    spoken_phone *phone = &s->phones[s->phone_count++];
+    memcpy(phone->name, name, sizeof phone->name);
+    phone->sample = sample;
+}
+
+static int say_labels(const char *path, const label_list *all, synthesis *out)
+{
+    static const spoken_phone pause;
+    for (size_t i = 0; i < all->count; i++) {
+        const label *l = &all->items[i];
+        if (i && l->start < all->items[i - 1u].start) {
+            return tool_fail(path, "line %zu: it starts before the line above: sort the lines by time", l->line);
+        }
+        if (l->first == NOH_VISEME_COUNT) {
+            fprintf(stderr,
+                    "noh: %s: warning: line %zu: the phone '%s' is neither of ARPABET nor of IPA: the mouth keeps "
+                    "the shape before it\n",
+                    path, l->line, l->phone.name);
+        }
+        if (sample_of(l->start) > out->sample_count) say_phone(out, (uint32_t)out->sample_count, pause.name);
+        say_phone(out, sample_of(l->start), l->phone.name);
+        if (sample_of(l->end) > out->sample_count) out->sample_count = sample_of(l->end);
+    }
+    return 0;
+}
+
+int labels_say(const char *path, synthesis *out)
+{
+    label_list all = { NULL, 0 };
+    int status = read_labels(path, &all);
+    memset(out, 0, sizeof *out);
+    out->sample_rate = SAID_RATE;
+    if (!status) {
+        out->phones = calloc(2u * all.count, sizeof *out->phones);
+        status = out->phones ? say_labels(path, &all, out) : tool_fail("speak", "out of memory");
+    }
+    free(all.items);
     return status;
 }

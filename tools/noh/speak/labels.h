@@ -1,4 +1,4 @@
-/* labels.h: phones that a person, or another program, has found in a recording, to measure others against. */
+/* labels.h: phones and their times as a person or another program wrote them: to measure others against, or to speak. */
 #ifndef NOH_NOH_SPEAK_LABELS_H
 #define NOH_NOH_SPEAK_LABELS_H
 
@@ -19,5 +19,9 @@ typedef struct label_score {
 /* path: lines of "start end phone", seconds, phones of ARPABET or IPA. Prints an error and returns an exit code; 0 on
  * success. */
 int labels_score(const char *path, const synthesis *said, label_score *out);
+
+/* The phones of such a file, with pauses between them where it has none, as if they were spoken: without sound and words.
+ * An unknown phone gives a warning. Free with synthesis_free, also on failure. */
+int labels_say(const char *path, synthesis *out);
 
 #endif

@@ -11,7 +11,7 @@
 
 enum { EVENT_LAST = 0, EVENT_WORD = 1, EVENT_PHONEME = 7 };
 enum { OUTPUT_SYNCHRONOUS = 2, WITH_PHONEMES = 1, PHONEMES_IPA = 2, DO_NOT_EXIT = 0x8000 };
-enum { BY_CHARACTER = 1, IN_UTF8 = 1 };
+enum { BY_CHARACTER = 1, IN_UTF8 = 1, PHONES_IN_BRACKETS = 0x100 };
 
 typedef struct event {
     int type;
@@ -159,7 +159,8 @@ static int say(const char *text, const char *name, synthesis *out)
     out->sample_rate = (uint32_t)engine_rate;
     current = out;
     engine.set_callback(take);
-    if (engine.synth(text, strlen(text) + 1u, 0, BY_CHARACTER, 0, IN_UTF8, NULL, NULL) || engine.synchronize()) {
+    if (engine.synth(text, strlen(text) + 1u, 0, BY_CHARACTER, 0, IN_UTF8 | PHONES_IN_BRACKETS, NULL, NULL) ||
+        engine.synchronize()) {
         return tool_fail("speak", "eSpeak NG cannot speak this text");
     }
     if (out->failed) return tool_fail("speak", "out of memory");

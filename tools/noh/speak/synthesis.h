@@ -1,4 +1,5 @@
 /* synthesis.h: text spoken by eSpeak NG: its sound, its phones and its words, each with the sample at which it begins.
+ * Text in [[ ]] is phones in eSpeak NG's own spelling.
  *
  * The library is looked for when it is needed (libespeak-ng.so.1), so that noh is built, and runs, without it. */
 #ifndef NOH_NOH_SPEAK_SYNTHESIS_H
