@@ -38,6 +38,8 @@ cp "$build/demo/arm.glb" "$project"
 [ ! -f "$build/demo/puppet_levels.noh" ] || cp "$build/demo/puppet_levels.noh" "$project/walker.noh"
 head -c 5000 "$build/demo/arm.glb" >"$project/cut.glb"
 printf 'HIERARCHY\nROOT bent_0\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\nJOINT bent_1\n{\nOFFSET 0 50 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 50 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.03\n0 0\n10 20\n' >"$project/turn.bvh"
+node tests/web/webp_model.js >"$project/webp.gltf"
+[ -z "$(ldconfig -p 2>/dev/null | grep libwebp.so)" ] || "$build/noh" build "$project/webp.gltf" -o "$project/webp.noh" --quiet
 check 'npm install' npm install --prefix "$project" --offline --no-audit --no-fund "$tarball"
 installed=$project/node_modules/noh-character
 for file in LICENSE README.md $(sed -n "s/.*from '\.\/\(.*\)'.*/\1/p" platform/web/package/*.js | sort -u) \

@@ -1,18 +1,20 @@
 #!/bin/sh
-# npm.sh OUT FOLDER WASM LICENSE WORKER CONVERTER: OUT/noh-character-$VERSION.tgz, as `npm pack` would make it: FOLDER, the
-# program and the licence, with VERSION in package.json, and in convert/ the worker and what the folder CONVERTER has of the
-# converter, if it was built. The same files give the same bytes.
+# npm.sh OUT FOLDER WASM LICENSE CONVERTER WORKER...: OUT/noh-character-$VERSION.tgz, as `npm pack` would make it: FOLDER,
+# the program and the licence, with VERSION in package.json, and in convert/ the worker's scripts and what the folder
+# CONVERTER has of the converter, if it was built. The same files give the same bytes.
 set -eu
 out=$1
 name=noh-character-$VERSION
 rm -rf "$out/package"
 mkdir -p "$out/package"
 cp "$2"/* "$3" "$4" "$out/package"
-if [ -f "$6/convert.wasm" ]; then
-    mkdir "$out/package/convert"
-    cp "$5" "$6/convert.js" "$6/convert.wasm" "$out/package/convert"
-fi
 sed "s/\"version\": \"[^\"]*\"/\"version\": \"$VERSION\", \"license\": \"MIT\"/" "$2/package.json" >"$out/package/package.json"
+if [ -f "$5/convert.wasm" ]; then
+    mkdir "$out/package/convert"
+    cp "$5/convert.js" "$5/convert.wasm" "$out/package/convert"
+    shift 5
+    cp "$@" "$out/package/convert"
+fi
 tar -C "$out" --sort=name --mtime=@0 --owner=0 --group=0 --numeric-owner --mode=u=rw,go=r,a+X -cf - package | gzip -9n >"$out/$name.tgz.new"
 mv "$out/$name.tgz.new" "$out/$name.tgz"
 echo "$out/$name.tgz: $(wc -c <"$out/$name.tgz") bytes, $(find "$out/package" -type f | wc -l) files"

@@ -35,12 +35,13 @@ async function openFiles(list) {
     if (opening || !window.noh.whole || character.lost) return;
     opening = true;
     say('');
-    const before = character.program;
+    const before = character.program, warnings = [];
     try {
         visitor = visitor || new (await import('./package/convert.js')).Visitor();
-        const pack = await visitor.pack(files, { tell: showWords });
+        const pack = await visitor.pack(files, { tell: showWords, warn: (words) => warnings.push(words) });
         fresh = true;
         await load(pack);
+        say(warnings.join('\n'));
         again = () => pack;
         byId('file-text').textContent = files.map((file) => file.name).join(', ');
     } catch (error) {

@@ -159,6 +159,25 @@ async function keys(browser) {
     await close(page, 'keys');
 }
 
+// A WebP picture is decoded by the browser, to the pixels of `noh build`; what is left out is told.
+async function webp(page, drop) {
+    await page.evaluate(() => {
+        window.warned = [];
+        document.getElementById('it').addEventListener('warning', ({ detail }) => warned.push(detail.message));
+    });
+    await drop('webp.gltf');
+    await page.waitForFunction(() => warned.length || document.getElementById('it').error);
+    const told = await page.evaluate(() => ({ warned, error: document.getElementById('it').error }));
+    check('dropped: a picture that is not there is an event, and nothing else', told.error === '' && told.warned.length === 1 && told.warned[0].includes('nowhere.png'), JSON.stringify(told));
+    check('dropped: and a text', (await page.textContent('noh-character .message')).includes('nowhere.png'));
+    if (!fs.existsSync(path.join(project, 'webp.noh'))) return;
+    const made = await page.evaluate(async () => {
+        const { convert } = await import('./node_modules/noh-character/index.js'), file = new File([await (await fetch('webp.gltf')).arrayBuffer()], 'webp.gltf');
+        return Array.from(await convert([file]));
+    });
+    check('dropped: a WebP picture has the bytes of `noh build`', fs.readFileSync(path.join(project, 'webp.noh')).equals(Buffer.from(made)), made.length);
+}
+
 // What a visitor drops: a pack, a model, which is converted, clips for it, and what is none or broken.
 async function dropped(browser) {
     const page = await show(browser, '<noh-character id="it" drop></noh-character>');
@@ -194,6 +213,7 @@ async function dropped(browser) {
     await arrives('a clip joins the model before it', 'turn');
     await frames(page, 'it', 1);
     await page.screenshot({ path: path.join(out, 'dropped.png') });
+    await webp(page, drop);
     return close(page, 'dropped');
 }
 

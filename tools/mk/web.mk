@@ -14,9 +14,10 @@ WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s AL
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
 WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js)
-WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js program.js pointer.js speech.js character.js)
+WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js compile.js program.js pointer.js speech.js character.js)
 WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh page.nohz $(addprefix package/,noh.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
-WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm worker.js)
+WEB_WORKER    := $(addprefix tools/web_convert/,worker.js webp.js)
+WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm $(notdir $(WEB_WORKER)))
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
 
 web: deps-web
@@ -102,14 +103,14 @@ $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 # of its libraries come from Debian's packages; meshoptimizer, which has more than headers, from their sources. Draco is
 # left out: what needs it is refused.
 WEB_CONVERT   := $(BUILD)/web-convert
-WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_none.c model_none.c stb.c libraries.cpp) \
+WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/web_convert/,main.c webp_browser.c model_none.c stb.c libraries.cpp) \
                  tools/noh/build/cmd_build.c tools/noh/build/build_fail.c tools/noh/build/depfile.c tools/noh/pack/cmd_pack.c tools/noh/file/pack_file.c platform/file.c platform/file_write.c \
                  $(addprefix tools/noh/cli/,args.c json.c message.c report_stream.c) $(filter-out %/webp_file.c,$(CONVERT_C)) $(CONVERT_CC))) \
                  $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
 WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include
-WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker,node \
+WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker \
                      -s TOTAL_STACK=1MB -s MODULARIZE=1 -s EXPORT_NAME=nohConvert -s INVOKE_RUN=0 \
-                     -s EXPORTED_RUNTIME_METHODS=FS,callMain -s INCOMING_MODULE_JS_API=stdout,stderr,locateFile,wasmMemory
+                     -s EXPORTED_RUNTIME_METHODS=FS,callMain -s INCOMING_MODULE_JS_API=stdout,stderr,instantiateWasm -s DYNAMIC_EXECUTION=0
 
 # Headers that any processor can have, and nothing else of /usr/include.
 $(WEB_CONVERT)/include/.made: tools/web_convert/meshoptimizer.sh
@@ -131,9 +132,10 @@ $(WEB_CONVERT)/meshoptimizer/%.o: $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
 $(WEB_CONVERT)/convert.js: $(WEB_CONVERT_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_CONVERT_FLAGS) $^ $(WEB_CONVERT_LINK) -o $@
+	@echo 'export default nohConvert;' >>$@
 -include $(WEB_CONVERT_O:.o=.d)
 $(WEB_CONVERT)/convert.wasm: $(WEB_CONVERT)/convert.js
-$(WEB)/package/convert/worker.js: tools/web_convert/worker.js
+$(WEB)/package/convert/w%.js: tools/web_convert/w%.js
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/package/convert/convert.%: $(WEB_CONVERT)/convert.%
@@ -148,7 +150,7 @@ WEB_FESTIVAL   := $(WEB)/festival
 WEB_FESTIVAL_O := $(patsubst %.c,$(WEB_OBJECTS)/%.o,platform/web/festival/festival.c platform/web/context.c platform/file.c \
                   $(addprefix tools/noh/crowd/,place_scene.c place_life.c place_people.c place_file.c crowd_measure.c crowd_hair.c) \
                   tools/noh/draw/lighting.c tools/noh/build/build_fail.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
-                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_none web_convert/model_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error file_kind nearest image_file input_file text_scan))
+                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_browser web_convert/model_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error file_kind nearest image_file input_file text_scan))
 WEB_FESTIVAL_FILES := $(addprefix $(WEB_FESTIVAL)/,index.html festival.js people.nohz festival.nohz festival.place)
 
 web-festival: web
@@ -187,5 +189,5 @@ npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
 $(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/noh/base.h \
-    tools/web_convert/worker.js $(wildcard $(WEB_CONVERT)/convert.wasm)
-	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE tools/web_convert/worker.js $(WEB_CONVERT)
+    $(WEB_WORKER) $(wildcard $(WEB_CONVERT)/convert.wasm)
+	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE $(WEB_CONVERT) $(WEB_WORKER)

@@ -6,9 +6,14 @@ const path = require('path');
 
 const [script, ...args] = process.argv.slice(2);
 const inside = (file) => `/${path.basename(file)}`;
+Object.assign(globalThis, { self: globalThis, location: { href: '' }, importScripts() {} }); // it is made for workers
 
 (async () => {
-    const program = await require(path.resolve(script))({ locateFile: (name) => path.join(path.dirname(path.resolve(script)), name) });
+    const source = fs.readFileSync(script), wasm = fs.readFileSync(script.replace(/js$/, 'wasm'));
+    const { default: nohConvert } = await import(`data:text/javascript;base64,${source.toString('base64')}`);
+    const program = await nohConvert({
+        instantiateWasm: (imports, use) => { WebAssembly.instantiate(wasm, imports).then(({ instance, module }) => use(instance, module)); return {}; },
+    });
     const given = args.map((argument, i) => {
         if (!path.isAbsolute(argument)) return argument;
         if (args[i - 1] !== '-o') program.FS.writeFile(inside(argument), fs.readFileSync(argument));

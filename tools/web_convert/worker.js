@@ -1,8 +1,8 @@
 // worker.js: converts in a worker, and tells what it does. A message { files: [{ name, bytes }], options } comes, the first
-// file the model; messages { progress }, and at last { pack, report } or { error } go.
-'use strict';
-
-importScripts('convert.js'); // nohConvert
+// file the model; messages { progress }, and at last { pack, warnings } or { error } go.
+import nohConvert from './convert.js';
+import { compileFrom } from '../compile.js';
+import { decodeAll } from './webp.js';
 
 const decoder = new TextDecoder();
 
@@ -18,9 +18,10 @@ function lines(tell) {
 }
 
 async function convert({ files, options }) {
-    const report = [], errors = [];
+    const warnings = [], errors = [], module = await compileFrom(new URL('./convert.wasm', import.meta.url), 'converter');
     const program = await nohConvert({
-        stdout: lines((line) => report.push(line)),
+        instantiateWasm: (imports, use) => { WebAssembly.instantiate(module, imports).then((instance) => use(instance, module)); return {}; },
+        stdout: lines((line) => { if (line.startsWith('warning: ')) warnings.push(line.slice(9)); }),
         stderr: lines((line) => {
             const said = line.replace('\u001b[K', '').trim();
             if (line.startsWith('noh: ')) errors.push(said.slice(5));
@@ -28,12 +29,14 @@ async function convert({ files, options }) {
         }),
     });
     program.FS.mkdir('/in');
+    program.FS.mkdir('/webp');
+    for (const [name, bytes] of await decodeAll(files)) program.FS.writeFile(`/webp/${name}`, bytes);
     program.FS.chdir('/in');
     for (const { name, bytes } of files) program.FS.writeFile(name, bytes);
-    const models = files.filter(({ name }) => /\.(glb|gltf|vrm|obj|bvh)$/i.test(name)).map(({ name }) => name);
+    const models = files.filter(({ name }) => /\.(glb|gltf|vrm|fbx|obj|bvh)$/i.test(name)).map(({ name }) => name);
     const status = program.callMain(['build', ...models, '-o', '/out.noh', ...options]);
     if (status) throw new Error(errors.join('\n') || `the converter ended with ${status}`);
-    return { pack: program.FS.readFile('/out.noh'), report: report.join('\n') };
+    return { pack: program.FS.readFile('/out.noh'), warnings };
 }
 
 onmessage = ({ data }) => convert(data).then((made) => postMessage(made, [made.pack.buffer]),

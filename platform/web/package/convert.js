@@ -15,22 +15,22 @@ export function refusal(names) {
     return count(figures) + count(motions) ? '' : `it is none of ${kinds.join(', ')}`;
 }
 
-// files: File objects: a model and the files it refers to (.bin, pictures), or clips. tell(words) reports progress.
-// options: as for `noh build`. Resolves to the pack's bytes.
-export async function convert(files, { tell = () => {}, options = [], base = new URL('convert/', import.meta.url) } = {}) {
+// files: File objects: a model and the files it refers to (.bin, pictures), or clips. tell(words) reports progress,
+// warn(words) each warning. options: as for `noh build`. Resolves to the pack's bytes.
+export async function convert(files, { tell = () => {}, warn = () => {}, options = [] } = {}) {
     const refused = refusal(files.map(({ name }) => name));
     if (refused) throw new Error(refused);
     const order = [...files].sort((a, b) => Number(figures.test(b.name)) - Number(figures.test(a.name)));
     tell('the converter is loaded');
     const read = await Promise.all(order.map(async (file) => ({ name: file.name, bytes: new Uint8Array(await file.arrayBuffer()) })));
-    const worker = new Worker(new URL('worker.js', base));
+    const worker = new Worker(new URL('./convert/worker.js', import.meta.url), { type: 'module' }); // the form that bundlers follow
     try {
         return await new Promise((resolve, reject) => {
             worker.onerror = () => reject(new Error('the converter cannot be loaded: the page was built without it, or the connection was lost'));
             worker.onmessage = ({ data }) => {
                 if (data.progress) tell(data.progress);
-                else if (data.pack) resolve(data.pack);
-                else reject(new Error(data.error));
+                else if (data.error) reject(new Error(data.error));
+                else data.warnings.forEach(warn), resolve(data.pack);
             };
             worker.postMessage({ files: read, options }, read.map(({ bytes }) => bytes.buffer));
         });

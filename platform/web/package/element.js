@@ -15,7 +15,7 @@ canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px; }
 .progress, .message { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; }
 .bar { display: flex; gap: .7rem; align-items: center; }
 progress { flex: 1; min-width: 0; max-width: 16rem; }
-.message { color: #ffc4ba; white-space: pre-wrap; }
+.message { color: #ffc4ba; white-space: pre-wrap; max-height: 40%; overflow: auto; }
 .message:empty, [hidden] { display: none !important; }`;
 
 const body = `<style>${style}</style>
@@ -167,8 +167,13 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         if (!character) return false;
         this.tell('');
         try {
-            const pack = await this.visitor.pack(files, { tell: (words) => { if (character === this.character) this.showProgress({ taken: 0, all: 0, shows: 0, words }); } });
-            return character === this.character && this.load(pack);
+            const mine = () => character === this.character, warnings = [];
+            const tell = (words) => { if (mine()) this.showProgress({ taken: 0, all: 0, shows: 0, words }); };
+            const pack = await this.visitor.pack(files, { tell, warn: (words) => warnings.push(words) });
+            if (!mine() || !await this.load(pack)) return false;
+            for (const message of warnings) this.dispatchEvent(new CustomEvent('warning', { detail: { message } }));
+            this.tell(warnings.join('\n'));
+            return true;
         } catch (error) {
             if (character === this.character) this.fail(new Error(`${files[0].name} cannot be shown: ${error.message || error}`));
             return false;

@@ -141,7 +141,11 @@ export class Character extends EventTarget {
     addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
 
-export interface NohCharacterEvents extends CharacterEvents { error: CustomEvent<{ message: string }> }
+export interface NohCharacterEvents extends CharacterEvents {
+    error: CustomEvent<{ message: string }>;
+    /** A detail of a visitor's model that was left out. */
+    warning: CustomEvent<{ message: string }>;
+}
 
 /** `<noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>` */
 export class NohCharacter extends HTMLElement {
@@ -191,9 +195,9 @@ export class NohCharacter extends HTMLElement {
 export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;
 /** The faces look at the pointer while it is over the canvas. Returns a function that ends it. */
 export function addGaze(canvas: HTMLCanvasElement, character: Character, asked?: () => boolean): () => void;
-/** Convert a model (.glb, .gltf, .vrm, .obj) with its files and clips (.bvh) to a pack, in a worker. `options`: as for
- * `noh build`. */
-export function convert(files: readonly File[], settings?: { tell?: (words: string) => void; options?: readonly string[]; base?: URL }): Promise<Uint8Array>;
+/** Convert a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh) to a pack, in a worker. `tell` takes
+ * progress, `warn` each warning. `options`: as for `noh build`. */
+export function convert(files: readonly File[], settings?: { tell?: (words: string) => void; warn?: (words: string) => void; options?: readonly string[] }): Promise<Uint8Array>;
 /** Mouth shapes of a text, letter by letter. */
 export function shapesOfText(words: string, rate: number): { at: number; ms: number; shape: number }[];
 

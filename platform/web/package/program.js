@@ -1,22 +1,19 @@
 // program.js: the WebAssembly program in its own memory, which is sized for one pack and cannot grow.
+import { compileFrom } from './compile.js';
 import { importsOf, textAt } from './gl.js';
 
 const PAGE = 65536;
-const UNPACKING = 16; // first pages of a planning program: static data and stack; its memory may grow
+const LEAST = 16; // pages of any program: static data and stack; of a planning program, the memory may grow
 const MOST = 32768; // 2 GiB
 export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'blend', 'streams', 'direct']; // by number
 
 const compiled = new Map(); // by address
 
 // The program, compiled once for all characters. address: of noh.wasm.
-export function compile(address = new URL('noh.wasm', import.meta.url)) {
+export function compile(address = new URL('./noh.wasm', import.meta.url)) {
     const key = String(address);
     if (!compiled.has(key)) {
-        const module = WebAssembly.compileStreaming(fetch(key)).catch(async (error) => {
-            const answer = await fetch(key); // the server may send another type
-            if (!answer.ok) throw new Error(`no program: ${key}: the server says ${answer.status}`);
-            return WebAssembly.compile(await answer.arrayBuffer()).catch(() => { throw error; });
-        });
+        const module = compileFrom(key, 'program');
         module.catch(() => compiled.delete(key)); // the next call tries again
         compiled.set(key, module);
     }
@@ -78,7 +75,7 @@ export class Arrival {
     static async begin(module, gl, caps) {
         const arrival = new Arrival();
         Object.assign(arrival, { module, gl, shows: 0, parts: [], bytes: 0, place: 0, around: (call) => call() });
-        arrival.program = await Program.start(module, gl, new WebAssembly.Memory({ initial: UNPACKING, maximum: MOST }), caps);
+        arrival.program = await Program.start(module, gl, new WebAssembly.Memory({ initial: LEAST, maximum: MOST }), caps);
         return arrival;
     }
 
@@ -136,7 +133,7 @@ export class Arrival {
         planner._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         const block = this.around(() => planner._web_plan(path, wants.characters, wants.alive ? 1 : 0));
         if (!block) throw new Error(planner.words());
-        const pages = Math.ceil(planner._web_memory_for(bytes, block) / PAGE);
+        const pages = Math.max(LEAST, Math.ceil(planner._web_memory_for(bytes, block) / PAGE));
         const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
         const program = await Program.start(this.module, this.gl, memory, this.caps());
         program._web_set_elsewhere(wants.elsewhere ? 1 : 0);
