@@ -20,7 +20,7 @@ command -v emcc >/dev/null 2>&1 || leave_out 'no emcc here (emscripten)'
 . tests/web/find_browser.sh
 fetch=
 node --no-experimental-fetch -e 0 2>/dev/null && fetch=--no-experimental-fetch
-find_browser "$build/web-check" playwright-core axe-core typescript three @types/three
+find_browser "$build/web-check" playwright-core axe-core typescript three @types/three @types/react
 
 ok() { passed=$((passed + 1)); }
 not_ok() {
@@ -150,6 +150,7 @@ for pack in "$@"; do
     [ "$name" != puppet_levels ] || clip=dance time=3.25 paths=auto # the other paths are the mask's to try
     if make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$pack"; then check_pack; else not_ok 'the page does not build'; fi
     [ "$name" != mask ] || add tests/web_package.sh "$pack"
+    [ "$name" != mask ] || [ -n "${NOH_WEB_ONLY:-}" ] || add tests/web_bundlers.sh "$pack"
 done
 add tests/web_convert.sh
 # The share of a figure in the picture while clips play.

@@ -17,7 +17,7 @@ leave_out() {
     exit 0
 }
 . tests/web/find_browser.sh
-find_browser "$build/web-check" playwright-core axe-core typescript three @types/three # the same list as in web.sh: npm removes others
+find_browser "$build/web-check" playwright-core axe-core typescript three @types/three @types/react # the same list as in web.sh: npm removes others
 ok() { passed=$((passed + 1)); }
 not_ok() {
     failed=$((failed + 1))

@@ -109,7 +109,7 @@ WEB_CONVERT_O := $(patsubst %,$(WEB_CONVERT)/%.o,$(basename $(addprefix tools/we
                  $(patsubst %,$(WEB_CONVERT)/meshoptimizer/src/%.o,allocator indexcodec overdrawoptimizer vcacheoptimizer vertexcodec vertexfilter)
 WEB_CONVERT_FLAGS := -O2 -msimd128 $(FP) -isystem $(WEB_CONVERT)/include
 WEB_CONVERT_LINK  := -fwasm-exceptions -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2GB -s STACK_OVERFLOW_CHECK=0 -s ENVIRONMENT=worker \
-                     -s TOTAL_STACK=1MB -s MODULARIZE=1 -s EXPORT_NAME=nohConvert -s INVOKE_RUN=0 \
+                     -s TOTAL_STACK=1MB -s MODULARIZE=1 -s EXPORT_ES6=1 -s USE_ES6_IMPORT_META=0 -s EXPORT_NAME=nohConvert -s INVOKE_RUN=0 \
                      -s EXPORTED_RUNTIME_METHODS=FS,callMain -s INCOMING_MODULE_JS_API=stdout,stderr,instantiateWasm -s DYNAMIC_EXECUTION=0
 
 # Headers that any processor can have, and nothing else of /usr/include.
@@ -132,7 +132,6 @@ $(WEB_CONVERT)/meshoptimizer/%.o: $(WEB_CONVERT)/include/.made | $(BUILD)/web-cc
 $(WEB_CONVERT)/convert.js: $(WEB_CONVERT_O) $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_CONVERT_FLAGS) $^ $(WEB_CONVERT_LINK) -o $@
-	@echo 'export default nohConvert;' >>$@
 -include $(WEB_CONVERT_O:.o=.d)
 $(WEB_CONVERT)/convert.wasm: $(WEB_CONVERT)/convert.js
 $(WEB)/package/convert/w%.js: tools/web_convert/w%.js

@@ -18,10 +18,16 @@ progress { flex: 1; min-width: 0; max-width: 16rem; }
 .message { color: #ffc4ba; white-space: pre-wrap; max-height: 40%; overflow: auto; }
 .message:empty, [hidden] { display: none !important; }`;
 
-const body = `<style>${style}</style>
-<div class="poster" part="poster"><slot name="poster"></slot></div>
+const body = `<div class="poster" part="poster"><slot name="poster"></slot></div>
 <div class="progress" part="progress" hidden><slot name="progress"><div class="bar"><progress aria-label="the character arrives"></progress><span></span></div></slot></div>
 <div class="message" part="message" role="status"></div>`;
+
+// One for all elements; adopted, because policies refuse a <style>.
+let sheet = null;
+function styleSheet() {
+    if (!sheet) (sheet = new CSSStyleSheet()).replaceSync(style);
+    return sheet;
+}
 
 const byKeys = 'drag or arrow keys turn it, pinch, plus and minus bring it closer, two fingers or arrows with shift move it, home frames it, space plays and pauses';
 const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background'];
@@ -36,6 +42,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     constructor() {
         super();
         this.attachShadow({ mode: 'open' }).innerHTML = body;
+        this.shadowRoot.adoptedStyleSheets = [styleSheet()];
         this.inside = (selector) => this.shadowRoot.querySelector(selector);
         this.character = null;
         this.error = '';
