@@ -46,9 +46,9 @@ for file in LICENSE README.md $(sed -n "s/.*from '\.\/\(.*\)'.*/\1/p" platform/w
     $(sed -n 's/.*: "\.\/\([a-z.]*\)".*/\1/p' "$installed/package.json"); do
     check "the tarball has $file" test -s "$installed/$file"
 done
-cp tests/web/types.ts "$project"
+cp tests/web/types.ts tests/web/react.tsx "$project"
 check 'types' node "$(node -p 'require.resolve("typescript/package.json")' | sed 's,package.json$,bin/tsc,')" --noEmit --strict \
-    --target es2022 --module nodenext --moduleResolution nodenext --skipLibCheck false "$project/types.ts"
+    --target es2022 --module nodenext --moduleResolution nodenext --skipLibCheck false --jsx react-jsx "$project/types.ts" "$project/react.tsx"
 timeout -k 5 1500 node tests/web/package.js "$project" "$chromium" "$out" "$project" >"$out/log.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/log.txt")" != 0 ] ||
     not_ok "tests/web/package.js ends too early: $(tail -n 1 "$out/log.txt")"
 passed=$((passed + $(grep -c '^ok ' "$out/log.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/log.txt")))

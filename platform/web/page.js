@@ -16,12 +16,6 @@ let fresh = true; // the next pack starts afresh, else it continues
 // Tests wait for these.
 window.noh = { ready: false, whole: false, coarse: 0, lost: 0, restored: 0, frames: 0, due: 0, error: '' };
 
-function fail(text) {
-    window.noh.error = text;
-    byId('message').textContent = text;
-    throw new Error(text);
-}
-
 // Parts of the query that are not possible, shown next to the picture.
 const say = (words) => { byId('message').textContent = words; };
 const text = (pointer) => Module.text(pointer);
@@ -221,7 +215,7 @@ function listen() {
 }
 
 async function start() {
-    const { Character, addPointers, addGaze, isSoftware } = await arriving;
+    const { Character, addPointers, addGaze, isSoftware } = await arriving.catch(() => { throw new Error('the page cannot load its program: is this device online?'); });
     Object.defineProperty(window.noh, 'software', { get: () => isSoftware(window.noh.renderer) });
     character = new Character(canvas, {
         path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
@@ -237,4 +231,9 @@ async function start() {
 }
 
 // After the other scripts are loaded.
-document.addEventListener('DOMContentLoaded', () => start().catch((error) => { byId('message').textContent = window.noh.error = String(error.message || error); }));
+document.addEventListener('DOMContentLoaded', () => start().catch((error) => {
+    say(window.noh.error = String(error.message || error));
+    byId('progress').hidden = true;
+    byId('again').hidden = false;
+    for (const [on, type] of [[byId('again'), 'click'], [window, 'online']]) on.addEventListener(type, () => location.reload());
+}));

@@ -71,6 +71,8 @@ async function refused(browser) {
         await page.waitForFunction(() => window.noh.error);
         const said = await page.textContent('#message');
         check(`a pack that is ${pack}: it says so`, said.includes(words) && await page.evaluate(() => !window.noh.whole), said);
+        check(`a pack that is ${pack}: it can be tried again`, await page.isVisible('#again') && !await page.isVisible('#progress'));
+        if (pack === 'none.nohz') await page.screenshot({ path: path.join(out, 'refused_page.png') });
         await page.close();
     }
 }

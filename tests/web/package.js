@@ -86,7 +86,7 @@ async function removed(page) {
         window.kept = { gl: character.gl, memory: new WeakRef(character.program.memory.buffer), character: new WeakRef(character) };
         element.parentNode.append(element); // moved, not removed
         await new Promise((resolve) => setTimeout(resolve, 50));
-        const moved = element.ready && !kept.gl.isContextLost();
+        const moved = element.loaded && !kept.gl.isContextLost();
         element.remove();
         await new Promise((resolve) => setTimeout(resolve, 50));
         return { moved, lost: kept.gl.isContextLost(), character: element.character };
@@ -102,7 +102,7 @@ async function removed(page) {
         return [kept.memory.deref() ? 'memory' : '', kept.character.deref() ? 'character' : ''].join(' ').trim();
     });
     check('removed: its memory is dropped', gone === '', gone);
-    check('removed: the other one goes on', await page.evaluate(() => document.getElementById('two').ready));
+    check('removed: the other one goes on', await page.evaluate(() => document.getElementById('two').loaded));
 }
 
 // ---- attributes, events, keys ----
@@ -140,8 +140,41 @@ async function used(browser) {
     check('used: a clip that is not there is told in words', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
     await page.evaluate(() => { document.getElementById('it').src = 'none.noh'; });
     await page.waitForFunction(() => document.getElementById('it').error.includes('404'));
-    check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').ready));
+    check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').loaded));
     await close(page, 'used', 1);
+}
+
+// Calls before the pack is shown wait for it; names that are not there are rejected; an error goes with its cause; a pack
+// that could not be reached is tried again.
+async function early(browser) {
+    const page = await show(browser, '<noh-character id="it" light="plain"></noh-character>');
+    const told = await page.evaluate(async () => {
+        const it = document.getElementById('it'), said = (promise) => promise.then(() => 'done', (error) => error.message);
+        const calls = ['smile', 'typo'].map((name) => said(it.setWeight(name, 0.5))), plays = said(it.play('typo'));
+        it.src = 'face.nohz';
+        const same = await it.ready === it, answers = [...await Promise.all(calls), await plays, await said(it.setWeight('typo', 1))];
+        return { same, answers, loaded: it.loaded, error: it.error };
+    });
+    check('early: calls wait, and names that are not there are told alike', told.same && told.loaded && told.error === ''
+        && told.answers.join() === "done,the pack has no target 'typo',the pack has no clip 'typo' that moves it,the pack has no target 'typo'", JSON.stringify(told));
+    await whole(page, 'it');
+    await frames(page, 'it', 1);
+    check('early: what was called has come', await page.evaluate(() => document.getElementById('it').weight('smile')) === 0.5);
+    const error = () => page.evaluate(() => document.getElementById('it').error);
+    await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
+    check('early: an attribute is told', (await error()).includes("no clip 'nothing'"), await error());
+    await page.evaluate(() => { document.getElementById('it').clip = 'smile'; });
+    check('early: until it is right', await error() === '' && !await page.isVisible('noh-character .message'), await error());
+    await page.context().setOffline(true);
+    const fails = await page.evaluate(() => { const it = document.getElementById('it'); it.src = 'face.noh'; return it.ready.catch((e) => e.message); });
+    check('early: offline is told in words', fails.includes('face.noh cannot be reached, because this device is offline') && await error() === fails, fails);
+    check('early: with a button', await page.isVisible('noh-character [part=retry]'));
+    await page.screenshot({ path: path.join(out, 'offline.png') });
+    await page.context().setOffline(false);
+    const shown = await page.evaluate(() => document.getElementById('it').ready.then((it) => it.error));
+    check('early: it tries again when the network is there', shown === '' && !await page.isVisible('noh-character .message'), shown);
+    await whole(page, 'it');
+    await close(page, 'early', 1); // the request that failed
 }
 
 // Callback keys of a clip, where a pack that has some was built.
@@ -184,7 +217,6 @@ async function dropped(browser) {
     const drop = (...names) => page.evaluate(async (all) => {
         const it = document.getElementById('it'), data = new DataTransfer(), over = new DragEvent('dragover', { bubbles: true, cancelable: true });
         for (const name of all) data.items.add(new File([await (await fetch(name)).arrayBuffer()], name));
-        it.error = '';
         it.dispatchEvent(over);
         it.dispatchEvent(new DragEvent('drop', { dataTransfer: data, bubbles: true, cancelable: true }));
         return over.defaultPrevented;
@@ -271,4 +303,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, early, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

@@ -10,7 +10,12 @@ if (element) {
     element.addEventListener('error', ({ detail }) => console.log(detail.message));
     element.addEventListener('click', (event) => console.log(event.clientX));
     known.play('walk', { layer: 'body', fade: 0.2 });
-    known.setWeight('smile', 1);
+    known.setWeight('smile', 1).catch(({ message }) => console.log(message));
+    known.ready.then((shown: NohCharacter) => shown.play('walk'));
+    known.degrees = 40;
+    known.autoLife = true;
+    // @ts-expect-error there is no such background
+    known.background = 'grey';
     const bytes: number = known.memory ? known.memory.all : 0;
     console.log(bytes, known.clips.map((clip) => clip.seconds));
     known.load(new Uint8Array(3)).then((shown: boolean) => console.log(shown));

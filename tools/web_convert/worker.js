@@ -1,7 +1,7 @@
 // worker.js: converts in a worker, and tells what it does. A message { files: [{ name, bytes }], options } comes, the first
 // file the model; messages { progress }, and at last { pack, warnings } or { error } go.
 import nohConvert from './convert.js';
-import { compileFrom } from '../compile.js';
+import { compileFrom } from '../reach.js';
 import { decodeAll } from './webp.js';
 
 const decoder = new TextDecoder();

@@ -3,6 +3,7 @@
 import { Camera, front } from './camera.js';
 import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
+import { reach } from './reach.js';
 import { Speech } from './speech.js';
 
 export const layers = ['body', 'face'];
@@ -31,11 +32,15 @@ export class Character extends EventTarget {
         this.wants = { path, characters, alive, elsewhere };
         Object.assign(this, { canvas, size, pixels: new Pixels(), spares: pixels !== 'all', sharp: false, goesOn: false, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
         Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
-        Object.assign(this, { ready: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
+        Object.assign(this, { loaded: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
         this.speech = new Speech(this);
         this.camera.follows = follows;
         this.ended = new AbortController();
         this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // to allow saving the canvas
+        if (this.gl && !elsewhere) {
+            this.gl.clearColor(0.306, 0.31, 0.322, 1); // until there is a picture
+            this.gl.clear(this.gl.COLOR_BUFFER_BIT);
+        }
         this.watch();
     }
 
@@ -117,7 +122,7 @@ export class Character extends EventTarget {
         if (first) this.begin();
         this.restoreChoices(first, time);
         this.speech.moved();
-        this.ready = true;
+        this.loaded = true;
         this.resize();
         this.draw();
         program.check(program._web_check());
@@ -168,7 +173,7 @@ export class Character extends EventTarget {
 
     draw() {
         this.wanted = false;
-        if (this.lost || !this.ready) return;
+        if (this.lost || !this.loaded) return;
         const now = performance.now(), passed = now - this.drawn, seconds = Math.min(passed, 100) / 1000;
         this.drawn = now;
         if (this.goesOn && passed < longest && this.spares && !this.size) this.pixels.tell(passed, now);
@@ -176,7 +181,7 @@ export class Character extends EventTarget {
         try {
             this.advance(seconds);
         } catch (error) { // no caller waits for a frame
-            this.ready = false;
+            this.loaded = false;
             this.emit('fault', { message: String(error.message || error) });
             return;
         }
@@ -270,7 +275,7 @@ export class Character extends EventTarget {
     }
 
     resize() {
-        if (this.resizeCanvas() && this.ready) this.draw(); // immediately, because resizing clears a canvas
+        if (this.resizeCanvas() && this.loaded) this.draw(); // immediately, because resizing clears a canvas
     }
 
     // ---- the camera ----
@@ -340,30 +345,29 @@ export class Character extends EventTarget {
 
     // ---- targets ----
 
+    targetNamed(name) {
+        const at = this.targets.indexOf(name);
+        if (at < 0) throw new Error(`the pack has no target '${name}'`);
+        return at;
+    }
+
     // Hold a target at a weight, whatever clip plays, until it is released.
     setWeight(name, weight) {
+        this.program._web_hold(this.targetNamed(name), weight, 1);
         this.weights.set(name, weight);
-        const at = this.targets.indexOf(name);
-        if (at < 0) return;
-        this.program._web_hold(at, weight, 1);
         this.redraw();
     }
 
     releaseWeight(name) {
+        this.program._web_hold(this.targetNamed(name), 0, 0);
         this.weights.delete(name);
-        const at = this.targets.indexOf(name);
-        if (at < 0) return;
-        this.program._web_hold(at, 0, 0);
         this.redraw();
     }
 
     releaseWeights() { for (const name of this.targets) this.releaseWeight(name); }
 
     // The weight in the last frame.
-    weight(name) {
-        const at = this.targets.indexOf(name);
-        return at < 0 ? 0 : this.program._web_weight(at);
-    }
+    weight(name) { return this.program._web_weight(this.targetNamed(name)); }
 
     // ---- light, levels, wrinkles, hair ----
 
@@ -438,13 +442,13 @@ export class Character extends EventTarget {
 
     // Look at a point of the page, taken as a point in space before the figure.
     lookAt(x, y) {
-        if (this.lost || !this.ready) return;
+        if (this.lost || !this.loaded) return;
         this.program._web_look(...this.pixelOf(x, y), 1);
         this.settle();
     }
 
     lookAhead() {
-        if (!this.ready) return;
+        if (!this.loaded) return;
         this.program._web_look(0, 0, 0);
         this.settle();
     }
@@ -468,7 +472,7 @@ export class Character extends EventTarget {
     // ---- touch ----
 
     tap(x, y, pushes) {
-        if (this.lost || !this.ready) return;
+        if (this.lost || !this.loaded) return;
         const p = this.program, at = this.pixelOf(x, y);
         if (pushes) {
             this.push(...at);
@@ -481,7 +485,7 @@ export class Character extends EventTarget {
     // Push at a pixel of the canvas, or at the chest. A fallen figure gets up and continues its clip. Returns 0 or an
     // error message.
     push(x, y) {
-        if (this.lost || !this.ready) return '';
+        if (this.lost || !this.loaded) return '';
         const p = this.program, failed = x === undefined ? p._web_push(strength) : p._web_push_at(x, y, strength);
         this.emit('push', { error: failed ? p.words() : '' });
         this.redraw();
@@ -515,7 +519,7 @@ export class Character extends EventTarget {
     close() {
         if (this.program && !this.lost) this.program._web_close();
         this.program = null;
-        this.ready = false;
+        this.loaded = false;
     }
 
     // Releases the context and drops the memory. No call may follow.
@@ -537,9 +541,9 @@ export class Character extends EventTarget {
 
 // A source as a Response with a stream.
 async function responseOf(source) {
-    const given = await source;
+    const given = await (source instanceof Promise ? reach(source, 'pack') : source);
     if (given instanceof Response) return given;
     if (given instanceof Blob) return new Response(given.stream(), { headers: { 'Content-Length': given.size } });
     if (given instanceof ArrayBuffer || ArrayBuffer.isView(given)) return new Response(given, { headers: { 'Content-Length': given.byteLength } });
-    return fetchFirst(given).catch(() => { throw new Error(`no pack: ${given} cannot be reached`); });
+    return fetchFirst(given);
 }

@@ -16,11 +16,12 @@ canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px; }
 .bar { display: flex; gap: .7rem; align-items: center; }
 progress { flex: 1; min-width: 0; max-width: 16rem; }
 .message { color: #ffc4ba; white-space: pre-wrap; max-height: 40%; overflow: auto; }
-.message:empty, [hidden] { display: none !important; }`;
+.message button { font: inherit; float: right; margin-left: .7rem; }
+[hidden] { display: none !important; }`;
 
 const body = `<div class="poster" part="poster"><slot name="poster"></slot></div>
 <div class="progress" part="progress" hidden><slot name="progress"><div class="bar"><progress aria-label="the character arrives"></progress><span></span></div></slot></div>
-<div class="message" part="message" role="status"></div>`;
+<div class="message" part="message" role="status" hidden><button part="retry" hidden>try again</button><span></span></div>`;
 
 // One for all elements; adopted, because policies refuse a <style>.
 let sheet = null;
@@ -32,12 +33,15 @@ function styleSheet() {
 const byKeys = 'drag or arrow keys turn it, pinch, plus and minus bring it closer, two fingers or arrows with shift move it, home frames it, space plays and pauses';
 const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background'];
 
+// Properties and their values without an attribute.
+const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
+    alt: '', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, gaze: false, drop: false, paused: false };
+
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
 // A plain class if there is no page (rendering on a server).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
-    static observedAttributes = ['src', 'clip', 'face', 'light', 'degrees', 'shadow', 'floor', 'tonemap', 'background', 'level', 'speed', 'emotion', 'alt', 'aria-label',
-        'camera-orbit', 'auto-life', 'paused'];
+    static observedAttributes = ['src', 'clip', 'face', ...ofLight, 'level', 'speed', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
 
     constructor() {
         super();
@@ -45,14 +49,30 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.shadowRoot.adoptedStyleSheets = [styleSheet()];
         this.inside = (selector) => this.shadowRoot.querySelector(selector);
         this.character = null;
-        this.error = '';
+        this.faults = new Map(); // messages, by what failed: a success removes its own
+        this.waiting = []; // calls until the pack is shown
+        this.renew();
         this.visitor = new Visitor();
+        this.inside('button').addEventListener('click', () => this.again());
+    }
+
+    // Another `ready`, which resolves to the element when a pack is shown, and rejects if it cannot be.
+    renew() {
+        this.ready = new Promise((resolve, reject) => { this.settle = { resolve, reject }; });
+        this.ready.catch(() => {}); // who does not wait for it is told by an event
+        this.arriving = true;
     }
 
     // ---- added to and removed from the page ----
 
     connectedCallback() {
         if (this.character) return; // it was moved
+        for (const name of Object.keys(properties)) { // set before the element was defined
+            if (!Object.hasOwn(this, name)) continue;
+            const value = this[name];
+            delete this[name];
+            this[name] = value;
+        }
         this.ended = new AbortController();
         this.canvas = document.createElement('canvas'); // a released context cannot be restored
         this.canvas.part = 'canvas';
@@ -78,7 +98,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.canvas.remove();
         this.character = this.canvas = null;
         this.inside('.poster').hidden = false;
-        this.tell('');
+        this.faults.clear();
+        this.tell();
+        if (!this.arriving) this.renew();
     }
 
     watch() {
@@ -87,14 +109,15 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             if (call) call(detail);
             this.dispatchEvent(new CustomEvent(type, { detail }));
         }, { signal });
-        pass('load', () => this.loaded());
+        pass('load', () => this.shown());
         pass('progress', (detail) => this.showProgress(detail));
         pass('lost', () => this.tell('the graphics context is lost'));
-        pass('restored', () => this.tell(''));
+        pass('restored', () => this.tell());
         for (const type of ['key', 'pick', 'push', 'speech', 'pause', 'light', 'frame']) pass(type);
-        character.addEventListener('fault', ({ detail }) => this.fail(new Error(detail.message)), { signal });
+        character.addEventListener('fault', ({ detail }) => this.fail('frame', new Error(detail.message)), { signal });
+        globalThis.addEventListener('online', () => { if (this.failed) this.again(); }, { signal });
         reduced().addEventListener('change', () => this.rest(), { signal });
-        this.addEventListener('dragover', (event) => { if (this.hasAttribute('drop')) event.preventDefault(); }, { signal });
+        this.addEventListener('dragover', (event) => { if (this.drop) event.preventDefault(); }, { signal });
         this.addEventListener('drop', (event) => this.dropped(event), { signal });
         this.endPointers = this.addPointers();
         this.sees = new IntersectionObserver(([entry]) => { // draw only while visible
@@ -106,9 +129,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // The wheel scrolls the page until the figure is clicked.
     addPointers() {
-        const orbits = () => this.hasAttribute('camera-orbit');
+        const orbits = () => this.cameraOrbit;
         const ends = [addPointers(this.canvas, this.character, (event) => event.ctrlKey || this.shadowRoot.activeElement === this.canvas, orbits),
-            addGaze(this.canvas, this.character, () => this.hasAttribute('gaze'))];
+            addGaze(this.canvas, this.character, () => this.gaze)];
         return () => { for (const end of ends) end(); };
     }
 
@@ -116,41 +139,58 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // The attributes as options.
     wishes() {
-        const text = (name, otherwise) => this.getAttribute(name) ?? otherwise;
-        return {
-            program: this.program || undefined, path: text('path', 'auto'), pixels: text('pixels', 'auto'), characters: Number(text('characters', 1)), light: text('light', 'studio'),
-            degrees: Number(text('degrees', 0)), shadow: text('shadow', 'on'), floor: text('floor', 'on') !== 'off', tonemap: text('tonemap', 'on') !== 'none', background: text('background', 'light'),
-            level: Number(text('level', -1)), speed: Number(text('speed', 1)), paused: this.rests(), calm: !this.lives(),
-        };
+        const { path, pixels, characters, light, degrees, shadow, background, level, speed } = this;
+        return { program: this.program || undefined, path, pixels, characters, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
+            paused: this.rests(), calm: !this.lives() };
     }
 
-    // An address, a Response, a File or Blob, or bytes. Resolves when the whole pack is shown; an error is shown as an
-    // event and a text, and rejects nothing.
+    // An address, a Response, a File or Blob, or bytes. Resolves to whether the whole pack is shown; an error is shown as
+    // an event and a text, with a button to try again.
     async load(source) {
-        const { character } = this;
+        const { character } = this, number = this.loads = (this.loads || 0) + 1, mine = () => this.loads === number && character === this.character;
         if (!character) return false;
-        this.tell('');
+        if (!this.arriving) this.renew();
+        this.failed = null;
+        this.faults.clear();
+        this.tell();
         this.fresh = true;
         this.showProgress({ taken: 0, all: 0, shows: 0 });
         try {
             await character.load(source);
         } catch (error) {
-            if (character === this.character) this.fail(error);
+            if (mine()) this.missed(source, error);
             return false;
         }
-        if (character === this.character) this.inside('.progress').hidden = true;
-        return character === this.character;
+        if (mine()) this.inside('.progress').hidden = true;
+        return mine();
     }
 
-    loaded() {
+    // The previous pack, if there is one, stays.
+    missed(source, error) {
+        this.arriving = this.fresh = false;
+        this.settle.reject(error);
+        if (typeof source === 'string' || source instanceof URL) this.failed = source; // others cannot be read twice
+        this.fail('src', error);
+        if (this.loaded) this.flush();
+    }
+
+    again() {
+        if (this.failed) this.load(this.failed);
+    }
+
+    shown() {
         this.inside('.poster').hidden = true;
         if (!this.fresh) return;
-        this.fresh = false;
+        this.fresh = this.arriving = false;
         this.apply('clip');
         this.apply('face');
         this.apply('emotion');
         this.character.fit();
+        this.settle.resolve(this);
+        this.flush();
     }
+
+    flush() { for (const call of this.waiting.splice(0)) call(); }
 
     showProgress({ taken, all, shows, words }) {
         const bar = this.inside('progress');
@@ -162,7 +202,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     }
 
     dropped(event) {
-        if (!this.hasAttribute('drop') || !event.dataTransfer.files.length) return;
+        if (!this.drop || !event.dataTransfer.files.length) return;
         event.preventDefault();
         event.stopPropagation();
         this.open(event.dataTransfer.files);
@@ -172,7 +212,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     async open(list) {
         const files = [...list], { character } = this;
         if (!character) return false;
-        this.tell('');
+        this.faults.delete('files');
+        this.tell();
         try {
             const mine = () => character === this.character, warnings = [];
             const tell = (words) => { if (mine()) this.showProgress({ taken: 0, all: 0, shows: 0, words }); };
@@ -182,24 +223,32 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             this.tell(warnings.join('\n'));
             return true;
         } catch (error) {
-            if (character === this.character) this.fail(new Error(`${files[0].name} cannot be shown: ${error.message || error}`));
+            if (character === this.character) this.fail('files', new Error(`${files[0].name} cannot be shown: ${error.message || error}`));
             return false;
         }
     }
 
     // ---- words ----
 
-    tell(words) { this.inside('.message').textContent = words; }
+    // The first error; '' if there is none.
+    get error() { return [...this.faults.values()][0] || ''; }
 
-    fail(error) {
-        this.error = String(error.message || error);
+    tell(words = this.error) {
+        this.inside('.message').hidden = !words;
+        this.inside('.message span').textContent = words;
+        this.inside('button').hidden = !this.failed;
+    }
+
+    fail(what, error) {
+        const message = String(error.message || error);
+        this.faults.set(what, message);
         this.inside('.progress').hidden = true;
-        this.tell(this.error);
-        this.dispatchEvent(new CustomEvent('error', { detail: { message: this.error } }));
+        this.tell();
+        this.dispatchEvent(new CustomEvent('error', { detail: { message } }));
     }
 
     nameCanvas() {
-        const name = this.getAttribute('alt') || this.getAttribute('aria-label') || 'a character', orbits = this.hasAttribute('camera-orbit');
+        const name = this.getAttribute('alt') || this.getAttribute('aria-label') || 'a character', orbits = this.cameraOrbit;
         this.canvas.setAttribute('role', orbits ? 'application' : 'img');
         this.canvas.setAttribute('aria-label', orbits ? `${name}; ${byKeys}` : name);
         if (orbits) this.canvas.tabIndex = 0;
@@ -208,8 +257,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // ---- attributes ----
 
-    rests() { return this.hasAttribute('paused') || reduced().matches; }
-    lives() { return this.hasAttribute('auto-life') && !reduced().matches; }
+    rests() { return this.paused || reduced().matches; }
+    lives() { return this.autoLife && !reduced().matches; }
 
     rest() {
         this.character.paused = this.rests();
@@ -236,52 +285,79 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     // A clip, a face or an emotion by name, if it exists.
     apply(name) {
         const { character } = this, value = this.getAttribute(name) || null;
-        if (!character.ready) return;
+        if (!character.loaded) return;
         try {
             if (name === 'emotion') character.feel(value);
             else character.play(value, { layer: name === 'face' ? 'face' : 'body' });
         } catch (error) {
-            this.fail(error);
+            this.fail(name, error);
+            return;
         }
+        if (this.faults.delete(name)) this.tell();
     }
 
     // ---- for programs ----
 
-    get src() { return this.getAttribute('src') || ''; }
-    set src(address) { this.setAttribute('src', address); }
-    get clip() { return this.getAttribute('clip') || ''; }
-    set clip(name) { this.setAttribute('clip', name); }
-    get light() { return this.getAttribute('light') || 'studio'; }
-    set light(name) { this.setAttribute('light', name); }
-    get paused() { return this.hasAttribute('paused'); }
-    set paused(on) { this.toggleAttribute('paused', Boolean(on)); }
-
-    get ready() { return Boolean(this.character && this.character.ready); }
+    get loaded() { return Boolean(this.character && this.character.loaded); }
     get whole() { return Boolean(this.character && this.character.whole); }
-    get clips() { return this.ready ? this.character.clips.map(({ name, seconds }) => ({ name, seconds })) : []; }
-    get targets() { return this.ready ? [...this.character.targets] : []; }
-    get emotions() { return this.ready ? [...this.character.emotions] : []; }
-    get memory() { return this.ready ? this.character.memory : null; }
-    get time() { return this.ready ? this.character.time : 0; }
-    set time(seconds) { if (this.ready) this.character.time = seconds; }
+    get clips() { return this.loaded ? this.character.clips.map(({ name, seconds }) => ({ name, seconds })) : []; }
+    get targets() { return this.loaded ? [...this.character.targets] : []; }
+    get emotions() { return this.loaded ? [...this.character.emotions] : []; }
+    get memory() { return this.loaded ? this.character.memory : null; }
+    get time() { return this.loaded ? this.character.time : 0; }
+    set time(seconds) { this.ask((character) => { character.time = seconds; }); }
+    weight(target) { return this.loaded ? this.character.weight(target) : 0; }
 
-    play(name, options) { this.character.play(name, options); }
-    setWeight(target, weight) { this.character.setWeight(target, weight); }
-    releaseWeight(target) { this.character.releaseWeight(target); }
-    releaseWeights() { this.character.releaseWeights(); }
-    weight(target) { return this.ready ? this.character.weight(target) : 0; }
-    lookAt(x, y) { this.character.lookAt(x, y); }
-    lookAhead() { this.character.lookAhead(); }
-    feel(emotion, amount) { this.character.feel(emotion, amount); }
-    push() { return this.character.push(); }
-    fit() { if (this.ready) this.character.fit(); }
+    // A call of the character, once the pack that is asked for is shown. Resolves to its result, or rejects, if the pack
+    // lacks a name.
+    ask(call) {
+        return new Promise((resolve, reject) => {
+            const run = () => {
+                try {
+                    resolve(call(this.character));
+                } catch (error) {
+                    reject(error);
+                }
+            };
+            if (this.loaded && !this.arriving) run();
+            else this.waiting.push(run);
+        });
+    }
+
+    play(name, options) { return this.ask((character) => character.play(name, options)); }
+    setWeight(target, weight) { return this.ask((character) => character.setWeight(target, weight)); }
+    releaseWeight(target) { return this.ask((character) => character.releaseWeight(target)); }
+    releaseWeights() { return this.ask((character) => character.releaseWeights()); }
+    lookAt(x, y) { return this.ask((character) => character.lookAt(x, y)); }
+    lookAhead() { return this.ask((character) => character.lookAhead()); }
+    feel(emotion, amount) { return this.ask((character) => character.feel(emotion, amount)); }
+    push() { return this.ask((character) => character.push()); }
+    fit() { return this.ask((character) => character.fit()); }
 
     // Speech: a sentence, the microphone, a sound file, or fifteen weights of mouth shapes.
-    say(words) { this.character.speech.say(words); }
-    listen() { return this.character.speech.listen(); }
-    playSound(file) { return this.character.speech.play(file); }
-    setMouth(weights) { this.character.setMouth(weights); }
-    hush() { this.character.speech.stop(); }
+    say(words) { return this.ask((character) => character.speech.say(words)); }
+    listen() { return this.ask((character) => character.speech.listen()); }
+    playSound(file) { return this.ask((character) => character.speech.play(file)); }
+    setMouth(weights) { return this.ask((character) => character.setMouth(weights)); }
+    hush() { return this.ask((character) => character.speech.stop()); }
+}
+
+// Attributes as properties: camera-orbit is cameraOrbit.
+for (const [name, otherwise] of Object.entries(properties)) {
+    const attribute = name.replace(/[A-Z]/g, (letter) => `-${letter.toLowerCase()}`);
+    Object.defineProperty(NohCharacter.prototype, name, {
+        enumerable: true, configurable: true,
+        get() {
+            if (typeof otherwise === 'boolean') return this.hasAttribute(attribute);
+            const text = this.getAttribute(attribute);
+            return text === null ? otherwise : typeof otherwise === 'number' ? Number(text) : text;
+        },
+        set(value) {
+            if (typeof otherwise === 'boolean') this.toggleAttribute(attribute, Boolean(value));
+            else if (value === null || value === undefined) this.removeAttribute(attribute);
+            else this.setAttribute(attribute, value);
+        },
+    });
 }
 
 if (globalThis.customElements && !customElements.get('noh-character')) customElements.define('noh-character', NohCharacter);

@@ -92,7 +92,8 @@ export interface CharacterOptions extends Partial<Light> {
 export class Character extends EventTarget {
     constructor(canvas: HTMLCanvasElement, options?: CharacterOptions);
     readonly canvas: HTMLCanvasElement;
-    readonly ready: boolean;
+    /** Whether a pack is shown, if only by its coarsest levels. */
+    readonly loaded: boolean;
     readonly whole: boolean;
     readonly lost: boolean;
     readonly clips: readonly Clip[];
@@ -110,6 +111,7 @@ export class Character extends EventTarget {
     /** Resolution of the next frame, as a share of the full width. */
     readonly share: number;
     load(source: PackSource): Promise<void>;
+    /** Calls with a name that the pack lacks throw an error. */
     play(name: string | null, options?: PlayOptions): void;
     setWeight(target: string, weight: number): void;
     releaseWeight(target: string): void;
@@ -147,19 +149,48 @@ export interface NohCharacterEvents extends CharacterEvents {
     warning: CustomEvent<{ message: string }>;
 }
 
-/** `<noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>` */
-export class NohCharacter extends HTMLElement {
+/** The attributes of `<noh-character>`, as properties. */
+export interface NohCharacterProperties {
+    /** A pack. */
     src: string;
     clip: string;
+    /** A second clip, played over the first one on the face. */
+    face: string;
     light: string;
+    degrees: number;
+    shadow: Shadow;
+    floor: 'on' | 'off';
+    tonemap: 'on' | 'none';
+    background: Background;
+    level: number;
+    speed: number;
+    emotion: string;
+    alt: string;
+    path: MorphPath;
+    pixels: 'auto' | 'all';
+    characters: number;
+    cameraOrbit: boolean;
+    autoLife: boolean;
+    gaze: boolean;
+    drop: boolean;
     paused: boolean;
-    time: number;
+}
+
+export interface NohCharacter extends NohCharacterProperties {}
+/** `<noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>`. Methods that return a promise may be
+ * called at any time: they wait for the pack that is asked for, and reject if it lacks a name. */
+export class NohCharacter extends HTMLElement {
     /** Address of noh.wasm, if not in the folder of this module; set it before the element is added to the page. */
     program?: string | URL;
+    /** Resolves to the element when the pack is shown, if only by its coarsest levels; rejects if it cannot be. The next
+     * load makes another promise. */
+    readonly ready: Promise<this>;
+    /** Whether a pack is shown. */
+    readonly loaded: boolean;
+    readonly whole: boolean;
     /** Error message; '' if there is none. */
     readonly error: string;
-    readonly ready: boolean;
-    readonly whole: boolean;
+    time: number;
     readonly clips: readonly Clip[];
     readonly targets: readonly string[];
     readonly emotions: readonly string[];
@@ -168,23 +199,24 @@ export class NohCharacter extends HTMLElement {
     readonly character: Character | null;
     /** Resolves to whether the pack is shown. */
     load(source: PackSource): Promise<boolean>;
-    /** A pack, or a model (.glb, .gltf, .vrm, .obj) with its files and clips (.bvh), converted in a worker. */
+    /** A pack, or a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh), converted in a worker. */
     open(files: Iterable<File>): Promise<boolean>;
-    play(name: string | null, options?: PlayOptions): void;
-    setWeight(target: string, weight: number): void;
-    releaseWeight(target: string): void;
-    releaseWeights(): void;
+    play(name: string | null, options?: PlayOptions): Promise<void>;
+    setWeight(target: string, weight: number): Promise<void>;
+    releaseWeight(target: string): Promise<void>;
+    releaseWeights(): Promise<void>;
+    /** 0 before a pack is shown. */
     weight(target: string): number;
-    lookAt(x: number, y: number): void;
-    lookAhead(): void;
-    feel(emotion: string | null, amount?: number): void;
-    push(): string;
-    fit(): void;
-    say(words: string): void;
+    lookAt(x: number, y: number): Promise<void>;
+    lookAhead(): Promise<void>;
+    feel(emotion: string | null, amount?: number): Promise<void>;
+    push(): Promise<string>;
+    fit(): Promise<void>;
+    say(words: string): Promise<void>;
     listen(): Promise<void>;
     playSound(file: Blob): Promise<void>;
-    setMouth(weights: ArrayLike<number> | null): void;
-    hush(): void;
+    setMouth(weights: ArrayLike<number> | null): Promise<void>;
+    hush(): Promise<void>;
     dispose(): void;
     addEventListener<K extends keyof NohCharacterEvents>(type: K, listener: (event: NohCharacterEvents[K]) => void, options?: boolean | AddEventListenerOptions): void;
     addEventListener<K extends keyof HTMLElementEventMap>(type: K, listener: (event: HTMLElementEventMap[K]) => void, options?: boolean | AddEventListenerOptions): void;

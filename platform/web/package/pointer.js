@@ -75,7 +75,7 @@ export function addPointers(canvas, character, wheel = () => true, asked = () =>
         character.zoom(Math.exp(event.deltaY * 0.001));
     }, { passive: false });
     on('keydown', (event) => {
-        if (!keys[event.key] || event.ctrlKey || event.altKey || event.metaKey || !character.ready) return;
+        if (!keys[event.key] || event.ctrlKey || event.altKey || event.metaKey || !character.loaded) return;
         event.preventDefault(); // otherwise the page scrolls
         keys[event.key](character, event.shiftKey);
     });

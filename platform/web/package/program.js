@@ -1,6 +1,6 @@
 // program.js: the WebAssembly program in its own memory, which is sized for one pack and cannot grow.
-import { compileFrom } from './compile.js';
 import { importsOf, textAt } from './gl.js';
+import { compileFrom, reach } from './reach.js';
 
 const PAGE = 65536;
 const LEAST = 16; // pages of any program: static data and stack; of a planning program, the memory may grow
@@ -159,7 +159,7 @@ function joined(parts) {
 // The first bytes of a pack are requested separately, so that no others compete with the loading program: they contain
 // the coarsest levels of most packs.
 const FIRST = 131072;
-export const fetchFirst = (address) => fetch(address, { headers: { Range: `bytes=0-${FIRST - 1}` } });
+export const fetchFirst = (address) => reach(fetch(address, { headers: { Range: `bytes=0-${FIRST - 1}` } }), 'pack', address);
 
 // The part of a file in a response: { from, all }. A server without range requests sends the whole file.
 function extent(answer) {

@@ -173,7 +173,7 @@ export class NohObject3D extends Group {
     // Advance time and deform the character for a camera. Call before renderer.render.
     update(seconds, camera) {
         const { character, renderer } = this;
-        if (!character.ready || character.lost) return;
+        if (!character.loaded || character.lost) return;
         camera.updateMatrixWorld();
         this.updateWorldMatrix(true, false);
         const p = this.program, to = p.floats(p._web_view(), 22);
@@ -207,7 +207,7 @@ export class NohObject3D extends Group {
     // ---- rays ----
 
     pick(mesh, raycaster, found) {
-        if (mesh !== this.meshes[0] || !this.character.ready) return; // once for all
+        if (mesh !== this.meshes[0] || !this.character.loaded) return; // once for all
         const p = this.program, ray = raycaster.ray.clone().applyMatrix4(this.matrixWorld.clone().invert());
         const along = p._web_pick_ray(...ray.origin, ...ray.direction, FAR);
         if (along < 0) return;

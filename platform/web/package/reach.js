@@ -1,10 +1,14 @@
-// compile.js: fetches and compiles a WebAssembly module, with reasons that a developer can act on.
+// reach.js: requests, with reasons that a visitor or a developer can act on.
 
-// what: names it in messages.
+// An answer that may be none. what: names it in messages.
+export function reach(answer, what, address = 'it') {
+    return answer.catch(() => { throw new Error(`no ${what}: ${address} cannot be reached${navigator.onLine === false ? ', because this device is offline' : ''}`); });
+}
+
+// Fetches and compiles a WebAssembly module.
 export async function compileFrom(address, what) {
-    const answer = await fetch(address).catch(() => { throw new Error(`no ${what}: ${address} cannot be reached`); });
+    const answer = await reach(fetch(address), what, address), type = answer.headers.get('Content-Type');
     if (!answer.ok) throw new Error(`no ${what}: ${address}: the server says ${answer.status}`);
-    const type = answer.headers.get('Content-Type');
     try {
         // compiles while it arrives, if the server sends the right type
         return await (type === 'application/wasm' ? WebAssembly.compileStreaming(answer) : WebAssembly.compile(await answer.arrayBuffer()));
