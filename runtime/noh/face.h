@@ -78,7 +78,7 @@ typedef struct noh_face_desc {
     float head_yaw_max, head_pitch_max; /* default (0) 75 and 40 degrees */
     /* eyes turned farther than this turn the head too; default (0) 17.5 degrees */
     float head_from;
-    float idle_rad; /* small idle motions of the head; default (0) 0.8 degrees */
+    float idle_rad; /* small idle motions of the head, with slower ones of 1.5 times; default (0) 0.8 degrees */
 } noh_face_desc;
 
 typedef struct noh_face_spring {
@@ -119,6 +119,7 @@ typedef struct noh_face_pose {
     float blink;                       /* 0 open .. 1 closed */
     float lids_down, lids_up;          /* 0..1: how far the lids follow the eyes down and up */
     float breath;                      /* 0 exhaled .. 1 inhaled */
+    float brows;                       /* 0..1: how far the brows are up */
     float emotions[NOH_EMOTION_COUNT]; /* 0..1 */
 } noh_face_pose;
 
@@ -209,6 +210,7 @@ typedef enum noh_face_channel {
     NOH_CHANNEL_LIDS_UP = NOH_CHANNEL_EYES + 8, /* lids that follow the eyes up */
     NOH_CHANNEL_LIDS_DOWN,                      /* lids that follow the eyes down, where no eye target does that */
     NOH_CHANNEL_BREATH,
+    NOH_CHANNEL_BROWS, /* brows up, at rest and with speech, in addition to those of emotions */
     NOH_CHANNEL_UPPER,                                         /* brows, lids and nose of each emotion */
     NOH_CHANNEL_MOUTH = NOH_CHANNEL_UPPER + NOH_EMOTION_COUNT, /* its mouth, as far as speech allows */
     NOH_CHANNEL_VISEMES = NOH_CHANNEL_MOUTH + NOH_EMOTION_COUNT,

@@ -416,7 +416,8 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
  *   noh_actor_face            get the current face
  *
  * A face moves morph targets by recipes (face.h), and joints of head, neck, chest and eyes by name, as far as the kind
- * has them. It changes the pose after clips and before the game's modifiers; held floats override it. The named floats
+ * has them. A head without joints turns, breathes and drifts as a whole, about the base of its skull, which is found by
+ * its eyes: spheres, rays, hair and what noh_actor_mesh_at returns follow. A face changes the pose after clips and before the game's modifiers; held floats override it. The named floats
  * "speech" and "lips-shut" of a speech clip (noh speak) give the share of the mouth that speech uses; emotions leave
  * that share alone.
  *
@@ -434,7 +435,7 @@ typedef struct noh_kind_face {
                                             * any, then the three built-in recipes */
     uint32_t recipe_count;
     /* Joint names; default (NULL): those in the pack's recipe (rows joint-head and so on), else common names; "": none.
-     * Without a head joint only the eyes turn */
+     * Without a head joint a kind that is a head turns as a whole; with head "", and in any other, only the eyes turn */
     const char *head, *neck, *chest, *eyes[2];
     uint32_t flags; /* NOH_FACE_* of new actors */
     noh_face_rules rules;

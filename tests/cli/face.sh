@@ -166,4 +166,26 @@ noh bench "$build/mask.noh" --only face --quick --json
 expect 0 'a bench of a thousand faces'
 check 'compared with the step of a controller' sh -c 'tr -d " \n" <"$1" | grep -q "\"face/weights\",\"baseline\":\"noh_controller_step\""' - "$work/out"
 
+# A live face without a clip: nothing stands still in more than a twentieth of the pictures; each moment looks different.
+noh face "$build/mask.noh" --idle 10 --json
+expect 0 'ten seconds of idle'
+check 'nothing stands still' awk '/"(outline|brows|lids|eyes|mouth)"/ { sub(",", "", $2); n++; if ($2 >= 0.05) bad = 1 }
+    END { exit bad || n != 5 }' "$work/out"
+noh face "$build/mask.noh" --idle 1
+expect 0 'in words'
+check 'a row' grep -q '^idle for 1 s, 30 pairs of pictures; without motion: outline ' "$work/out"
+noh face "$build/demo/arm.noh" --idle 1000
+expect 2 'at most ten minutes'
+noh sheet "$build/mask.noh" -o "$work/idle.png" --face on --time 2 --tiles 4 --columns 4 --tile 64
+expect 0 'a sheet of a live face'
+noh sheet "$build/mask.noh" -o "$work/targets.png" --tile 64
+check 'not of its targets' sh -c 'test "$(wc -c <"$1")" -lt "$(wc -c <"$2")"' - "$work/idle.png" "$work/targets.png"
+noh sheet "$build/mask.noh" -o "$work/x.png" --time 2
+expect 2 '--time needs --face'
+for t in 0 1 2; do
+    noh render "$build/mask.noh" -o "$work/at_$t.png" --face on --time $t --size 96x96
+    expect 0 "a face at $t s"
+done
+check 'at 1 s it has moved' sh -c '! cmp -s "$1" "$2"' - "$work/at_0.png" "$work/at_1.png"
+check 'at 2 s again' sh -c '! cmp -s "$1" "$2"' - "$work/at_1.png" "$work/at_2.png"
 finish

@@ -59,7 +59,10 @@ typedef enum noh_face_stream {
     NOH_FACE_PHRASE,
     NOH_FACE_IDLE, /* three: yaw, pitch, roll */
     NOH_FACE_MOOD = NOH_FACE_IDLE + 3,
-    NOH_FACE_STRATA
+    NOH_FACE_STRATA,
+    NOH_FACE_SWAY,                      /* three: yaw, pitch, roll */
+    NOH_FACE_DRIFT = NOH_FACE_SWAY + 3, /* three: x, y, z */
+    NOH_FACE_BROWS = NOH_FACE_DRIFT + 3
 } noh_face_stream;
 
 float noh_face_uniform(uint32_t seed, uint32_t stream, uint32_t index); /* above 0, below 1 */
@@ -125,6 +128,10 @@ uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, 
 /* ---- the head ---- */
 
 void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4]);
+/* Get how far breath and small motions of the body move the head, neck space. */
+void noh_face_drift(const noh_face *face, const noh_face_desc *desc, float moved[3]);
+/* Get rotation and drift of the head, `ago` ticks before the face's clock. */
+void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ago, float rotation[4], float moved[3]);
 /* Get the midpoint of the eyes, neck space. */
 void noh_face_middle(const noh_face_desc *desc, const float rotation[4], float middle[3]);
 

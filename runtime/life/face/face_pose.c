@@ -8,26 +8,35 @@
 #include "noh/face.h"
 #include "noh/low_core.h"
 
+#define SWAY 1.5f          /* slow turns of the head, as a share of the small fast ones */
+#define LIFT 0.03f         /* the head on a full breath, as a share of the distance of the eyes */
+#define BROWS 0.06f        /* mean height of brows at rest; they move from 0 to twice as much */
+#define BROWS_FOLLOW 0.15f /* how far brows go up with the lids */
+
 /* ---- the head ---- */
 
-static float knot(const noh_face *face, uint32_t axis, uint32_t index)
+static float knot(const noh_face *face, uint32_t stream, uint32_t index)
 {
-    return 2.0f * noh_face_uniform(face->seed, NOH_FACE_IDLE + axis, index) - 1.0f;
+    return 2.0f * noh_face_uniform(face->seed, stream, index) - 1.0f;
 }
 
-/* Small motions of the head: random values at equal intervals, joined by a Catmull-Rom curve. The periods of the three
- * axes have no common multiple, so they never reverse together. */
-static float idle(const noh_face *face, uint32_t axis)
+/* Small motions: random values of -1..1 a period apart, joined by a Catmull-Rom curve. Periods have no common multiple,
+ * so that curves never reverse together. */
+static float wave(const noh_face *face, uint32_t stream, uint32_t period)
 {
-    static const uint32_t periods[3] = { 62400u, 81600u, 100800u };
     const uint64_t clock = (uint64_t)face->clock;
-    const uint32_t n = (uint32_t)(clock / periods[axis]);
-    const float t = (float)(uint32_t)(clock % periods[axis]) / (float)periods[axis];
-    const float a = knot(face, axis, n), b = knot(face, axis, n + 1u), c = knot(face, axis, n + 2u),
-                d = knot(face, axis, n + 3u);
+    const uint32_t n = (uint32_t)(clock / period);
+    const float t = (float)(uint32_t)(clock % period) / (float)period;
+    const float a = knot(face, stream, n), b = knot(face, stream, n + 1u), c = knot(face, stream, n + 2u),
+                d = knot(face, stream, n + 3u);
     const float square = t * t, cube = square * t;
     return 0.5f * (2.0f * b + (c - a) * t + (2.0f * a - 5.0f * b + 4.0f * c - d) * square +
                    (3.0f * b - a - 3.0f * c + d) * cube);
+}
+
+static int is_still(const noh_face *face)
+{
+    return (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_IDLE)) != 0;
 }
 
 static void turn_about(uint32_t axis, float angle, float q[4])
@@ -41,18 +50,46 @@ static void turn_about(uint32_t axis, float angle, float q[4])
 
 void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4])
 {
+    static const uint32_t periods[3] = { 62400u, 81600u, 100800u }, sways[3] = { 249600u, 297600u, 350400u };
     const float size = noh_face_or(desc->idle_rad, 0.8f * NOH_DEGREE);
-    const int still = (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_IDLE)) != 0;
     float part[4];
     for (uint32_t i = 0; i < 3; i++) {
-        angles[i] = (i < 2u ? noh_face_spring_at(&face->head[i], (uint32_t)face->clock) : 0.0f) +
-                    (still ? 0.0f : size * idle(face, i));
+        angles[i] = i < 2u ? noh_face_spring_at(&face->head[i], (uint32_t)face->clock) : 0.0f;
+        if (is_still(face)) continue;
+        angles[i] += size *
+                     (wave(face, NOH_FACE_IDLE + i, periods[i]) + SWAY * wave(face, NOH_FACE_SWAY + i, sways[i]));
     }
     turn_about(1, angles[0], rotation);
     turn_about(0, -angles[1], part);
     noh_quat_mul(rotation, part, rotation);
     turn_about(2, angles[2], part);
     noh_quat_mul(rotation, part, rotation);
+}
+
+void noh_face_drift(const noh_face *face, const noh_face_desc *desc, float moved[3])
+{
+    static const uint32_t periods[3] = { 206400u, 158400u, 235200u };
+    static const float shares[3] = { 0.03f, 0.01f, 0.03f };
+    const float apart = desc->eyes[0][0] - desc->eyes[1][0];
+    for (uint32_t i = 0; i < 3; i++) {
+        moved[i] = is_still(face) ? 0.0f : shares[i] * apart * wave(face, NOH_FACE_DRIFT + i, periods[i]);
+    }
+    moved[1] += LIFT * apart * noh_face_breath(face, desc);
+}
+
+void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ago, float rotation[4], float moved[3])
+{
+    noh_face then = *face;
+    float angles[3];
+    uint32_t now;
+    then.clock = face->clock > (int64_t)ago ? face->clock - (int64_t)ago : 0;
+    now = (uint32_t)then.clock;
+    for (int i = 0; i < 2; i++) {
+        if (now - then.head[i].start > UINT32_MAX / 2u) then.head[i].start = now; /* it had not begun */
+    }
+    if (now - then.breath_start > UINT32_MAX / 2u) then.breath_start = now;
+    noh_face_head_rotation(&then, desc, angles, rotation);
+    noh_face_drift(&then, desc, moved);
 }
 
 /* ---- the eyes ---- */
@@ -104,6 +141,12 @@ float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
     return 0.5f - 0.5f * cosine;
 }
 
+static float brows_at(const noh_face *face, float lids_up)
+{
+    const float idle = is_still(face) ? 0.0f : BROWS + BROWS * wave(face, NOH_FACE_BROWS, 110400u);
+    return clamped(idle + BROWS_FOLLOW * lids_up, 0.0f, 1.0f);
+}
+
 static void show_emotions(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
 {
     if (noh_face_is_four(face) && face->emotions[0].on) {
@@ -130,5 +173,6 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
     pose->lids_up = clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
     pose->blink = noh_face_blink_at(face);
     pose->breath = noh_face_breath(face, desc);
+    pose->brows = brows_at(face, pose->lids_up);
     show_emotions(face, pose->emotions);
 }

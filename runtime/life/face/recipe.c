@@ -46,6 +46,7 @@ static void upper_channels(const noh_face_pose *pose, const noh_face_desc *desc,
     channels[NOH_CHANNEL_LIDS_UP] = pose->lids_up * (1.0f - pose->blink);
     channels[NOH_CHANNEL_LIDS_DOWN] = pose->lids_down;
     channels[NOH_CHANNEL_BREATH] = pose->breath;
+    channels[NOH_CHANNEL_BROWS] = pose->brows;
 }
 
 /* Shapes that close the lips are exempt from the shared sum: they take their share first, and the rest is divided among

@@ -22,6 +22,7 @@ static const char *const names[NOH_CHANNEL_COUNT] = {
     "lids-up",
     "lids-down",
     "breath",
+    "brows",
     "joy-upper",
     "sadness-upper",
     "surprise-upper",

@@ -87,7 +87,7 @@ static noh_hair_carrier carrier_in_step(const noh_modifier_work *w, const noh_ac
     const noh_stage_kind *kind = w->kind;
     const float metres = d->cut->header->metres;
     noh_hair_carrier c;
-    float at[3] = { 0.0f, 0.0f, 0.0f }, bind_at[3], bind[4];
+    float at[3] = { 0.0f, 0.0f, 0.0f }, bind_at[3], bind[4], turn[4], turned_at[3];
     memset(&c, 0, sizeof c);
     c.rotation[3] = 1.0f;
     if (d->joint < w->skeleton->joint_count) {
@@ -97,6 +97,11 @@ static noh_hair_carrier carrier_in_step(const noh_modifier_work *w, const noh_ac
         noh_quat_mul(c.rotation, bind, c.rotation);
         noh_quat_rotate(c.rotation, bind_at, bind_at);
         noh_sub3(at, bind_at, at);
+    }
+    if (noh_stage_turn(kind, noh_stage_index(kind, noh_stage_actor_of(w->stage, w->actor, NULL)), turn, turned_at)) {
+        noh_quat_rotate(turn, at, at);
+        noh_madd3(at, 1.0f, turned_at, at);
+        noh_quat_mul(turn, c.rotation, c.rotation);
     }
     noh_quat_rotate(w->place.rotation, at, at);
     noh_madd3(at, 1.0f / w->place.scale, w->near_place, at);

@@ -9,7 +9,7 @@
  *   init     once the kind has its meshes, floats, layers and bounds
  *   actors   spawn, shift, check
  *   a step   step_actor, root, carries; step, after all actors of the kind
- *   a frame  controller, sample; modify, in the order of the slots
+ *   a frame  controller, sample; modify, in the order of the slots; turn
  *   names    name_count, name */
 #ifndef NOH_STAGE_MODULE_INTERNAL_H
 #define NOH_STAGE_MODULE_INTERNAL_H
@@ -55,6 +55,8 @@ typedef struct noh_stage_module {
     uint8_t *states; /* [actor_count] of all actors of the kind, `stride` bytes apart */
     size_t stride;
     void *pool;
+    int turns;                            /* 1: it turns models within their places: noh_module_type.turn */
+    float error_m[NOH_UPDATE_RATE_COUNT]; /* what its motion adds to the errors of update rates */
 } noh_stage_module;
 
 /* Samples a set some of whose clips stand for what the source of an actor plays: these have the poses made of it. */
@@ -97,7 +99,9 @@ typedef struct noh_module_type {
 
     void (*step)(struct noh_stage_kind *k, uint32_t ticks);
     int (*carries)(const struct noh_stage_kind *k, uint32_t index); /* 1: it moves the actor's place, clips do not */
-    void (*modify)(noh_modifier_work *work);                        /* `state` and `user` are its own: user `shared` */
+    /* With noh_stage_module.turns: how it turns the model within its place. Points rotate, then move by `at`. */
+    void (*turn)(const struct noh_stage_kind *k, uint32_t index, float rotation[4], float at[3]);
+    void (*modify)(noh_modifier_work *work); /* `state` and `user` are its own: user `shared` */
 
     const struct noh_source_type *source; /* in NOH_SLOT_SOURCE */
 } noh_module_type;
@@ -136,6 +140,9 @@ noh_result noh_stage_check_modules(const struct noh_stage_kind *k, uint32_t inde
 const char *noh_stage_check_pools(const struct noh_stage_kind *k, const uint8_t *state, const uint8_t *copy);
 /* Whether a module moves the place of an actor. */
 int noh_stage_is_carried(const struct noh_stage_kind *k, uint32_t index);
+int noh_stage_turns(const struct noh_stage_kind *k); /* 1: a module turns its models */
+/* How a module turns an actor's model within its place, as shown. Returns 0: no module does. */
+int noh_stage_turn(const struct noh_stage_kind *k, uint32_t index, float rotation[4], float at[3]);
 /* The controller of what an actor's source plays; NULL: nothing. */
 noh_controller *noh_stage_inner(const struct noh_stage_kind *k, uint32_t index);
 

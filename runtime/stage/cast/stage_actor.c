@@ -389,7 +389,8 @@ static void world_place(const noh_stage *s, const noh_stage_actor *a, noh_place 
     float matrix[12];
     noh_stage_shown_place(s, a, s->origin, out);
     if (a->parent) {
-        noh_stage_world(s, (uint32_t)(a - s->actors), matrix);
+        noh_place_matrix(out, matrix);
+        noh_stage_carry(s, a, matrix);
         place_of_matrix(matrix, out);
     }
 }

@@ -25,18 +25,33 @@ static void joint_matrix(const noh_character *ch, uint32_t joint, float matrix[1
     }
 }
 
-void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
+void noh_stage_own_matrix(const noh_stage *s, const noh_stage_kind *k, const noh_stage_actor *a, float matrix[12])
 {
-    const noh_stage_actor *a = &s->actors[index], *on;
-    noh_stage_kind *k = NULL;
-    noh_place place;
+    noh_place place, turned;
+    float own[12];
     noh_stage_shown_place(s, a, s->origin, &place);
     noh_place_matrix(&place, matrix);
+    turned.scale = 1.0f;
+    if (!noh_stage_turn(k, noh_stage_index(k, a), turned.rotation, turned.position)) return;
+    noh_place_matrix(&turned, own);
+    noh_matrix_multiply(matrix, own, matrix);
+}
+
+void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12])
+{
+    const noh_stage_actor *a = &s->actors[index];
+    noh_stage_own_matrix(s, noh_stage_kind_of(s, index), a, matrix);
+    noh_stage_carry(s, a, matrix);
+}
+
+void noh_stage_carry(const noh_stage *s, const noh_stage_actor *a, float matrix[12])
+{
+    const noh_stage_actor *on;
+    noh_stage_kind *k = NULL;
     for (; (on = noh_stage_parent_of(s, a, &k)) != NULL; a = on) {
         const noh_character *ch = noh_stage_character(k, noh_stage_index(k, on));
         float joint[12], world[12];
-        noh_stage_shown_place(s, on, s->origin, &place);
-        noh_place_matrix(&place, world);
+        noh_stage_own_matrix(s, k, on, world);
         if (ch->time.posed && a->joint < k->skeleton.joint_count) {
             joint_matrix(ch, a->joint, joint);
             noh_matrix_multiply(world, joint, world);

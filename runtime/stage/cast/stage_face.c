@@ -14,6 +14,8 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "motion/anim/clock_internal.h"
+#include "stage/character/character_internal.h"
 #include "stage/cast/stage_face_internal.h"
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
@@ -166,6 +168,18 @@ static void turn_eyes(const noh_stage_kind *k, noh_modifier_work *w, const noh_f
     }
 }
 
+/* A head without joints turns as a whole, about the base of its skull. The pose may be ahead of what is shown. */
+void noh_stage_turn_head(const noh_stage_kind *k, uint32_t index, float rotation[4], float at[3])
+{
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
+    const noh_time_lod *time = &noh_stage_character(k, index)->time;
+    const int64_t ahead = time->posed ? noh_clock_since(time->to_clock, time->clock) : 0;
+    float turned[3];
+    noh_face_whole(&noh_stage_face_of(k, index)->face, &shared->desc, ahead > 0 ? (uint32_t)ahead : 0, rotation, at);
+    noh_quat_rotate(rotation, shared->head.at, turned);
+    for (int i = 0; i < 3; i++) at[i] += shared->head.at[i] - turned[i];
+}
+
 /* ---- targets ---- */
 
 static float float_of(const noh_modifier_work *w, uint32_t at)
@@ -258,9 +272,13 @@ void noh_stage_run_face(noh_modifier_work *w)
     neck_space_of(k, w, &n);
     look(w->stage, k, f, w, &n);
     noh_face_pose_of(&f->face, &noh_stage_face_kind_of(k)->desc, &pose);
-    if (turns(w, &noh_stage_face_kind_of(k)->head)) {
+    if (noh_stage_turns(k) || turns(w, &noh_stage_face_kind_of(k)->head)) {
         noh_face aimed = f->face;
-        turn_head(k, w, &n, pose.head, moved);
+        if (noh_stage_turns(k)) {
+            noh_face_drift(&f->face, &noh_stage_face_kind_of(k)->desc, moved);
+        } else {
+            turn_head(k, w, &n, pose.head, moved);
+        }
         for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i];
         noh_face_pose_of(&aimed, &noh_stage_face_kind_of(k)->desc, &pose);
     }

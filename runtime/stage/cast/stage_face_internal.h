@@ -75,6 +75,8 @@ uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, c
 int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3]);
 uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* an upper bound */
 void noh_stage_run_face(noh_modifier_work *w);            /* over the pose and the floats of the work */
+/* noh_module_type.turn */
+void noh_stage_turn_head(const noh_stage_kind *k, uint32_t index, float rotation[4], float at[3]);
 
 #ifdef __cplusplus
 }

@@ -13,11 +13,24 @@
 #include "noh/pack.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
+#include "deform/pick/bounds_internal.h"
 #include "stage/cast/stage_face_internal.h"
 
 /* ---- joints ---- */
 
 #define NAME_BYTES 40u
+
+/* Of a head that turns as a whole */
+#define LONE_HEAD 10.0f /* its height is below that many times the distance of its eyes; a person's is 3.6, a body 27 */
+#define LONE_YAW_RAD 0.8f
+#define LONE_PITCH_RAD 0.5f
+#define DRIFT_MAX 0.15f /* more than it drifts, as a share of the distance of its eyes */
+
+#define LID 0.16f /* the way of a lid, as a share of the distance of its eyes */
+
+/* By how much of that way a blink is off at each update rate: period^2 / 8 times its acceleration, as it shuts in 80 ms
+ * along a cosine. */
+static const float lids_off[NOH_UPDATE_RATE_COUNT] = { 0.0f, 0.1f, 0.43f, 1.0f };
 
 /* Letters and digits alone, in lower case, behind the last ':' ("mixamorig:LeftEye"); "" where it is too long. */
 static void plain_name(const char *name, char out[NAME_BYTES])
@@ -288,6 +301,34 @@ static void find_lids(noh_stage_face_kind *f)
     }
 }
 
+/* The height of a kind's meshes at rest, model units. */
+static float height_of(const noh_stage_kind *k)
+{
+    float box[6], own[6];
+    noh_box_empty(box);
+    for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
+        const noh_stage_mesh *mesh = &k->meshes[m];
+        noh_mesh_box(&mesh->mesh, mesh->skinned ? NULL : mesh->node_world, NULL, own);
+        for (int i = 0; i < 6 && mesh->skinned; i++) own[i] *= mesh->bind_stretch;
+        noh_box_unite(box, own, box);
+    }
+    return box[4] - box[1];
+}
+
+/* Let a head without a joint turn as a whole: with eyes so far apart it cannot be a body. */
+static void open_turns(noh_stage_kind *k, const noh_kind_face *from, noh_stage_face_kind *f)
+{
+    const float apart = f->desc.eyes[0][0] - f->desc.eyes[1][0];
+    float way[3];
+    if (f->head.joint != NOH_NONE || from->head || !(height_of(k) < LONE_HEAD * apart)) return;
+    f->desc.head_yaw_max = from->face.head_yaw_max > 0.0f ? from->face.head_yaw_max : LONE_YAW_RAD;
+    f->desc.head_pitch_max = from->face.head_pitch_max > 0.0f ? from->face.head_pitch_max : LONE_PITCH_RAD;
+    k->modules[NOH_SLOT_FACE].turns = 1;
+    for (int i = 0; i < 3; i++) way[i] = k->reach[i] - f->head.at[i];
+    memcpy(k->reach, f->head.at, sizeof f->head.at);
+    k->reach[3] += noh_sqrt(noh_dot3(way, way)) + DRIFT_MAX * apart;
+}
+
 static noh_face_link *carve(noh_arena *arena, uint32_t links)
 {
     (void)noh_arena_carve(arena, sizeof(noh_stage_face_kind), 16);
@@ -318,6 +359,10 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     find_lids(f);
+    open_turns(k, desc, f);
+    for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
+        k->modules[NOH_SLOT_FACE].error_m[r] = lids_off[r] * LID * (f->desc.eyes[0][0] - f->desc.eyes[1][0]);
+    }
     f->speech = find_float(k, "speech");
     f->lips_shut = find_float(k, "lips-shut");
     return NOH_OK;
@@ -389,6 +434,7 @@ noh_module noh_face_module(const noh_kind_face *face)
         .shift = shift,
         .check = check,
         .modify = noh_stage_run_face,
+        .turn = noh_stage_turn_head,
     };
     return (noh_module){ face ? &faces : NULL, face };
 }

@@ -454,8 +454,12 @@ noh_result noh_stage_gone(noh_error *error, noh_actor actor);
 void noh_stage_shown_place(const noh_stage *s, const noh_stage_actor *a, const float origin[3], noh_place *out);
 void noh_stage_keep_before(noh_stage_actor *a); /* where it is becomes where it was */
 void noh_stage_shift_actor(noh_stage_actor *a, const float by[3]);
-/* Where an actor is drawn, less the stage's origin: its place, or that on its parent's joint, and so on, as they were
- * posed last. */
+/* From an actor's model to what its place is relative to: its place, and what turns the model within it. */
+void noh_stage_own_matrix(const noh_stage *s, const noh_stage_kind *k, const noh_stage_actor *a, float matrix[12]);
+/* A matrix relative to what an actor is attached to, as its parents were posed last, becomes one of the world, less the
+ * stage's origin. Without a parent it is one already. */
+void noh_stage_carry(const noh_stage *s, const noh_stage_actor *a, float matrix[12]);
+/* Where an actor is drawn: both. */
 void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
 /* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
 noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);

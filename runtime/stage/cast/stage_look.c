@@ -53,6 +53,7 @@ static uint32_t look_at_own(const noh_stage *s, uint32_t index, const noh_stage_
 
 /* An attached actor is seen where those that carry it may take it. Its matrix is known only when they were posed: until
  * then their last poses stand for it. They may be looked at in another job: what a look changes of them is not read.
+ * What modules turn is not read either: the reach of a kind holds it however it turns.
  * own: its sphere in its own space; matrix: from there to the world, as of the last poses. */
 static uint32_t look_at_attached(const noh_stage *s, uint32_t index, const noh_stage_kind *k, const float own[4],
                                  float matrix[12])
@@ -126,14 +127,13 @@ void noh_stage_follow_lod(noh_controller *inner, const noh_controller *outer)
 static noh_due choose_detail(const noh_stage_kind *k, noh_character *ch, const noh_controller *inner,
                              const noh_lod_settings *settings, float pixels_per_metre)
 {
-    float error_m[NOH_UPDATE_RATE_COUNT], of_inner[NOH_UPDATE_RATE_COUNT];
-    if (!inner || !k->table.update_error_m) {
-        return noh_character_select_lod(ch, &k->table, settings, pixels_per_metre);
-    }
+    float error_m[NOH_UPDATE_RATE_COUNT], of_inner[NOH_UPDATE_RATE_COUNT] = { 0.0f };
+    if (!k->table.update_error_m) return noh_character_select_lod(ch, &k->table, settings, pixels_per_metre);
     noh_time_lod_error(noh_character_controller(ch), k->table.update_error_m, error_m);
-    noh_time_lod_error(inner, k->table.update_error_m, of_inner);
+    if (inner) noh_time_lod_error(inner, k->table.update_error_m, of_inner);
     for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
         error_m[r] = of_inner[r] > error_m[r] ? of_inner[r] : error_m[r];
+        for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) error_m[r] += k->modules[slot].error_m[r];
     }
     return noh_character_select_lod_for(ch, &k->table, settings, pixels_per_metre, error_m);
 }
@@ -168,15 +168,13 @@ static void look_at(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matr
 {
     noh_stage_actor *a = &s->actors[index];
     noh_stage_shown *shown = &s->shown[index];
-    noh_place place;
     float own[4];
     if (k->weight_count) noh_stage_take_floats(k, noh_stage_index(k, a));
     noh_stage_sphere(k, noh_stage_index(k, a), own);
     if (a->parent) {
         shown->views = (uint16_t)look_at_attached(s, index, k, own, shown->world);
     } else {
-        noh_stage_shown_place(s, a, s->origin, &place);
-        noh_place_matrix(&place, shown->world);
+        noh_stage_own_matrix(s, k, a, shown->world);
         shown->views = (uint16_t)look_at_own(s, index, k, own);
     }
     a->on_its_way = 0;

@@ -113,6 +113,22 @@ int noh_stage_is_carried(const noh_stage_kind *k, uint32_t index)
     return is;
 }
 
+int noh_stage_turns(const noh_stage_kind *k)
+{
+    int turns = 0;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) turns |= k->modules[slot].turns;
+    return turns;
+}
+
+int noh_stage_turn(const noh_stage_kind *k, uint32_t index, float rotation[4], float at[3])
+{
+    if (!noh_stage_turns(k) || noh_stage_is_carried(k, index)) return 0;
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        if (k->modules[slot].turns) k->modules[slot].type->turn(k, index, rotation, at);
+    }
+    return 1;
+}
+
 noh_controller *noh_stage_inner(const noh_stage_kind *k, uint32_t index)
 {
     const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;

@@ -155,6 +155,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
         return; /* over budget: not shown yet */
     }
     noh_stage_take_floats(k, i);
+    if (!a->parent && noh_stage_turns(k)) noh_stage_own_matrix(s, k, a, shown->world);
     if (!a->parent && shown->updates) noh_stage_measure_shown(s, k, i, job->matrices);
     take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);
     shown->frame = s->frame;

@@ -592,7 +592,7 @@ static void the_bits_are_the_same_everywhere(void **state)
         for (size_t k = 0; k < sizeof pose; k++) hash = (hash ^ bytes[k]) * 16777619u;
     }
     print_message("hash %08x\n", hash);
-    assert_int_equal(hash, 0xb4c6e17d);
+    assert_int_equal(hash, 0x042c914d);
 }
 
 int main(int argc, char **argv)

@@ -28,7 +28,8 @@
 #define OPTION_FACE(T, m, text)                                                                          \
     {                                                                                                    \
         .name = "--face", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "on|off", .initial = text, \
-        .what = "whether faces blink, look about, breathe and keep moving, in addition to the clips"     \
+        .what = "whether faces blink, look about, breathe and keep moving, in addition to the clips; a " \
+                "head without joints turns as a whole"                                                   \
     }
 
 #define OPTION_SPRINGS(T, m)                                                                                \

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "face_idle.h"
 #include "cli/json.h"
 #include "cli/message.h"
 #include "cli/options.h"
@@ -18,6 +19,7 @@
 
 typedef struct face_args {
     const char *pack;
+    double idle_s;
     int as_json;
 } face_args;
 
@@ -254,6 +256,41 @@ static void json_mesh(json *j, const face_report *r)
     json_close(j, '}');
 }
 
+/* ---- idle ---- */
+
+static double share(const face_idle *idle, uint32_t region)
+{
+    return (double)idle->still[region] / (double)idle->pairs;
+}
+
+static int json_idle(const face_idle *idle, const face_args *a)
+{
+    json j = json_begin();
+    json_text(&j, "pack", a->pack);
+    json_number(&j, "seconds", a->idle_s);
+    json_integer(&j, "pairs", idle->pairs);
+    json_open(&j, "still", '{');
+    for (uint32_t r = 0; r < FACE_REGIONS; r++) {
+        if (idle->is_there[r]) json_number(&j, face_region_names[r], share(idle, r));
+    }
+    json_close(&j, '}');
+    return json_end(&j);
+}
+
+static int report_idle(const face_args *a, const pack_file *file)
+{
+    face_idle idle;
+    const int status = face_idle_measure(file, a->idle_s, &idle);
+    if (status) return status;
+    if (a->as_json) return json_idle(&idle, a);
+    printf("idle for %g s, %u pairs of pictures; without motion:", a->idle_s, idle.pairs);
+    for (uint32_t r = 0; r < FACE_REGIONS; r++) {
+        if (idle.is_there[r]) printf("%s %s %.1f %%", r ? "," : "", face_region_names[r], 100.0 * share(&idle, r));
+    }
+    printf("\n");
+    return 0;
+}
+
 /* ---- all ---- */
 
 static int report_pack(face_report *r, int as_json)
@@ -293,10 +330,12 @@ static int run(void *args)
     const face_args *a = args;
     pack_file file;
     face_report *report = calloc(1, sizeof *report);
-    int status = report ? pack_file_open(&file, a->pack) : tool_fail(a->pack, "out of memory");
+    int status = report ? 0 : tool_fail(a->pack, "out of memory");
+    if (!status && !(a->idle_s >= 0.0 && a->idle_s <= 600.0)) status = tool_usage("--idle must be 0 to 600 seconds");
+    if (!status) status = pack_file_open(&file, a->pack);
     if (!status) {
         report->file = &file;
-        status = report_pack(report, a->as_json);
+        status = a->idle_s > 0.0 ? report_idle(a, &file) : report_pack(report, a->as_json);
         pack_file_close(&file);
     }
     free(report);
@@ -305,7 +344,16 @@ static int run(void *args)
 
 static face_args arguments;
 
-static const option options[] = { OPTION_JSON(face_args, as_json) };
+static const option options[] = {
+    { .name = "--idle",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(face_args, idle_s),
+      .value = "S",
+      .what =
+          "instead, let the face live for S seconds without a clip: the share of pairs of pictures, 30 a second and 512 pixels high, in which outline, brows, lids, eyes or mouth do not move",
+      .example = "10" },
+    OPTION_JSON(face_args, as_json),
+};
 
 const verb verb_face = {
     .name = "face",
@@ -313,7 +361,7 @@ const verb verb_face = {
     .what = "show which targets of a face make blinks, gaze, emotions and mouth shapes, with the recipe of each",
     .more =
         "Each channel uses the first recipe that fits the targets' names: the pack's own (noh build --recipe), then the built-in recipes for ARKit, VRM and facial units. A mouth shape without a recipe uses the nearest other shape.",
-    .example = "head.noh\nhead.noh --json",
+    .example = "head.noh\nhead.noh --json\nhead.noh --idle 10",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

@@ -34,7 +34,7 @@ typedef struct sheet_args {
     const char *path, *accumulate, *transition, *face, *springs, *hair, *decal_kind;
     option_list decals;
     figure_mark marks[NOH_DECALS_MAX];
-    double tile, tiles, columns, faces, seed;
+    double tile, tiles, columns, faces, seed, time_s;
     sheet s;
 } sheet_args;
 
@@ -215,6 +215,14 @@ static int check_body(sheet *s)
     return status;
 }
 
+/* Whether there is nothing to show but a live face. */
+static int lives_alone(const sheet_args *a)
+{
+    const sheet_tiles *t = &a->s.tiles;
+    return a->s.figure.alive && !t->clips.count && !t->only.count && !a->faces && !t->wrinkled && !a->s.lods &&
+           !a->s.data && !a->s.show_bones;
+}
+
 static int check_args(sheet_args *a)
 {
     int springs = 1;
@@ -234,6 +242,9 @@ static int check_args(sheet_args *a)
     }
     if (!status) status = check_clips(&s->tiles, a->transition);
     if (!status && s->tiles.push) status = figure_read_push(s->tiles.push, s->tiles.impulse);
+    if (!status && !(a->time_s > 0.0 && a->time_s <= 600.0)) {
+        status = tool_usage("--time must be a number of seconds above 0, at most 600");
+    }
     if (!status) status = tool_switch("--face", a->face, &s->figure.alive);
     if (!status) status = tool_switch("--springs", a->springs, &springs);
     s->figure.without_springs = !springs;
@@ -242,6 +253,7 @@ static int check_args(sheet_args *a)
     if (!status) status = tool_switch("--hair", a->hair, &s->figure.hair);
     if (!status) status = figure_read_marks(&a->decals, a->decal_kind, a->marks, &s->figure);
     s->tiles.alive = s->figure.alive;
+    s->tiles.life_s = lives_alone(a) ? a->time_s : 0.0;
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
@@ -337,9 +349,18 @@ static const option options[] = {
       .at = offsetof(sheet_args, tiles),
       .value = "N",
       .initial = "24",
-      .what = "number of moments of the clip, or of the ping-pong, to show, 1 to 1024",
+      .what = "number of moments of the clip, the ping-pong or the live face to show, 1 to 1024",
       .example = "12",
-      .needs = "--clip --ping-pong" },
+      .needs = "--clip --ping-pong --face" },
+    { .name = "--time",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(sheet_args, time_s),
+      .value = "S",
+      .initial = "10",
+      .what = "how long a face lives that is shown without a clip, seconds, above 0, at most 600",
+      .example = "3",
+      .needs = "--face",
+      .excludes = "--clip --target --lods --wrinkles --faces --data" },
     { .name = "--blend",
       .kind = OPTION_TEXT,
       .at = offsetof(sheet_args, s.tiles.blend),
@@ -449,9 +470,9 @@ const verb verb_sheet = {
     .name = "sheet",
     .files = "PACK|MODEL",
     .what =
-        "draw a contact sheet: every target at full weight, a clip over time, people by seed, wrinkle models, LOD levels, or data textures",
+        "draw a contact sheet: every target at full weight, a clip or a live face over time, people by seed, wrinkle models, LOD levels, or data textures",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o idle.png --face on --time 3 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

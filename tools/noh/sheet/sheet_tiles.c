@@ -217,6 +217,7 @@ int sheet_tiles_measure(sheet_tiles *t, const figure *f)
     const char *other = t->blend ? t->blend : t->to;
     double seconds;
     const int status = t->clip ? figure_clip_seconds(f, t->clip, &t->clip_seconds) : 0;
+    if (t->life_s > 0.0) t->clip_seconds = t->life_s;
     return status || !other ? status : figure_clip_seconds(f, other, &seconds);
 }
 
@@ -235,7 +236,7 @@ uint32_t sheet_tiles_count(const sheet_tiles *t)
     if (t->face_count) {
         return t->face_count * face_columns(t);
     }
-    if (!t->clip) {
+    if (!t->clip && !(t->life_s > 0.0)) {
         return t->target_count + 1;
     }
     return t->blend ? t->clip_tiles * SHEET_BLEND_ROWS : t->clip_tiles;
@@ -265,7 +266,7 @@ int sheet_tiles_pose(const sheet_tiles *t, figure *f, uint32_t tile)
     } else if (t->push) {
         status = figure_play_options(f, &t->clips, 0.0);
         if (!status) status = figure_fall(f, t->impulse, tile_time(t, tile));
-    } else if (t->clip) {
+    } else if (t->clip || t->life_s > 0.0) {
         status = figure_play_options(f, &t->clips, t->lives ? 0.0 : tile_time(t, tile));
         if (!status && t->alive) status = figure_feel(f, &t->emotions);
         if (!status && t->lives) status = figure_live(f, tile_time(t, tile), 0.0);
@@ -285,6 +286,10 @@ void sheet_tiles_label(const sheet_tiles *t, uint32_t tile, char *text, size_t b
     if (t->face_count) {
         snprintf(text, bytes, "%u%s%s", t->seed + tile / face_columns(t), t->expressions ? " " : "",
                  t->expressions ? sheet_faces_name(tile % face_columns(t)) : "");
+        return;
+    }
+    if (t->life_s > 0.0) {
+        snprintf(text, bytes, "%.2f s", tile_time(t, tile));
         return;
     }
     if (!t->clip && tile) {

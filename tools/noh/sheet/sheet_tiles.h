@@ -22,13 +22,14 @@ typedef struct sheet_tiles {
     const pack_file *file;
     option_list clips; /* the first sets the time, the others play along */
     option_list anims, emotions;
-    int alive;                     /* faces live through the clip, from its beginning */
+    int alive;                     /* faces live through the clip, or through `life_s`, from its beginning */
     int lives;                     /* the same of faces or bodies: clips are played from the beginning of each tile */
     const char *clip, *blend, *to; /* clip names; NULL: none */
     int inertia;                   /* the transition to `to`: 1 inertialization, 0 a cross-fade */
     double over_s;                 /* its duration */
     const char *push;              /* NULL: none */
     float impulse[3];              /* of it */
+    double life_s;                 /* above 0: without a clip, faces live for so long */
     double clip_seconds;
     uint32_t clip_tiles;   /* columns in time */
     option_list only;      /* NAME or NAME=WEIGHT: targets to show instead of all */
