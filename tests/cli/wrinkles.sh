@@ -5,7 +5,7 @@
 
 noh build "$build/mask.glb" -o "$work/auto.noh" --wrinkles auto --only mesh
 expect 0 'build --wrinkles auto'
-check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 256 x 256, weights 64 x 64, 12 regions" "$work/out"
+check 'reports size and regions' grep -q "^wrinkles of mesh 'mask', material 'paint': normals 512 x 512, weights 64 x 64, 9 regions" "$work/out"
 noh build "$build/mask.glb" -o "$work/again.noh" --wrinkles auto --only mesh --quiet
 check 'the same bytes again' cmp "$work/auto.noh" "$work/again.noh"
 noh verify "$work/auto.noh"
@@ -14,7 +14,7 @@ noh strip "$work/auto.noh" -o "$work/again.noh" --from-level 0 --quiet
 check 'strip keeps them' cmp "$work/auto.noh" "$work/again.noh"
 
 noh build "$build/mask.glb" -o "$work/small.noh" --wrinkles auto --wrinkle-size 64 --only mesh
-check 'a size that is asked for' grep -q 'normals 64 x 64, weights 16 x 16' "$work/out"
+check 'a size that is asked for' grep -q 'normals 64 x 64, weights 8 x 8' "$work/out"
 check 'takes fewer bytes' test "$(wc -c <"$work/small.noh")" -lt "$(wc -c <"$work/auto.noh")"
 for size in 100 32 4096 -64; do
     noh build "$build/mask.glb" -o "$work/no.noh" --wrinkles auto --wrinkle-size $size
@@ -52,7 +52,8 @@ expect 0 'mask --export of a model'
 check 'no code of it is illegal' grep -q ' 0 illegal codes' "$work/out"
 noh build "$build/mask.glb" -o "$work/again.noh" --wrinkles auto --region-mask "$work/regions.png" --only mesh --quiet
 check 'read back, it gives the same regions' cmp "$work/auto.noh" "$work/again.noh"
-noh mask "$work/auto.noh" --export "$work/of_pack.png" --quiet
+noh build "$build/mask.glb" -o "$work/raw.noh" --wrinkles auto --textures raw --only mesh --quiet
+noh mask "$work/raw.noh" --export "$work/of_pack.png" --quiet
 expect 0 'mask --export of a pack'
 check 'the same mask' cmp "$work/regions.png" "$work/of_pack.png"
 noh mask "$build/mask.glb" --export "$work/large.png" --size 200 --quiet

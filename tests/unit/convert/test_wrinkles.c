@@ -10,6 +10,7 @@
 
 #include "convert/model/model_build.h"
 #include "convert/wrinkle/wrinkle_creases.h"
+#include "convert/wrinkle/wrinkle_folds.h"
 #include "convert/wrinkle/wrinkle_make.h"
 #include "convert/wrinkle/wrinkle_regions.h"
 #include "file/png_file.h"
@@ -603,6 +604,124 @@ static void creases_of_a_human_head(void **state)
     check_face(test_asset("hero/head.glb"), 512);
 }
 
+/* ---- folds of faces ---- */
+
+static uint32_t target_of(const model_mesh *mesh, const char *name)
+{
+    for (uint32_t t = 0; t < mesh->target_count; ++t) {
+        if (strcmp(mesh->targets[t].name, name) == 0) return t;
+    }
+    fail_msg("no target %s", name);
+    return 0;
+}
+
+static void find_face(const char *path, model **m, wrinkle_field *f, wrinkle_folds *folds)
+{
+    model_error error;
+    assert_int_equal(model_read_gltf(path, m, &error), 0);
+    assert_int_equal(wrinkle_field_make(&(*m)->meshes[0], 0, f), 0);
+    assert_int_equal(wrinkle_folds_find(f, NULL, folds), 1);
+    print_message("%s: eyes %.1f mm apart, brows at %.3f, mouth at %.3f, %.3f\n", path, 1e3 * folds->face.unit,
+                  folds->face.brow, folds->face.mouth[0], folds->face.mouth[1]);
+}
+
+/* Landmarks by channels, for targets named after ARKit and after action units. */
+static void faces_are_found_by_what_their_channels_move(void **state)
+{
+    (void)state;
+    char path[1024];
+    snprintf(path, sizeof path, "%s/mask.glb", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build");
+    const char *const paths[] = { path, test_asset("hero/head.glb") };
+    for (int i = 0; i < 2; ++i) {
+        model *m;
+        wrinkle_field f;
+        wrinkle_folds folds;
+        find_face(paths[i], &m, &f, &folds);
+        const wrinkle_face *face = &folds.face;
+        assert_true(face->unit > 0.055 && face->unit < 0.068);
+        assert_true(face->axis[0][0] > 0.99 && face->axis[1][1] > 0.95 && face->axis[2][2] > 0.95);
+        assert_true(face->brow > 0.2 && face->brow < 0.7);
+        assert_true(face->mouth[0] > 0.3 && face->mouth[0] < 0.6 && face->mouth[1] > -1.2 && face->mouth[1] < -0.9);
+        wrinkle_field_free(&f);
+        model_free(m);
+    }
+    static sheet s;
+    wrinkle_field f;
+    wrinkle_folds folds;
+    sheet_make(&s);
+    s.targets[0].name = (char *)"left", s.targets[1].name = (char *)"right";
+    assert_int_equal(wrinkle_field_make(&s.mesh, 0, &f), 0);
+    assert_int_equal(wrinkle_folds_find(&f, NULL, &folds), 0); /* nothing blinks */
+    wrinkle_field_free(&f);
+}
+
+/* A face turned upside down and away, scaled, has the same folds: its coordinates are its own. */
+static void folds_follow_the_face(void **state)
+{
+    (void)state;
+    model *m;
+    wrinkle_field f;
+    wrinkle_folds folds, turned;
+    find_face(test_asset("hero/head.glb"), &m, &f, &folds);
+    model_mesh *mesh = &m->meshes[0];
+    for (uint32_t t = 0; t <= mesh->target_count; ++t) {
+        float *p = t ? mesh->targets[t - 1].position : mesh->position;
+        for (size_t v = 0; v < mesh->vertex_count; ++v) {
+            p[3 * v] *= 100.0f, p[3 * v + 1] *= -100.0f, p[3 * v + 2] *= -100.0f;
+        }
+    }
+    for (size_t v = 0; v < mesh->vertex_count; ++v) mesh->normal[3 * v + 1] *= -1.0f, mesh->normal[3 * v + 2] *= -1.0f;
+    wrinkle_field_free(&f);
+    assert_int_equal(wrinkle_field_make(mesh, 0, &f), 0);
+    assert_int_equal(wrinkle_folds_find(&f, NULL, &turned), 1);
+    assert_true(fabs(turned.face.unit - 100.0 * folds.face.unit) < 0.01 && turned.face.axis[1][1] < -0.95);
+    assert_true(fabs(turned.face.brow - folds.face.brow) < 1e-4);
+    assert_true(fabs(turned.face.mouth[1] - folds.face.mouth[1]) < 1e-4);
+    wrinkle_field_free(&f);
+    model_free(m);
+}
+
+/* The zones of a region: the matrix of the mask. */
+static void expressions_fold_their_own_zones(void **state)
+{
+    (void)state;
+    enum { FOREHEAD = 2, FROWN = 5, SMILE_LEFT = 6 };
+    static const struct {
+        const char *target;
+        uint32_t region;
+        uint8_t least, most;
+    } cases[] = { { "anger", FROWN, 200, 255 },
+                  { "browDownLeft", FROWN, 100, 255 },
+                  { "surprise", FROWN, 0, 0 },
+                  { "browInnerUp", FROWN, 0, 0 },
+                  { "surprise", FOREHEAD, 200, 255 },
+                  { "anger", FOREHEAD, 0, 0 },
+                  { "mouthSmileLeft", SMILE_LEFT, 200, 255 },
+                  { "mouthSmileRight", SMILE_LEFT, 0, 0 } };
+    char path[1024];
+    model *m;
+    model_error error = { "", "" };
+    const wrinkle_settings settings = { .automatic = 1 };
+    snprintf(path, sizeof path, "%s/mask.glb", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build");
+    assert_int_equal(model_read_gltf(path, &m, &error), 0);
+    assert_int_equal(wrinkles_make(m, &settings, &error), 0);
+    const model_material *skin = &m->materials[0];
+    const model_texture *map = &m->textures[skin->wrinkle_texture];
+    size_t folded = 0;
+    for (size_t i = 0; i < (size_t)map->width * map->height; ++i) {
+        folded += abs(map->rgba[4 * i] - 128) > 4 || abs(map->rgba[4 * i + 1] - 128) > 4;
+    }
+    print_message("folds on %.1f %% of the texels\n", 100.0 * (double)folded / (map->width * map->height));
+    assert_true(folded * 100 > map->width * map->height && folded * 10 < map->width * map->height); /* not a net */
+    assert_int_equal(skin->wrinkle_models, NOH_WRINKLE_BY_REGION);
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
+        const unsigned tied = tie(m, target_of(&m->meshes[0], cases[i].target), cases[i].region);
+        print_message("%s: %u of region %u\n", cases[i].target, tied, cases[i].region);
+        assert_in_range(tied, cases[i].least, cases[i].most);
+    }
+    model_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -618,6 +737,9 @@ int main(void)
         cmocka_unit_test(rows_of_wrinkles_that_are_wrong_are_refused),
         cmocka_unit_test(creases_follow_the_principal_axis),
         cmocka_unit_test(creases_of_a_human_head),
+        cmocka_unit_test(faces_are_found_by_what_their_channels_move),
+        cmocka_unit_test(folds_follow_the_face),
+        cmocka_unit_test(expressions_fold_their_own_zones),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -268,29 +268,6 @@ static double height_step(const canvas *c, uint32_t x, uint32_t y, int down)
     return b > a ? (height_at(c, b) - height_at(c, a)) / (double)steps : 0.0;
 }
 
-static void frame_at(const canvas *c, size_t at, double tangent[3], double bitangent[3])
-{
-    const model_mesh *mesh = c->field->mesh;
-    double normal[3] = { 0 };
-    double sign = 1.0;
-    memset(tangent, 0, 3 * sizeof *tangent);
-    for (uint32_t k = 0; k < 3; k++) {
-        const size_t v = wrinkle_corner(c->field, c->raster->triangle[at], k);
-        for (int i = 0; i < 3; i++) {
-            normal[i] += (double)c->raster->share[at][k] * (double)mesh->normal[3 * v + (size_t)i];
-            tangent[i] += (double)c->raster->share[at][k] * (double)mesh->tangent[4 * v + (size_t)i];
-        }
-        sign = (double)mesh->tangent[4 * v + 3];
-    }
-    (void)vec_normalize(normal);
-    vec_reject(tangent, normal);
-    (void)vec_normalize(tangent);
-    vec_cross(normal, tangent, bitangent);
-    for (int i = 0; i < 3; i++) {
-        bitangent[i] *= sign;
-    }
-}
-
 /* Slopes count across the crease only: where stripes end or meet, nothing leads in another direction. */
 static void normal_at(const canvas *c, uint32_t x, uint32_t y, uint8_t *rgba)
 {
@@ -298,12 +275,12 @@ static void normal_at(const canvas *c, uint32_t x, uint32_t y, uint8_t *rgba)
     const crease *k = &c->creases[at];
     const double hx = height_step(c, x, y, 0), hy = height_step(c, x, y, 1);
     const double uu = vec_dot(k->u, k->u), uv = vec_dot(k->u, k->v), vv = vec_dot(k->v, k->v), det = uu * vv - uv * uv;
-    double tangent[3], bitangent[3], gradient[3], n[3], slope;
+    double tangent[3], bitangent[3], normal[3], gradient[3], n[3], slope;
     if (!(det > 0.0)) return;
     for (int i = 0; i < 3; i++) {
         gradient[i] = ((vv * hx - uv * hy) * k->u[i] + (uu * hy - uv * hx) * k->v[i]) / det;
     }
-    frame_at(c, at, tangent, bitangent);
+    wrinkle_raster_frame(c->raster, c->field, at, tangent, bitangent, normal);
     slope = vec_dot(gradient, k->across);
     n[0] = -slope * vec_dot(k->across, tangent);
     n[1] = -slope * vec_dot(k->across, bitangent);

@@ -5,9 +5,11 @@
 #include <string.h>
 
 #include "noh/base.h"
+#include "noh/format.h"
 #include "convert/base/image_file.h"
 #include "convert/model/model_build.h"
 #include "wrinkle_creases.h"
+#include "wrinkle_folds.h"
 #include "wrinkle_regions.h"
 #include "wrinkle_uv.h"
 
@@ -15,6 +17,7 @@
 #define MAP_SIZE_MOST 512u  /* by how many texels lie from crease to crease; --wrinkle-size goes beyond it */
 #define WAVE_TEXELS 5.0     /* fewer widen them: WAVE_LEAST of wrinkle_creases.c */
 #define WEIGHTS_SHARE 4u /* of the side of a normal map is the side of weight maps that are filtered: they are smooth */
+#define ZONES_SHARE 8u   /* zones of a face are larger than what creases need */
 #define OVERLAP_MOST 0.25 /* of the texels: folds of a projected texture overlap, mirrored halves do so altogether */
 #define SHRINKING_LEAST 0.002 /* mean compression of a material's area by all of a mesh's targets together */
 
@@ -115,10 +118,9 @@ static double texel_edge(const wrinkle_field *f, const wrinkle_raster *r)
     return texels > 0.0 ? sqrt(area / texels) : 0.0;
 }
 
-/* asked: 0: the smallest size whose texels show creases */
-static int choose_size(const wrinkle_field *f, uint32_t asked, wrinkle_raster *out)
+/* asked: 0: the smallest size whose texels show waves of this length */
+static int choose_size(const wrinkle_field *f, double spacing, uint32_t asked, wrinkle_raster *out)
 {
-    const double spacing = wrinkle_spacing(f);
     for (uint32_t size = asked ? asked : MAP_SIZE_LEAST;; size *= 2) {
         if (wrinkle_raster_make(f, size, size, out)) return 1;
         if (asked || size == MAP_SIZE_MOST || spacing >= WAVE_TEXELS * texel_edge(f, out)) return 0;
@@ -154,18 +156,19 @@ static int read_map(const char *path, wrinkles *w, model_error *error)
 
 /* ---- generated ---- */
 
-static int generate_map(const wrinkle_field *f, const wrinkle_raster *r, wrinkles *w)
+/* folds: NULL: it is not a face */
+static int generate_map(const wrinkle_field *f, const wrinkle_folds *folds, const wrinkle_raster *r, wrinkles *w)
 {
-    w->map = wrinkle_creases_make(f, r, wrinkle_spacing(f));
+    w->map = folds ? wrinkle_folds_map(f, r, folds) : wrinkle_creases_make(f, r, wrinkle_spacing(f));
     w->map_width = r->width;
     w->map_height = r->height;
     return !w->map;
 }
 
 /* As a mask that could have been painted. */
-static int generate_mask(const wrinkle_field *f, uint32_t size, region_mask *mask)
+static int generate_mask(const wrinkle_field *f, const wrinkle_folds *folds, uint32_t size, region_mask *mask)
 {
-    region_weights *regions = wrinkle_regions_make(f);
+    region_weights *regions = folds ? wrinkle_folds_regions(f, folds) : wrinkle_regions_make(f);
     uint8_t *maps[REGION_MAP_COUNT] = { NULL };
     wrinkle_raster r;
     const int failed = wrinkle_raster_make(f, size, size, &r) || !regions || wrinkle_maps_make(f, regions, &r, maps) ||
@@ -176,10 +179,10 @@ static int generate_mask(const wrinkle_field *f, uint32_t size, region_mask *mas
     return failed;
 }
 
-static uint32_t mask_size(const wrinkle_settings *settings, uint32_t map_size)
+static uint32_t mask_size(const wrinkle_settings *settings, int is_face, uint32_t map_size)
 {
     if (settings->mask_size) return settings->mask_size;
-    return settings->by_pixel ? map_size : map_size / WEIGHTS_SHARE;
+    return settings->by_pixel ? map_size : map_size / (is_face ? ZONES_SHARE : WEIGHTS_SHARE);
 }
 
 static int decode_mask(const wrinkle_field *f, wrinkles *w)
@@ -192,15 +195,15 @@ static int decode_mask(const wrinkle_field *f, wrinkles *w)
 }
 
 /* Paint what there is a file for, generate the rest. */
-static int fill(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_settings *settings, wrinkles *w,
-                model_error *error)
+static int fill(const wrinkle_field *f, const wrinkle_folds *folds, const wrinkle_raster *r,
+                const wrinkle_settings *settings, wrinkles *w, model_error *error)
 {
-    if (settings->map ? read_map(settings->map, w, error) : generate_map(f, r, w) && out_of_memory(error)) {
+    if (settings->map ? read_map(settings->map, w, error) : generate_map(f, folds, r, w) && out_of_memory(error)) {
         return 1;
     }
     if (settings->mask) {
         if (region_mask_read(settings->mask, &w->mask, error)) return blame(settings->mask, error);
-    } else if (generate_mask(f, mask_size(settings, r->width), &w->mask)) {
+    } else if (generate_mask(f, folds, mask_size(settings, folds != NULL, r->width), &w->mask)) {
         return out_of_memory(error);
     }
     return decode_mask(f, w) && out_of_memory(error);
@@ -345,8 +348,15 @@ static int add_weights(model *m, const char *mesh, const wrinkle_field *f, int b
     return 0;
 }
 
+/* Of folds a change of area does not say which of them shows: regions do. */
+static uint32_t models_of(const wrinkle_settings *settings, int is_face)
+{
+    if (settings->models) return settings->models;
+    return is_face ? NOH_WRINKLE_BY_REGION : NOH_WRINKLE_BY_AREA | NOH_WRINKLE_BY_REGION;
+}
+
 static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, const wrinkle_settings *settings,
-                        wrinkles *w)
+                        int is_face, wrinkles *w)
 {
     const char *name = mesh->name ? mesh->name : "";
     uint32_t own = f->material;
@@ -355,7 +365,7 @@ static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, cons
     if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped, MODEL_TEXTURE_NORMAL))
         return 1;
     m->materials[own].wrinkle_texture = m->texture_count - 1u;
-    m->materials[own].wrinkle_models = settings->models;
+    m->materials[own].wrinkle_models = models_of(settings, is_face);
     if (by_pixel && !has_room(&m->materials[own])) {
         by_pixel = 0;
         if (model_warn(m, "material '%s': its wrinkle regions are read per vertex, as a pixel reads at most %u maps",
@@ -393,32 +403,47 @@ static int keep_mask(const wrinkle_settings *settings, const wrinkles *w)
     return !settings->kept->rgba;
 }
 
+/* Lay out what is generated. folds->zones: none where it is not a face. Why the mesh cannot have wrinkles goes to *why,
+ * which is NULL where it can. */
+static int lay_out(model *m, model_mesh *mesh, const wrinkle_settings *settings, wrinkle_field *f, wrinkle_raster *r,
+                   wrinkle_folds *folds, int *is_face, const char **why)
+{
+    *is_face = !settings->map && wrinkle_folds_find(f, settings->recipe, folds);
+    if (wrinkle_uv_settle(m, mesh, f) ||
+        choose_size(f, *is_face ? wrinkle_folds_finest(folds) : wrinkle_spacing(f), settings->size, r)) {
+        return 1;
+    }
+    if (overlaps(r) && !(settings->map && settings->mask)) { /* painted ones are meant for it */
+        *why = "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
+    } else if (*is_face && !wrinkle_folds_place(f, r, folds)) {
+        *why = "its targets compress no fold of a face by 1 %";
+    }
+    return 0;
+}
+
 /* One mesh; *made counts those that have wrinkles now. */
 static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *settings, uint32_t *made, model_error *error)
 {
     wrinkle_field f;
     wrinkle_raster r = { 0 };
     wrinkles w = { 0 };
+    wrinkle_folds folds;
     const char *why;
-    int failed = choose_surface(m, mesh, settings->mask && has_rows(settings->recipe, mesh), &f) &&
-                 out_of_memory(error);
+    int is_face = 0, failed = choose_surface(m, mesh, settings->mask && has_rows(settings->recipe, mesh), &f) &&
+                              out_of_memory(error);
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
-        failed = (wrinkle_uv_settle(m, mesh, &f) || choose_size(&f, settings->size, &r)) && out_of_memory(error);
-        if (!failed && overlaps(&r) && !(settings->map && settings->mask)) { /* painted ones are meant for it */
-            why = "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one "
-                  "place";
-        }
+        failed = lay_out(m, mesh, settings, &f, &r, &folds, &is_face, &why) && out_of_memory(error);
     }
     if (!failed && why) {
         failed = model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) && out_of_memory(error);
     } else if (!failed) {
-        failed = fill(&f, &r, settings, &w, error);
+        failed = fill(&f, is_face ? &folds : NULL, &r, settings, &w, error);
         failed = failed || (keep_mask(settings, &w) && out_of_memory(error));
         if (!failed) take_rows(settings->recipe, mesh, w.matrix);
         failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && out_of_memory(error));
         if (!failed) report(settings, m, mesh, f.material, &w);
-        failed = failed || (add_to_model(m, mesh, &f, settings, &w) && out_of_memory(error));
+        failed = failed || (add_to_model(m, mesh, &f, settings, is_face, &w) && out_of_memory(error));
         *made += !failed;
     }
     wrinkles_free(&w);

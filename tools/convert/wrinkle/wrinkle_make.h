@@ -14,15 +14,15 @@ extern "C" {
 #endif
 
 typedef struct wrinkle_settings {
-    int automatic;      /* generate maps that are not painted */
-    const char *map;    /* a painted normal map, tangent space, +y up; NULL: generated */
-    const char *mask;   /* a painted region mask (region_mask.h); NULL: generated */
-    uint32_t models;    /* NOH_WRINKLE_BY_* of format.h: what shows them, at least one */
-    int by_pixel;       /* 1: pixels read a mask of codes, texel by texel; else vertices read its weights, filtered */
-    uint32_t size;      /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
-    uint32_t mask_size; /* side of a generated mask; 0: as it is read */
-    region_mask *kept;  /* of no texels; takes the mask of the first mesh that gets wrinkles. NULL: nowhere */
-    const recipe_text *recipe; /* its wrinkle rows override the measurement; NULL: none */
+    int automatic;    /* generate maps that are not painted */
+    const char *map;  /* a painted normal map, tangent space, +y up; NULL: generated */
+    const char *mask; /* a painted region mask (region_mask.h); NULL: generated */
+    uint32_t models;  /* NOH_WRINKLE_BY_* of format.h: what shows them; 0: regions, and area where there are no folds */
+    int by_pixel;     /* 1: pixels read a mask of codes, texel by texel; else vertices read its weights, filtered */
+    uint32_t size;    /* side of a generated normal map, texels, 64 or more; 0: as creases want it */
+    uint32_t mask_size;        /* side of a generated mask; 0: as it is read */
+    region_mask *kept;         /* of no texels; takes the mask of the first mesh that gets wrinkles. NULL: nowhere */
+    const recipe_text *recipe; /* which targets blink and smile; wrinkle rows override the measurement; NULL: none */
     FILE *report;              /* NULL: quiet */
 } wrinkle_settings;
 

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/model_build.h"
+
 #define INSIDE 0.02   /* this far inside a second triangle, in shares, is no rounding at a common edge */
 #define REPEATS_MAX 4 /* a triangle over more repeats of the texture than that covers all of it anyway */
 
@@ -103,6 +105,28 @@ void wrinkle_raster_free(wrinkle_raster *r)
     free(r->triangle);
     free(r->share);
     memset(r, 0, sizeof *r);
+}
+
+void wrinkle_raster_frame(const wrinkle_raster *r, const wrinkle_field *field, size_t at, double tangent[3],
+                          double bitangent[3], double normal[3])
+{
+    const model_mesh *mesh = field->mesh;
+    double sign = 1.0;
+    memset(normal, 0, 3 * sizeof *normal);
+    memset(tangent, 0, 3 * sizeof *tangent);
+    for (uint32_t k = 0; k < 3; k++) {
+        const size_t v = wrinkle_corner(field, r->triangle[at], k);
+        for (int i = 0; i < 3; i++) {
+            normal[i] += (double)r->share[at][k] * (double)mesh->normal[3 * v + (size_t)i];
+            tangent[i] += (double)r->share[at][k] * (double)mesh->tangent[4 * v + (size_t)i];
+        }
+        sign = (double)mesh->tangent[4 * v + 3];
+    }
+    (void)vec_normalize(normal);
+    vec_reject(tangent, normal);
+    (void)vec_normalize(tangent);
+    vec_cross(normal, tangent, bitangent);
+    for (int i = 0; i < 3; i++) bitangent[i] *= sign;
 }
 
 /* The mean of the filled neighbours of an empty texel. */

@@ -21,6 +21,10 @@ typedef struct wrinkle_raster {
 int wrinkle_raster_make(const wrinkle_field *field, uint32_t width, uint32_t height, wrinkle_raster *out);
 void wrinkle_raster_free(wrinkle_raster *r);
 
+/* The unit vectors of a texel's tangent space, model space: its texture's x and y, and the normal. */
+void wrinkle_raster_frame(const wrinkle_raster *r, const wrinkle_field *field, size_t at, double tangent[3],
+                          double bitangent[3], double normal[3]);
+
 /* Fill texels without a triangle from their neighbours, `rounds` texels far: filters and mip levels reach over the
  * border of a chart. */
 int wrinkle_raster_dilate(const wrinkle_raster *r, uint8_t *rgba, uint32_t rounds);

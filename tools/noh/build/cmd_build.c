@@ -263,19 +263,19 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     static const struct {
         const char *name;
         uint32_t bits;
-    } models[] = { { "auto", NOH_WRINKLE_BY_AREA | NOH_WRINKLE_BY_REGION },
+    } models[] = { { "auto", 0 },
                    { "area", NOH_WRINKLE_BY_AREA },
                    { "region", NOH_WRINKLE_BY_REGION },
                    { "channel", NOH_WRINKLE_BY_CHANNEL } };
     if (a->wrinkles.make && strcmp(a->wrinkles.make, "auto") != 0) {
         return tool_usage("--wrinkles must be auto, not '%s'", a->wrinkles.make);
     }
-    for (size_t i = 0; i < sizeof models / sizeof models[0]; i++) {
-        if (strcmp(a->wrinkles.models, models[i].name) == 0) o->wrinkles.models = models[i].bits;
-    }
-    if (!o->wrinkles.models) {
+    size_t kind = 0;
+    while (kind < sizeof models / sizeof models[0] && strcmp(a->wrinkles.models, models[kind].name) != 0) kind++;
+    if (kind == sizeof models / sizeof models[0]) {
         return tool_usage("--wrinkle-model must be auto, area, region or channel, not '%s'", a->wrinkles.models);
     }
+    o->wrinkles.models = models[kind].bits;
     o->wrinkles.size = a->wrinkles.size >= 64.0 && a->wrinkles.size <= 2048.0 ? (uint32_t)a->wrinkles.size : 0;
     if (a->wrinkles.size != (double)o->wrinkles.size || (o->wrinkles.size & (o->wrinkles.size - 1u))) {
         return tool_usage("--wrinkle-size must be a power of two from 64 to 2048, or 0 to choose it");
@@ -520,7 +520,7 @@ static const option options[] = {
       .at = offsetof(build_args, wrinkles.make),
       .value = "auto",
       .what =
-          "generate wrinkles from the compression of each target: a normal map of creases, twelve regions, and the weight of each target in each region",
+          "generate wrinkles from the compression of each target: a normal map, twelve regions, and the weight of each target in each region. A face, whose targets blink and smile, gets folds where faces have them; any other surface gets creases",
       .example = "auto",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-map",
@@ -543,7 +543,7 @@ static const option options[] = {
       .value = "auto|area|region|channel",
       .initial = "auto",
       .what =
-          "what drives the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: the larger of area and region",
+          "what drives the wrinkle map: the change of area in the pose, the regions that the expression wrinkles, or three channels of the first weight map; auto: region on a face with generated folds, else the larger of area and region",
       .example = "area",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-lookup",

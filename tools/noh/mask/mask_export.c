@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "convert/model/recipe_make.h"
 #include "convert/sources.h"
 #include "convert/wrinkle/wrinkle_make.h"
 #include "file/pack_file.h"
@@ -43,14 +44,19 @@ int mask_is_exported(const char *path)
 static int of_model(const char *path, uint32_t size, region_mask *mask)
 {
     const source_options reading = { .sample_rate_hz = 0.0 };
-    const wrinkle_settings settings = {
-        .automatic = 1, .models = NOH_WRINKLE_BY_REGION, .mask_size = size, .kept = mask
-    };
+    recipe_text *recipe = recipe_new();
+    const wrinkle_settings settings = { .automatic = 1, .mask_size = size, .kept = mask, .recipe = recipe };
     model_error error = { "", "" };
     source s;
+    uint32_t known;
     memset(&s, 0, sizeof s);
-    const int failed = source_read(path, &reading, &s, &error) || wrinkles_make(s.m, &settings, &error);
+    int failed = source_read(path, &reading, &s, &error);
+    if (!failed && (!recipe || recipe_add_extras(recipe, s.m) || recipe_add_known(recipe, s.m, &known))) {
+        failed = model_fail(&error, "", "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
+    }
+    failed = failed || wrinkles_make(s.m, &settings, &error);
     source_free(&s);
+    recipe_free(recipe);
     return failed ? tool_fail(path, "%s", error.what) : 0;
 }
 
