@@ -202,6 +202,7 @@ function listen() {
     on('light', showLight);
     on('push', showPush);
     on('speech', showSaid);
+    on('caption', showCaption);
     on('pick', ({ mesh, joint }) => { byId('picked').textContent = [mesh, joint].filter((name) => name).join(', joint '); });
     on('pause', showPaused);
     on('lost', () => {

@@ -23,17 +23,19 @@ byId('listen').addEventListener('click', () => {
 byId('open-sound').addEventListener('click', () => byId('sound').click());
 byId('sound').addEventListener('change', async () => {
     const file = byId('sound').files[0];
-    if (file) await character.speech.play(file);
+    if (file) await character.speech.speak(file, { interrupt: true });
     byId('sound').value = ''; // the same file may be chosen again
 });
 
 byId('say').addEventListener('submit', (event) => {
     const words = byId('line').value.trim();
     event.preventDefault();
-    if (words) return character.speech.say(words);
+    if (words) return character.speech.speak(words, { interrupt: true });
     character.speech.stop();
     return said('Type a sentence first.');
 });
+
+function showCaption({ words }) { byId('caption').textContent = words; }
 
 // Hidden without a face with mouth shapes. Some browsers list their voices only after a first request.
 function beginSpeech() {

@@ -136,6 +136,17 @@ async function used(browser) {
     await page.mouse.click(r.x + r.width / 2, r.y + r.height / 2);
     const seen = await page.evaluate(() => seen);
     check('used: events tell', ['progress', 'load', 'pick', 'pause'].every((type) => seen.includes(type)) && !seen.includes('error'), seen.join());
+    const caption = await page.evaluate(() => new Promise((resolve) => {
+        const it = document.getElementById('it'), shown = it.shadowRoot.querySelector('.caption');
+        it.addEventListener('caption', ({ detail }) => resolve([detail.words, shown.hidden, shown.textContent].join()), { once: true });
+        it.captions = true;
+        it.speak('mama');
+    }));
+    check('used: what it says is shown', caption === 'mama,false,mama', caption);
+    await page.waitForFunction(() => !document.getElementById('it').shadowRoot.querySelector('.caption').hidden);
+    await page.screenshot({ path: path.join(out, 'caption.png') });
+    await page.evaluate(() => document.getElementById('it').hush());
+    check('used: until it is hushed', !await page.isVisible('noh-character .caption'));
     await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
     check('used: a clip that is not there is told in words', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
     await page.evaluate(() => { document.getElementById('it').src = 'none.noh'; });

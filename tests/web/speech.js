@@ -151,10 +151,33 @@ async function text(browser) {
     const none = await open(browser, {}, "Object.defineProperty(window, 'speechSynthesis', { value: { getVoices: () => [], cancel() {} } });");
     await none.click('#say button');
     check('text: nothing typed is told', await words(none, 'Type a sentence'));
+    await none.evaluate(() => {
+        window.heard = [];
+        for (const type of ['word', 'caption']) character.addEventListener(type, ({ detail }) => heard.push(detail.word ?? detail.words));
+    });
     await none.fill('#line', 'A man came home.');
     await none.click('#say button');
-    check('text: no voices are told', await words(none, 'no voices'), await none.textContent('#speech-text'));
+    check('text: no voice is told to a visitor', await words(none, 'This browser has no voice: the words are shown'), await none.textContent('#speech-text'));
+    check('text: and the face says it without one', await opens(none) && await none.textContent('#caption') === 'A man came home.');
+    await none.screenshot({ path: path.join(out, 'silent.png') });
+    await none.waitForFunction(() => !character.speech.speaks);
+    const heard = await none.evaluate(() => heard.join('|'));
+    check('text: words are events', heard === 'A man came home.|A|man|came|home.|', heard);
     await close(none, 'no voices');
+    const late = await open(browser, {}, `${voices}
+        let told = null, all = [];
+        Object.assign(speechSynthesis, { getVoices: () => all, addEventListener: (type, call) => { told = call; } });
+        window.bring = () => { all = [{ name: 'test', lang: 'en' }]; told(); };`);
+    await late.fill('#line', 'mama');
+    await late.click('#say button');
+    await late.evaluate(() => window.bring());
+    await late.waitForFunction(() => window.voice.now);
+    check('text: voices that come late speak the first time', await late.evaluate(() => window.voice.now.text) === 'mama');
+    await late.evaluate(() => { speechSynthesis.speak = () => {}; });
+    await late.fill('#line', 'papa');
+    await late.click('#say button');
+    check('text: a voice that does not begin is done without', await words(late, 'This browser has no voice') && await late.textContent('#caption') === 'papa');
+    await close(late, 'late voices');
     const page = await open(browser, {}, voices);
     await page.fill('#line', `Papa und Mama ${'a'.repeat(300)}`); // half a minute: frames may be slow
     await page.click('#say button');
@@ -174,6 +197,59 @@ async function text(browser) {
     await close(page, 'text');
 }
 
+// What a program says: one after another, sounds of each kind, times of its own, an interruption.
+async function program(browser) {
+    const page = await open(browser, {}, "Object.defineProperty(window, 'speechSynthesis', { value: undefined });");
+    const said = await page.evaluate(async (bytes) => {
+        const { speech } = character, file = () => new File([new Uint8Array(bytes)], 'voice.wav'), order = [];
+        character.addEventListener('word', ({ detail }) => order.push(detail.word));
+        const first = speech.speak('mama', { mood: 'joy' }), mood = character.chosen.emotion, second = speech.speak('papa');
+        const whole = [await first, await second], after = character.chosen.emotion;
+        const cut = speech.speak('a long sentence that nobody hears to its end');
+        const next = speech.speak(URL.createObjectURL ? new URL(URL.createObjectURL(file())) : file(), { interrupt: true });
+        const interrupted = await cut;
+        while (!speech.now.frames) await new Promise((resolve) => setTimeout(resolve, 20));
+        const open = Math.max(...speech.now.frames.map((f) => f.open));
+        speech.stop();
+        return { order: order.slice(0, 2).join(), mood, after, whole: whole.join(), interrupted, next: await next, open };
+    }, [...wav()]);
+    check('a program: sentences follow each other', said.order === 'mama,papa' && said.whole === 'true,true', JSON.stringify(said));
+    check('a program: a mood lasts as long as its sentence', said.mood === 'joy' && said.after === null, JSON.stringify(said));
+    check('a program: one may interrupt', said.interrupted === false && said.next === false && said.open > 0.3, JSON.stringify(said));
+    const sounds = await page.evaluate(async (bytes) => {
+        const { speech } = character, told = {}, context = new AudioContext(), most = async (name, source, options) => {
+            const done = speech.speak(source, options);
+            let open = 0, ended = false;
+            done.then(() => { ended = true; });
+            while (!ended) {
+                await new Promise((resolve) => setTimeout(resolve, 30));
+                open = Math.max(open, speech.now.open);
+                if (name === 'stream' && open > 0.2) speech.stop();
+            }
+            told[name] = [open > 0.2, await done].join();
+        };
+        const buffer = await context.decodeAudioData(new Uint8Array(bytes).buffer), silence = context.createBuffer(1, 8000, 16000);
+        await most('visemes', silence, { visemes: [{ viseme: 0, ms: 0 }, { viseme: 10, ms: 100 }, { viseme: 0, ms: 400 }] });
+        const resampled = await (async () => { const o = new OfflineAudioContext(1, 48000, 16000), n = o.createBufferSource(); n.buffer = buffer; n.connect(o.destination); n.start(); return o.startRendering(); })();
+        await most('chunks', (async function* () { for (let i = 0; i < 48000; i += 8000) yield resampled.getChannelData(0).slice(i, i + 8000); })(), { rate: 16000 });
+        const audio = new Audio(URL.createObjectURL(new Blob([new Uint8Array(bytes)], { type: 'audio/wav' })));
+        setTimeout(() => audio.play(), 300);
+        await most('media', audio);
+        const out = context.createMediaStreamDestination(), node = context.createBufferSource();
+        node.buffer = buffer;
+        node.loop = true;
+        node.connect(out);
+        node.start();
+        await most('stream', out.stream);
+        return told;
+    }, [...wav()]);
+    check('a program: visemes of its own', sounds.visemes === 'true,true', JSON.stringify(sounds));
+    check('a program: samples as they come', sounds.chunks === 'true,true', JSON.stringify(sounds));
+    check('a program: an <audio> drives the mouth', sounds.media === 'true,true', JSON.stringify(sounds));
+    check('a program: a stream', sounds.stream === 'true,false', JSON.stringify(sounds));
+    await close(page, 'a program');
+}
+
 (async () => {
     const served = await serve({ '/': folder }), sound = path.join(out, 'voice.wav');
     address = served.address;
@@ -185,6 +261,7 @@ async function text(browser) {
         await refused(browser);
         await file(browser);
         await text(browser);
+        await program(browser);
     } finally {
         await browser.close();
         served.server.close();

@@ -453,10 +453,15 @@ export class Character extends EventTarget {
         this.settle();
     }
 
+    emotionNamed(name) {
+        const at = this.emotions.indexOf(name);
+        if (at < 0) throw new Error(`there is no emotion '${name}': ${this.emotions.join(', ')}`);
+        return at;
+    }
+
     // Set an emotion by name, null: none; replaces the previous one.
     feel(name, amount = 1) {
-        const emotion = name === null ? -1 : this.emotions.indexOf(name);
-        if (name !== null && emotion < 0) throw new Error(`there is no emotion '${name}': ${this.emotions.join(', ')}`);
+        const emotion = name === null ? -1 : this.emotionNamed(name);
         Object.assign(this.chosen, { emotion: name, amount });
         this.program._web_feel(emotion, amount);
         if (this.program._web_alive()) this.settle();

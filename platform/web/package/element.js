@@ -15,12 +15,14 @@ canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px; }
 .progress, .message { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; }
 .bar { display: flex; gap: .7rem; align-items: center; }
 progress { flex: 1; min-width: 0; max-width: 16rem; }
+.caption { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; text-align: center; }
 .message { color: #ffc4ba; white-space: pre-wrap; max-height: 40%; overflow: auto; }
 .message button { font: inherit; float: right; margin-left: .7rem; }
 [hidden] { display: none !important; }`;
 
 const body = `<div class="poster" part="poster"><slot name="poster"></slot></div>
 <div class="progress" part="progress" hidden><slot name="progress"><div class="bar"><progress aria-label="the character arrives"></progress><span></span></div></slot></div>
+<div class="caption" part="caption" role="status" hidden></div>
 <div class="message" part="message" role="status" hidden><button part="retry" hidden>try again</button><span></span></div>`;
 
 // One for all elements; adopted, because policies refuse a <style>.
@@ -35,7 +37,7 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 // Properties and their values without an attribute.
 const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
-    alt: '', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, gaze: false, drop: false, paused: false };
+    alt: '', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -113,7 +115,11 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         pass('progress', (detail) => this.showProgress(detail));
         pass('lost', () => this.tell('the graphics context is lost'));
         pass('restored', () => this.tell());
-        for (const type of ['key', 'pick', 'push', 'speech', 'pause', 'light', 'frame']) pass(type);
+        pass('caption', ({ words, silent }) => {
+            this.inside('.caption').textContent = words;
+            this.inside('.caption').hidden = !words || !(silent || this.captions);
+        });
+        for (const type of ['word', 'key', 'pick', 'push', 'speech', 'pause', 'light', 'frame']) pass(type);
         character.addEventListener('fault', ({ detail }) => this.fail('frame', new Error(detail.message)), { signal });
         globalThis.addEventListener('online', () => { if (this.failed) this.again(); }, { signal });
         reduced().addEventListener('change', () => this.rest(), { signal });
@@ -334,10 +340,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     push() { return this.ask((character) => character.push()); }
     fit() { return this.ask((character) => character.fit()); }
 
-    // Speech: a sentence, the microphone, a sound file, or fifteen weights of mouth shapes.
-    say(words) { return this.ask((character) => character.speech.say(words)); }
+    // Speech: sentences and sounds (Speech.speak), the microphone, or fifteen weights of mouth shapes.
+    speak(what, options) { return this.ask((character) => character.speech.speak(what, options)); }
     listen() { return this.ask((character) => character.speech.listen()); }
-    playSound(file) { return this.ask((character) => character.speech.play(file)); }
     setMouth(weights) { return this.ask((character) => character.setMouth(weights)); }
     hush() { return this.ask((character) => character.speech.stop()); }
 }

@@ -54,11 +54,31 @@ export interface CharacterEvents {
     pick: CustomEvent<{ mesh: string; joint: string }>;
     push: CustomEvent<{ error: string }>;
     speech: CustomEvent<{ words: string; speaks: boolean; source: string }>;
+    /** What is said now, '' at the end. `silent`: without a voice. */
+    caption: CustomEvent<{ words: string; silent: boolean }>;
+    /** A word begins, at this position of the text; -1 if unknown. */
+    word: CustomEvent<{ word: string; at: number }>;
     pause: CustomEvent<{ paused: boolean }>;
     light: CustomEvent<Light>;
     frame: CustomEvent<{ seconds: number }>;
     lost: CustomEvent<null>;
     restored: CustomEvent<null>;
+}
+
+/** A sentence, which a voice of the browser says, or the mouth alone; a sound, to which the mouth moves: a file, an
+ * address, bytes, or decoded; a stream, which is not played; an element that plays; or samples, -1 to 1, as they come. */
+export type SpeechSource = string | Blob | URL | ArrayBuffer | AudioBuffer | MediaStream | HTMLMediaElement | AsyncIterable<Float32Array>;
+export interface SpeechOptions {
+    /** Mouth shapes of a sound, in the order of noh_viseme, and when each begins; default: what the ear hears. */
+    visemes?: readonly { viseme: number; ms: number }[];
+    /** When each word begins, for captions and events. */
+    words?: readonly { word: string; ms: number }[];
+    /** An emotion while it is said. */
+    mood?: string;
+    /** Of samples, in Hz, 8000 to 48000; default 24000. */
+    rate?: number;
+    /** At once, instead of what is said now and of what waits. */
+    interrupt?: boolean;
 }
 
 export interface CharacterOptions extends Partial<Light> {
@@ -138,7 +158,7 @@ export class Character extends EventTarget {
     advance(seconds: number): void;
     redraw(): void;
     dispose(): void;
-    readonly speech: { say(words: string): void; listen(): Promise<void>; play(file: Blob): Promise<void>; stop(): void; readonly speaks: boolean };
+    readonly speech: { speak(what: SpeechSource, options?: SpeechOptions): Promise<boolean>; listen(): Promise<void>; stop(): void; readonly speaks: boolean };
     addEventListener<K extends keyof CharacterEvents>(type: K, listener: (event: CharacterEvents[K]) => void, options?: boolean | AddEventListenerOptions): void;
     addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
@@ -171,6 +191,8 @@ export interface NohCharacterProperties {
     characters: number;
     cameraOrbit: boolean;
     autoLife: boolean;
+    /** Whether what is said is shown; without a voice it always is. */
+    captions: boolean;
     gaze: boolean;
     drop: boolean;
     paused: boolean;
@@ -212,9 +234,9 @@ export class NohCharacter extends HTMLElement {
     feel(emotion: string | null, amount?: number): Promise<void>;
     push(): Promise<string>;
     fit(): Promise<void>;
-    say(words: string): Promise<void>;
+    /** Says it after what is said now. Resolves to whether all of it was said. */
+    speak(what: SpeechSource, options?: SpeechOptions): Promise<boolean>;
     listen(): Promise<void>;
-    playSound(file: Blob): Promise<void>;
     setMouth(weights: ArrayLike<number> | null): Promise<void>;
     hush(): Promise<void>;
     dispose(): void;

@@ -1,11 +1,16 @@
-// speech.js: speech from the microphone, a sound file, or a sentence that the browser speaks. The first two go through
-// the library's ear (sound.c). For a sentence, a browser reports only the starts of words, so the mouth roughly follows
-// the letters.
+// speech.js: speech from the microphone, sounds, or sentences that the browser speaks. The first two go through the
+// library's ear (sound.c), unless their visemes are given. For a sentence, a browser reports only the starts of words, so
+// the mouth roughly follows the letters; without a voice it does so in silence.
+
+import { reach } from './reach.js';
 
 const earRates = [8000, 48000]; // Hz
 const ticksPerMs = 48;
 export const shapeCount = 15;
 const silent = { open: 0, shapes: null };
+const voicesMs = 1000, startMs = 3000; // to wait for the browser's voices, and for a voice to begin
+const soundDelay = 0.05; // seconds from a media element to its sound: what the ear is late
+const media = new WeakMap(); // nodes by media element, which can have only one
 
 const micErrors = {
     NotAllowedError: 'The microphone is refused. Allow it for this page in the browser, then press the button again.',
@@ -50,10 +55,27 @@ function mixed(buffer) {
     return sum;
 }
 
-// The speech of a character. Messages for the user are sent as the character's event "speech".
+// Whether the browser has voices. Some list them only some time after a first request.
+async function hasVoices() {
+    const voices = window.speechSynthesis, some = () => Boolean(voices) && voices.getVoices().length > 0;
+    if (!voices || some()) return some();
+    await new Promise((resolve) => {
+        if (voices.addEventListener) voices.addEventListener('voiceschanged', resolve, { once: true });
+        setTimeout(resolve, voicesMs);
+    });
+    return some();
+}
+
+// [{ word, at, ms }] of a text, by the times of its letters.
+function wordsOf(text, shapes, times) {
+    return [...text.matchAll(/\S+/g)].map(({ 0: word, index: at }) => ({ word, at, ms: times[shapes.findIndex((s) => s.at >= at)] ?? Infinity }));
+}
+
+// The speech of a character. Messages for the user are sent as the character's event "speech"; what is said as events
+// "caption" and "word".
 export class Speech {
     constructor(character) {
-        Object.assign(this, { character, speaker: null, newest: 0 }); // newest counts speakers, so that a late one is ignored
+        Object.assign(this, { character, speaker: null, newest: 0, queue: [], job: null }); // newest counts speakers, so that a late one is ignored
         this.now = { open: 0, source: '' };
     }
 
@@ -61,12 +83,79 @@ export class Speech {
     get speaks() { return this.speaker !== null; }
     tell(words) { this.character.emit('speech', { words, speaks: this.speaks, source: this.now.source }); }
 
+    // ---- one after another ----
+
+    // what: a sentence, a sound (Blob, URL, ArrayBuffer, AudioBuffer), a MediaStream, an <audio> or <video>, or an async
+    // iterable of Float32Array, samples at `rate`. options: { visemes: [{ viseme, ms }] of a sound, starts; words: [{ word, ms
+    // }]; mood: an emotion meanwhile; rate; interrupt: at once, instead of after what is said now }. Resolves to whether
+    // all of it was said.
+    speak(what, options = {}) {
+        if (options.mood) this.character.emotionNamed(options.mood);
+        if (options.interrupt) this.stop();
+        return new Promise((resolve) => {
+            this.queue.push({ what, options, resolve });
+            if (!this.job) this.next();
+        });
+    }
+
+    async next() {
+        const job = this.job = this.queue.shift() || null;
+        if (!job) return;
+        if (this.speaker) this.speaker.stop(); // the microphone
+        this.speaker = null;
+        const { what, options } = job, { emotion, amount } = this.character.chosen, number = ++this.newest;
+        if (options.mood) {
+            this.character.feel(options.mood);
+            job.calm = () => this.character.feel(emotion, amount);
+        }
+        try {
+            await this.begin(what, options, () => number === this.newest);
+        } catch (error) {
+            if (number !== this.newest) return;
+            this.end(false);
+            this.tell(String(error.message || error));
+        }
+    }
+
+    begin(what, options, mine) {
+        const { AudioBuffer, MediaStream, HTMLMediaElement } = window;
+        if (typeof what === 'string') return this.say(what, options, mine);
+        if (MediaStream && what instanceof MediaStream) return this.hearStream(what, options, mine);
+        if (HTMLMediaElement && what instanceof HTMLMediaElement) return this.hearMedia(what, options, mine);
+        if (what[Symbol.asyncIterator]) return this.playChunks(what, options, mine);
+        return this.play(what, options, mine, AudioBuffer && what instanceof AudioBuffer ? what : null);
+    }
+
+    // The present speaker ends; the next one follows.
+    end(said) {
+        const was = this.speaker, { job } = this;
+        this.newest++;
+        this.speaker = this.job = null;
+        this.now = { open: 0, source: '' };
+        if (was) was.stop();
+        if (job && job.calm) job.calm();
+        if (job) job.resolve(said);
+        if (job) this.character.emit('caption', { words: '', silent: false });
+        if (!this.program) return;
+        this.show(null);
+        this.program._web_set_talking(0);
+        this.character.settle();
+        if (was) this.tell('');
+        if (!this.job) this.next();
+    }
+
+    // Ends the present speaker and forgets those that wait.
+    stop() {
+        for (const { resolve } of this.queue.splice(0)) resolve(false);
+        this.end(false);
+    }
+
     // Before each step of the stage.
     frame() {
         if (!this.speaker) return;
         const frame = this.speaker.frame(performance.now());
         if (!frame) {
-            this.stop();
+            this.end(true);
             return;
         }
         this.now.open = frame.open;
@@ -79,20 +168,7 @@ export class Speech {
         this.program._web_show_shapes(shapes ? 1 : 0);
     }
 
-    stop() {
-        const was = this.speaker;
-        this.newest++;
-        this.speaker = null;
-        this.now = { open: 0, source: '' };
-        if (was) was.stop();
-        if (!this.program) return;
-        this.show(null);
-        this.program._web_set_talking(0);
-        this.character.settle();
-        if (was) this.tell('');
-    }
-
-    // which: { stop(), frame(now) }; frame returns { open, shapes }, or null at the end.
+    // which: { stop(), frame(now) }; frame returns { open, shapes }, or null at the end; moved: in another program.
     speakBy(source, which) {
         this.speaker = which;
         this.now.source = source;
@@ -111,7 +187,7 @@ export class Speech {
     // Continue with another program of the character.
     moved() {
         if (!this.speaker) return;
-        if (this.now.source === 'microphone') this.openEar(this.rate);
+        if (this.speaker.moved) this.speaker.moved();
         this.program._web_set_talking(1);
     }
 
@@ -147,87 +223,168 @@ export class Speech {
         if (!navigator.mediaDevices || !window.AudioWorkletNode) throw new Error('The microphone works on https:// and on localhost only, in a browser with AudioWorklet.');
         const stream = await navigator.mediaDevices.getUserMedia({ audio: { channelCount: 1, echoCancellation: false } });
         const close = () => { for (const track of stream.getTracks()) track.stop(); };
-        if (number !== this.newest) {
-            close();
-            return;
-        }
-        const context = new AudioContext(); // at its own rate, unless it is above the ear's limit
-        const slower = context.sampleRate > earRates[1] ? new AudioContext({ sampleRate: earRates[1] }) : context;
-        if (slower !== context) context.close();
-        const stop = () => { close(); slower.close(); };
+        if (number !== this.newest) close();
+        else await this.hearStream(stream, { source: 'microphone', close }, () => number === this.newest);
+    }
+
+    // Sounds of a stream, which are not played.
+    async hearStream(stream, { source = 'stream', close = () => {} }, mine) {
+        const context = this.contextForEar(), stop = () => { close(); context.close(); };
         try {
-            await slower.audioWorklet.addModule(new URL('./microphone.js?no-inline', import.meta.url)); // a file in Vite, too: policies refuse data:
-            if (number !== this.newest) stop();
-            else this.listenTo(slower, stream, stop);
+            const node = await this.earNode(context, mine);
+            if (!node) return stop();
+            const track = stream.getAudioTracks()[0];
+            this.listenTo(node, source, track, stop);
+            context.createMediaStreamSource(stream).connect(node);
+            return await context.resume();
         } catch (error) {
             stop();
             throw error;
         }
     }
 
-    listenTo(context, stream, stop) {
-        const node = new AudioWorkletNode(context, 'microphone', { numberOfOutputs: 0 });
-        const track = stream.getAudioTracks()[0], settings = track.getSettings ? track.getSettings() : {};
-        const mine = () => this.speaker && this.speaker.node === node;
+    // An <audio> or <video>: whenever it plays, until its end or until stop().
+    async hearMedia(element, options, mine) {
+        if (!media.has(element)) {
+            const context = this.contextForEar(), source = context.createMediaElementSource(element), delay = context.createDelay();
+            delay.delayTime.value = soundDelay;
+            source.connect(delay).connect(context.destination);
+            media.set(element, { context, source });
+        }
+        const { context, source } = media.get(element), node = await this.earNode(context, mine);
+        if (!node) return;
+        this.listenTo(node, 'media', element, () => source.disconnect(node));
+        source.connect(node);
+        await context.resume();
+    }
+
+    // At its own rate, unless it is above the ear's limit.
+    contextForEar() {
+        const context = new AudioContext();
+        if (context.sampleRate <= earRates[1]) return context;
+        context.close();
+        return new AudioContext({ sampleRate: earRates[1] });
+    }
+
+    async earNode(context, mine) {
+        await context.audioWorklet.addModule(new URL('./microphone.js?no-inline', import.meta.url)); // a file in Vite, too: policies refuse data:
+        return mine() ? new AudioWorkletNode(context, 'microphone', { numberOfOutputs: 0 }) : null;
+    }
+
+    // from: a track or an element, which tells its end.
+    listenTo(node, source, from, stop) {
+        const mine = () => this.speaker && this.speaker.node === node, rate = node.context.sampleRate;
         let frame = silent;
-        this.openEar(context.sampleRate);
-        node.port.onmessage = ({ data }) => {
-            const frames = mine() ? this.hear(data) : [];
-            if (!frames.length) return;
-            frame = frames[frames.length - 1];
-            this.character.redraw();
-        };
-        track.addEventListener('ended', () => { if (mine()) { this.stop(); this.tell('The microphone is gone.'); } });
-        context.createMediaStreamSource(stream).connect(node);
-        this.speakBy('microphone', { node, stop, frame: () => frame });
-        const device = settings.latency ? `, ${Math.round(settings.latency * 1000)} by the microphone` : '';
+        this.openEar(rate);
+        node.port.onmessage = ({ data }) => { if (mine()) frame = this.hear(data).pop() || frame; };
+        from.addEventListener('ended', () => {
+            if (!mine()) return;
+            this.end(true);
+            if (source === 'microphone') this.tell('The microphone is gone.');
+        }, { once: true });
+        this.speakBy(source, { stop, node, moved: () => this.openEar(rate), frame: () => frame });
+        const { latency } = from.getSettings ? from.getSettings() : {}, device = latency ? `, ${Math.round(latency * 1000)} by the microphone` : '';
         this.tell(`Listening. The mouth is ${this.program._web_ear_latency()} ms late by the ear, 10 by the page${device}, and a picture. Nothing is kept.`);
     }
 
-    // A sound file. It is heard completely before it plays, so that the mouth has no latency, and twice, as in `noh
-    // speak`, so that the ear adapts to the speaker and the room.
-    async play(file) {
-        this.stop();
-        const number = this.newest, context = new AudioContext(), rate = Math.min(context.sampleRate, earRates[1]);
+    // ---- sounds ----
+
+    // A sound file, an address, or a decoded sound.
+    async play(what, options, mine, decoded) {
+        const context = new AudioContext(), rate = Math.min(earRates[1], context.sampleRate);
         try {
-            const bytes = await file.arrayBuffer(), name = file.name || 'the sound';
-            const buffer = await new OfflineAudioContext(1, 1, rate).decodeAudioData(bytes)
-                .catch(() => { throw new Error(`${name}: this browser cannot decode it as sound`); });
-            if (number !== this.newest) context.close();
-            else await this.playBuffer(context, buffer, name, rate);
+            const buffer = decoded || await soundOf(what, rate);
+            if (!mine()) context.close();
+            else await this.playBuffer(context, buffer, what.name || 'the sound', options);
         } catch (error) {
             context.close();
-            if (number === this.newest) this.tell(String(error.message || error));
+            throw error;
         }
     }
 
-    async playBuffer(context, buffer, name, rate) {
-        const samples = mixed(buffer), node = context.createBufferSource();
-        this.openEar(rate);
+    // Frames of a whole sound. It is heard twice, so that the ear knows the voice from its beginning.
+    framesOf(buffer) {
+        const samples = mixed(buffer);
+        this.openEar(buffer.sampleRate);
         this.hear(samples);
         this.program._web_ear_restart();
-        const frames = this.hear(samples);
+        return this.hear(samples);
+    }
+
+    async playBuffer(context, buffer, name, { visemes, words }) {
+        const node = context.createBufferSource(), given = () => this.writePhones(visemes.map(({ viseme, ms }, i) =>
+            ({ shape: viseme, ms: (visemes[i + 1] ? visemes[i + 1].ms : 1000 * buffer.duration) - ms })), visemes[0].ms);
+        const frames = visemes && visemes.length ? null : this.framesOf(buffer);
+        if (!frames) given();
         node.buffer = buffer;
         node.connect(context.destination);
         await context.resume();
-        const start = context.currentTime + 0.05;
+        const start = context.currentTime + 0.05, left = [...words || []];
         node.start(start);
         const at = () => context.currentTime - (context.outputLatency || 0) - start;
+        this.caption(left.map(({ word }) => word).join(' '));
         this.speakBy('file', {
-            stop: () => context.close(),
-            frame: () => (at() > buffer.duration ? null : frames[Math.round((at() * 1000 - 12.5) / 10)] || silent),
+            stop: () => context.close(), moved: frames ? null : given,
+            frame: () => {
+                const ms = 1000 * at();
+                this.passWords(left, ms);
+                if (ms > 1000 * buffer.duration) return null;
+                return frames ? frames[Math.round((ms - 12.5) / 10)] || silent : this.frameAt(ms);
+            },
         });
         this.now.frames = frames;
-        this.tell(`${name}, ${buffer.duration.toFixed(1)} s. The mouth is that of the live ear, without its ${this.program._web_ear_latency()} ms.`);
+        this.tell(frames ? `${name}, ${buffer.duration.toFixed(1)} s. The mouth is that of the live ear, without its ${this.program._web_ear_latency()} ms.` : `${name}, ${buffer.duration.toFixed(1)} s.`);
+    }
+
+    // Samples as they come, each piece played after the one before.
+    async playChunks(chunks, { rate = 24000, words }, mine) {
+        const context = new AudioContext(), frames = [], left = [...words || []];
+        let start = 0, seconds = 0, whole = false;
+        this.openEar(rate);
+        const at = () => (start ? context.currentTime - (context.outputLatency || 0) - start : -1);
+        this.caption(left.map(({ word }) => word).join(' '));
+        this.speakBy('chunks', {
+            stop: () => context.close(), moved: () => this.openEar(rate),
+            frame: () => {
+                this.passWords(left, 1000 * at());
+                return whole && at() > seconds ? null : frames[Math.round((1000 * at() - 12.5) / 10)] || silent;
+            },
+        });
+        await context.resume();
+        for await (const samples of chunks) {
+            if (!mine()) return;
+            const buffer = context.createBuffer(1, samples.length, rate), node = context.createBufferSource();
+            frames.push(...this.hear(samples));
+            buffer.copyToChannel(samples, 0);
+            Object.assign(node, { buffer }).connect(context.destination);
+            start = Math.max(start, context.currentTime + 0.05 - seconds); // moves if pieces come late
+            node.start(start + seconds);
+            seconds += buffer.duration;
+        }
+        whole = true;
+    }
+
+    // ---- what is said ----
+
+    caption(words, silent = false) {
+        if (words) this.character.emit('caption', { words, silent });
+    }
+
+    // Emits the words whose time has come. left: those that are left.
+    passWords(left, ms) {
+        while (left.length && left[0].ms <= ms) {
+            const { word, at = -1 } = left.shift();
+            this.character.emit('word', { word, at });
+        }
     }
 
     // ---- a sentence that the browser speaks ----
 
     // Phones for the library: start in ticks, shape. Returns the start of each in ms.
-    writePhones(shapes) {
+    writePhones(shapes, from = 0) {
         const { program } = this, room = Math.min(shapes.length, program._web_phone_room());
         const at = program._web_phones() >> 2, phones = program.HEAPU32.subarray(at, at + 2 * room), times = [];
-        let ms = 0;
+        let ms = from;
         for (let i = 0; i < room; i++) {
             times.push(ms);
             phones.set([ms * ticksPerMs, shapes[i].shape], 2 * i);
@@ -242,19 +399,42 @@ export class Speech {
         return this.program.floats(this.program._web_shapes(), shapeCount).slice();
     }
 
-    say(words) {
-        this.stop();
-        if (!window.speechSynthesis || !window.speechSynthesis.getVoices().length) {
-            this.tell('This browser has no voices. Use the microphone or a sound file; `noh speak` makes clips of sentences.');
-            return;
-        }
-        const number = this.newest, mine = () => number === this.newest;
-        const shapes = shapesOfText(words, 1), utterance = new SpeechSynthesisUtterance(words), { times, end } = this.writePhones(shapes);
-        let began = 0, told = false;
-        utterance.onstart = () => {
-            began = performance.now();
+    frameAt(ms) {
+        const said = this.shapesAt(ms);
+        return { open: 1 - said[0] - said[1], shapes: said };
+    }
+
+    async say(text, { words }, mine) {
+        const aloud = await hasVoices();
+        if (!mine()) return;
+        const shapes = shapesOfText(text, 1), { times, end } = this.writePhones(shapes), left = words ? [...words] : wordsOf(text, shapes, times);
+        let began = 0, quiet = !aloud, told = false, waits = 0;
+        const start = () => {
+            clearTimeout(waits);
+            if (!began && mine()) this.caption(text, quiet);
+            began = began || performance.now();
             this.character.redraw();
         };
+        const quietly = () => {
+            quiet = true;
+            if (aloud) window.speechSynthesis.cancel();
+            start();
+            this.tell('This browser has no voice: the words are shown while the face says them.');
+        };
+        this.speakBy('text', {
+            stop: () => { clearTimeout(waits); if (aloud) window.speechSynthesis.cancel(); },
+            moved: () => this.writePhones(shapes),
+            // silence between the estimated end and the browser's end event
+            frame: (now) => {
+                const ms = began ? now - began : -1;
+                this.passWords(left, ms);
+                if (quiet && ms >= end + stopMs) return null;
+                return ms >= 0 && ms < end ? this.frameAt(ms) : silent;
+            },
+        });
+        if (!aloud) return quietly();
+        const utterance = new SpeechSynthesisUtterance(text);
+        utterance.onstart = start;
         // A word begins: continue with its first letter.
         utterance.onboundary = ({ charIndex }) => {
             const i = shapes.findIndex((s) => s.at >= charIndex);
@@ -262,21 +442,23 @@ export class Speech {
             if (!told && mine()) this.tell('The browser speaks, and tells only where words begin: in between the mouth follows letters, roughly.');
             told = true;
         };
-        utterance.onend = () => { if (mine()) this.stop(); };
+        utterance.onend = () => { if (mine() && !quiet) this.end(true); };
         utterance.onerror = ({ error }) => {
-            if (!mine() || error === 'canceled' || error === 'interrupted') return;
-            this.stop();
+            if (!mine() || quiet || error === 'canceled' || error === 'interrupted') return;
+            this.end(false);
             this.tell(speechErrors[error] || `The browser cannot say it: ${error}`);
         };
-        this.speakBy('text', {
-            stop: () => window.speechSynthesis.cancel(),
-            // silence between the estimated end and the browser's end event
-            frame: (now) => {
-                const ms = began ? now - began : -1, said = ms >= 0 && ms < end ? this.shapesAt(ms) : null;
-                return { open: said ? 1 - said[0] - said[1] : 0, shapes: said };
-            },
-        });
         this.tell('The browser speaks. Without times of its words the mouth follows letters, roughly.');
+        waits = setTimeout(() => { if (mine()) quietly(); }, startMs);
         window.speechSynthesis.speak(utterance);
     }
+}
+
+async function soundOf(what, rate) {
+    const file = what instanceof URL ? await reach(fetch(what), 'sound', what).then((answer) => {
+        if (!answer.ok) throw new Error(`no sound: ${what}: the server says ${answer.status}`);
+        return answer;
+    }) : what;
+    return new OfflineAudioContext(1, 1, rate).decodeAudioData(file.arrayBuffer ? await file.arrayBuffer() : file)
+        .catch(() => { throw new Error(`${what.name || 'the sound'}: this browser cannot decode it as sound`); });
 }
