@@ -140,9 +140,9 @@ async function used(browser) {
         const it = document.getElementById('it'), shown = it.shadowRoot.querySelector('.caption');
         it.addEventListener('caption', ({ detail }) => resolve([detail.words, shown.hidden, shown.textContent].join()), { once: true });
         it.captions = true;
-        it.speak('mama');
+        it.speak('mama, mama, mama, mama, mama');
     }));
-    check('used: what it says is shown', caption === 'mama,false,mama', caption);
+    check('used: what it says is shown', caption === 'mama, mama, mama, mama, mama,false,mama, mama, mama, mama, mama', caption);
     await page.waitForFunction(() => !document.getElementById('it').shadowRoot.querySelector('.caption').hidden);
     await page.screenshot({ path: path.join(out, 'caption.png') });
     await page.evaluate(() => document.getElementById('it').hush());
@@ -186,6 +186,23 @@ async function early(browser) {
     check('early: it tries again when the network is there', shown === '' && !await page.isVisible('noh-character .message'), shown);
     await whole(page, 'it');
     await close(page, 'early', 1); // the request that failed
+}
+
+// A model as `src`: converted once.
+async function model(browser) {
+    if (!fs.existsSync(path.join(inside, 'convert'))) return;
+    const page = await show(browser, '<noh-character id="it" src="arm.glb" light="plain"></noh-character>'), asked = [];
+    await whole(page, 'it');
+    const clips = () => page.evaluate(() => document.getElementById('it').clips.map(({ name }) => name).join());
+    check('model: it is converted and shown', (await clips()).includes('bend'), await page.evaluate(() => document.getElementById('it').error));
+    page.on('request', (request) => { if (request.method() === 'GET') asked.push(request.url()); });
+    await page.reload();
+    await whole(page, 'it');
+    check('model: its pack is kept', (await clips()).includes('bend') && !asked.some((url) => url.includes('convert.wasm')), asked.join(' '));
+    await page.evaluate(() => { document.getElementById('it').src = 'cut.glb'; });
+    const said = await page.evaluate(() => document.getElementById('it').ready.catch((error) => error.message));
+    check('model: a broken one is told', String(said).includes('truncated') && await page.isVisible('noh-character .message'), String(said));
+    await close(page, 'model');
 }
 
 // Callback keys of a clip, where a pack that has some was built.
@@ -314,4 +331,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, early, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, early, model, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

@@ -1,9 +1,12 @@
 // convert.js: converts a visitor's files to packs. Models go through the converter, which is loaded when first needed
 // and runs in a worker (tools/web_convert), without blocking the page. Packs equal `noh build`'s, byte for byte.
+import { reach } from './reach.js';
 
 const packs = /\.nohz?$/i;
 const figures = /\.(glb|gltf|vrm|fbx|obj)$/i;
 const motions = /\.bvh$/i;
+const alone = /\.(glb|vrm|fbx)$/i; // in one file
+const mostKept = 8;
 export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.fbx', '.obj', '.bvh'];
 
 // Detect files that cannot be shown, before loading anything. names: of files given together.
@@ -37,6 +40,52 @@ export async function convert(files, { tell = () => {}, warn = () => {}, options
     } finally {
         worker.terminate(); // its memory goes with it
     }
+}
+
+// ---- models by address ----
+
+export const isModel = (address) => alone.test(new URL(address, document.baseURI).pathname);
+
+// Changes with the converter.
+async function madeBy() {
+    const { headers } = await fetch(new URL('./convert/convert.wasm', import.meta.url), { method: 'HEAD' });
+    return headers.get('ETag') || headers.get('Last-Modified') || headers.get('Content-Length');
+}
+
+// Where the pack of a file is kept: [cache, key]; or null, where the browser keeps nothing (no https, a private window).
+async function placeOf(bytes) {
+    try {
+        const hash = await crypto.subtle.digest('SHA-256', bytes), digits = [...new Uint8Array(hash)].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+        return [await caches.open('noh-character'), `https://noh.invalid/${digits}/${encodeURIComponent(await madeBy())}`];
+    } catch {
+        return null;
+    }
+}
+
+// The pack of a model at an address, converted once: it is kept by the contents of the model. progress(taken, all) counts
+// its bytes; tell, warn: as for convert.
+export async function convertAddress(address, { progress, ...settings }) {
+    const answer = await reach(fetch(address), 'model', address), parts = [], all = answer.headers.get('Content-Encoding') ? 0 : Number(answer.headers.get('Content-Length'));
+    if (!answer.ok) throw new Error(`no model: ${address}: the server says ${answer.status}`);
+    const reader = answer.body.getReader();
+    for (let taken = 0; ;) {
+        const { value, done } = await reach(reader.read(), 'model', address);
+        if (done) break;
+        parts.push(value);
+        progress(taken += value.length, all);
+    }
+    const file = new File(parts, decodeURIComponent(new URL(address, document.baseURI).pathname.split('/').pop())), place = await placeOf(await file.arrayBuffer());
+    const kept = place && await place[0].match(place[1]);
+    if (kept) return new Uint8Array(await kept.arrayBuffer());
+    const pack = await convert([file], settings);
+    if (place) await keep(...place, pack).catch(() => {}); // there may be no room
+    return pack;
+}
+
+async function keep(cache, key, pack) {
+    await cache.put(key, new Response(pack));
+    const keys = await cache.keys();
+    for (const old of keys.slice(0, Math.max(0, keys.length - mostKept))) await cache.delete(old);
 }
 
 // A visitor's files, one set after another: a .bvh alone belongs to the previous model.

@@ -1,6 +1,6 @@
 // element.js: <noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>.
 import { Character } from './character.js';
-import { Visitor } from './convert.js';
+import { convertAddress, isModel, Visitor } from './convert.js';
 import { addGaze, addPointers } from './pointer.js';
 import { kilobytes } from './program.js';
 
@@ -150,7 +150,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             paused: this.rests(), calm: !this.lives() };
     }
 
-    // An address, a Response, a File or Blob, or bytes. Resolves to whether the whole pack is shown; an error is shown as
+    // An address (of a model, too), a Response, a File or Blob, or bytes. Resolves to whether the whole pack is shown; an error is shown as
     // an event and a text, with a button to try again.
     async load(source) {
         const { character } = this, number = this.loads = (this.loads || 0) + 1, mine = () => this.loads === number && character === this.character;
@@ -161,14 +161,26 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.tell();
         this.fresh = true;
         this.showProgress({ taken: 0, all: 0, shows: 0 });
+        const warnings = [], show = (what) => { if (mine()) this.showProgress({ taken: 0, all: 0, shows: 0, ...what }); };
         try {
-            await character.load(source);
+            const converts = (typeof source === 'string' || source instanceof URL) && isModel(source);
+            const pack = converts ? await convertAddress(source, { progress: (taken, all) => show({ taken, all }), tell: (words) => show({ words }), warn: (words) => warnings.push(words) }) : source;
+            if (!mine()) return false;
+            await character.load(pack);
         } catch (error) {
             if (mine()) this.missed(source, error);
             return false;
         }
-        if (mine()) this.inside('.progress').hidden = true;
-        return mine();
+        if (!mine()) return false;
+        this.inside('.progress').hidden = true;
+        this.warn(warnings);
+        return true;
+    }
+
+    // Of the converter.
+    warn(warnings) {
+        for (const message of warnings) this.dispatchEvent(new CustomEvent('warning', { detail: { message } }));
+        if (warnings.length) this.tell(warnings.join('\n'));
     }
 
     // The previous pack, if there is one, stays.
@@ -225,8 +237,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             const tell = (words) => { if (mine()) this.showProgress({ taken: 0, all: 0, shows: 0, words }); };
             const pack = await this.visitor.pack(files, { tell, warn: (words) => warnings.push(words) });
             if (!mine() || !await this.load(pack)) return false;
-            for (const message of warnings) this.dispatchEvent(new CustomEvent('warning', { detail: { message } }));
-            this.tell(warnings.join('\n'));
+            this.warn(warnings);
             return true;
         } catch (error) {
             if (character === this.character) this.fail('files', new Error(`${files[0].name} cannot be shown: ${error.message || error}`));

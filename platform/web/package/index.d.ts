@@ -171,7 +171,7 @@ export interface NohCharacterEvents extends CharacterEvents {
 
 /** The attributes of `<noh-character>`, as properties. */
 export interface NohCharacterProperties {
-    /** A pack. */
+    /** A pack, or a model in one file (.glb, .vrm, .fbx), which is converted in a worker and kept in the browser. */
     src: string;
     clip: string;
     /** A second clip, played over the first one on the face. */
