@@ -37,10 +37,16 @@ static double across_of(const fold_zone *z, const fold_place *at)
     return z->rays ? at->angle : at->radius;
 }
 
+/* Rays of both sides are mirrored, arcs go across the middle. */
+static double flip_of(const fold_zone *z, double x)
+{
+    return z->side != 0.0 ? z->side : z->rays && x < 0.0 ? -1.0 : 1.0;
+}
+
 /* p: face coordinates */
 static fold_place place_of(const fold_zone *z, const double p[3])
 {
-    const double x = (z->side != 0.0 ? z->side * p[0] : fabs(p[0])) - z->middle[0], y = p[1] - z->middle[1];
+    const double x = flip_of(z, p[0]) * p[0] - z->middle[0], y = p[1] - z->middle[1];
     fold_place at = { 0.0, 0.0, sqrt(x * x + y * y), degrees_of(x, y) };
     const double r = (2.0 * at.radius - z->radius[0] - z->radius[1]) / (z->radius[1] - z->radius[0]);
     const double a = (2.0 * at.angle - z->angle[0] - z->angle[1]) / (z->angle[1] - z->angle[0]);
@@ -147,7 +153,7 @@ static void set_zones(const wrinkle_face *f, fold_zone *z)
                       .gain = 1,
                       .gap = 0.3,
                       .width = 0.1,
-                      .depth = 0.02,
+                      .depth = 0.014,
                       .most = 1 };
 }
 
@@ -178,7 +184,7 @@ static const fold_zone *zone_of(const wrinkle_field *f, const wrinkle_folds *fol
     angle_sin_cos_degrees(place_of(zone, p).angle, &s, &c);
     towards[0] = zone->rays ? -s : c;
     towards[1] = zone->rays ? c : s;
-    if (zone->side < 0.0 || (zone->side == 0.0 && p[0] < 0.0)) towards[0] = -towards[0];
+    towards[0] *= flip_of(zone, p[0]);
     for (int i = 0; i < 3; i++) across[i] = towards[0] * face->axis[0][i] + towards[1] * face->axis[1][i];
     vec_reject(across, normal);
     return vec_normalize(across) ? zone : NULL;

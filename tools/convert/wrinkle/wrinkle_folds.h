@@ -19,7 +19,7 @@ extern "C" {
 #define FOLD_ZONES 9u
 #define FOLD_LINES 3u
 
-/* Lengths in units of the face, angles in degrees from x to y. Zones with a side of 0 are on both, mirrored. */
+/* Lengths in units of the face, angles in degrees from x to y. Zones with a side of 0 are on both. */
 typedef struct fold_zone {
     uint32_t region;
     int rays;                   /* 1: folds are rays from the middle of the disk, 0: arcs about it */
