@@ -47,6 +47,7 @@ static void names_tell_surfaces(void **state)
                   { "睫毛", NOH_SURFACE_PLAIN },
                   { "teeth", NOH_SURFACE_TEETH },
                   { "Std_Tongue", NOH_SURFACE_TEETH },
+                  { "Mouth", NOH_SURFACE_TEETH },
                   { "Zähne", NOH_SURFACE_TEETH },
                   { "ZÄHNE", NOH_SURFACE_TEETH },
                   { "зубы", NOH_SURFACE_TEETH },

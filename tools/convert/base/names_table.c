@@ -104,7 +104,7 @@ const char *const names_table[] = {
     "material eye eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
     "material eye глаз глаза *目 *瞳 *眼 *눈",
-    "material teeth tooth teeth gum gums tongue zahn zähne zaehne zunge zahnfleisch dent dents gencive",
+    "material teeth tooth teeth gum gums tongue mouth zahn zähne zaehne zunge zahnfleisch dent dents gencive",
     "material teeth gencives langue diente dientes encía encia lengua dente dentes gengiva língua lingua denti lingue",
     "material teeth tand tanden tong zęby zeby język jezyk зуб зубы язык дёсны десны *歯 *舌 *牙 *齿 *이빨 *혀",
     "material toon toon mtoon celshade",
