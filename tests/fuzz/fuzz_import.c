@@ -1,5 +1,5 @@
 /* fuzz_import.c: any bytes as the files that noh build reads: glTF, VRM, FBX, OBJ with targets, BVH, facial capture,
- * raw clips, pictures, and text files. What is read is converted, and the pack used in full.
+ * markers, raw clips, pictures, and text files. What is read is converted, and the pack used in full.
  *
  * The kind follows from the first bytes, so that seeds are files as they are. A .glb is tried as it is, then with the
  * lengths of its chunks made right. An .obj file is also its own target. */
@@ -31,8 +31,8 @@ static int converted; /* the last input, for the replay */
 static void remove_folders(void)
 {
     char path[128];
-    static const char *const names[] = { "in.glb", "in.gltf", "in.fbx", "in.obj",       "in.bvh",
-                                         "in.rcl", "in.csv",  "in.txt", "targets/a.obj" };
+    static const char *const names[] = { "in.glb", "in.gltf", "in.fbx", "in.obj", "in.bvh",       "in.rcl",
+                                         "in.csv", "in.trc",  "in.c3d", "in.txt", "targets/a.obj" };
     for (size_t i = 0; i < sizeof names / sizeof names[0]; i++) {
         (void)snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         (void)remove(path);
@@ -214,6 +214,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
         try_as("bvh", data, count);
     } else if (begins(data, count, "Time")) {
         try_as("csv", data, count);
+    } else if (begins(data, count, "PathFile")) {
+        try_as("trc", data, count);
+    } else if (count > 1 && data[1] == 0x50 && data[0] < 8) {
+        try_as("c3d", data, count);
     } else if (begins(data, count, "RCL")) {
         try_as("rcl", data, count);
     } else if (begins(data, count, "\x89PNG") || begins(data, count, "\xff\xd8") || begins(data, count, "RIFF")) {

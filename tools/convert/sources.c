@@ -7,6 +7,7 @@
 
 #include "convert/clips/bvh_read.h"
 #include "convert/clips/face_csv.h"
+#include "convert/clips/markers.h"
 #include "convert/base/file_kind.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
@@ -64,16 +65,24 @@ static int turn(raw_set *set, const source_options *options, model_error *error)
     return 0;
 }
 
+/* Of a file of clips alone. */
+static int read_set(const char *path, file_reader reader, const source_options *options, raw_set **out,
+                    model_error *error)
+{
+    const bvh_options bvh = { options->unit_cm, 0 };
+    switch (reader) {
+    case READER_RCL: return rcl_read(path, out, error);
+    case READER_FACE: return face_csv_read(path, out, error);
+    case READER_TRC: return trc_read(path, options->unit_cm, out, error);
+    case READER_C3D: return c3d_read(path, options->unit_cm, out, error);
+    default: return bvh_read(path, &bvh, out, error);
+    }
+}
+
 static int read_clip_file(const char *path, file_reader reader, const source_options *options, source *s,
                           model_error *error)
 {
-    bvh_options bvh = { options->unit_cm, 0 };
-    int failed = reader == READER_RCL    ? rcl_read(path, &s->single, error)
-                 : reader == READER_FACE ? face_csv_read(path, &s->single, error)
-                                         : bvh_read(path, &bvh, &s->single, error);
-    if (failed) {
-        return 1;
-    }
+    if (read_set(path, reader, options, &s->single, error)) return 1;
     s->m = model_new();
     s->sets = malloc(sizeof *s->sets);
     if (!s->m || !s->sets) {
@@ -158,9 +167,8 @@ int source_read(const char *path, const source_options *options, source *s, mode
 {
     const file_kind *kind = file_kind_of(path);
     memset(s, 0, sizeof *s);
-    return kind && (kind->reader == READER_BVH || kind->reader == READER_RCL || kind->reader == READER_FACE)
-               ? read_clip_file(path, kind->reader, options, s, error)
-               : read_model_file(path, options, s, error);
+    return kind && kind->reader >= READER_BVH ? read_clip_file(path, kind->reader, options, s, error)
+                                              : read_model_file(path, options, s, error);
 }
 
 void source_free(source *s)

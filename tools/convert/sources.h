@@ -16,7 +16,7 @@
 typedef struct source {
     model *m;          /* of a glTF file; an empty one otherwise */
     model_clips *made; /* of a glTF file */
-    raw_set *single;   /* of a .bvh, .rcl or .csv file; or clips added to a glTF file that has none of its own */
+    raw_set *single;   /* of a file of clips alone; or clips added to a glTF file that has none of its own */
     raw_set **sets;    /* [set_count] the sets of `made`, or `single` */
     uint32_t set_count;
 } source;

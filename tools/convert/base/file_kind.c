@@ -10,8 +10,6 @@
 #define TO_GLTF "open it in Blender, export glTF 2.0 (File, Export, glTF 2.0), and give noh the .glb file"
 #define PICTURE \
     "textures are read with the model that names them; noh render MODEL --light FILE lights by a panorama of .hdr or .png"
-#define CAPTURE \
-    "markers of optical capture are not read: solve them for a skeleton and export .bvh, which noh build --clean then fills and filters"
 #define SPEECH "noh speak makes a clip of a recording"
 #define ARCHIVE "unpack it, and give noh the model in it"
 #define TEXT(option) "noh build MODEL " option " FILE reads it"
@@ -29,6 +27,8 @@ static const file_kind kinds[] = {
     { ".bvh", "HIERARCHY", READER_BVH, "a BVH file", NULL },
     { ".rcl", "RCL1", READER_RCL, "a raw clip", NULL },
     { ".csv", NULL, READER_FACE, "a table of facial capture", NULL },
+    { ".trc", "PathFileType", READER_TRC, "a TRC file", NULL },
+    { ".c3d", NULL, READER_C3D, "a C3D file", NULL },
     { ".blend", "BLENDER", READER_NONE, "a Blender file", BLENDER },
     { ".blend1", NULL, READER_NONE, "a backup of a Blender file", BLENDER },
     { ".dae", NULL, READER_NONE, "a COLLADA file", TO_GLTF },
@@ -47,8 +47,6 @@ static const file_kind kinds[] = {
     { ".duf", NULL, READER_NONE, "a Daz file", EXPORT },
     { ".pmx", "PMX ", READER_NONE, "an MMD model", TO_GLTF },
     { ".pmd", "Pmd", READER_NONE, "an MMD model", TO_GLTF },
-    { ".c3d", NULL, READER_NONE, "a C3D file", CAPTURE },
-    { ".trc", NULL, READER_NONE, "a TRC file", CAPTURE },
     { ".png", "\x89PNG", READER_NONE, "a PNG picture", PICTURE },
     { ".jpg", "\xff\xd8\xff", READER_NONE, "a JPEG picture", PICTURE },
     { ".jpeg", NULL, READER_NONE, "a JPEG picture", PICTURE },

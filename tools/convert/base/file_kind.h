@@ -13,9 +13,11 @@ typedef enum file_reader {
     READER_GLTF,
     READER_FBX,
     READER_OBJ,
-    READER_BVH,
+    READER_BVH, /* this and those below: clips alone */
     READER_RCL,
-    READER_FACE
+    READER_FACE,
+    READER_TRC,
+    READER_C3D
 } file_reader;
 
 typedef struct file_kind {

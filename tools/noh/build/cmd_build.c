@@ -898,7 +898,7 @@ static const option options[] = {
       .value = "auto|CM",
       .initial = "auto",
       .what =
-          "centimetres per unit of .bvh, .obj and .fbx files, above 0; auto: 1 for .bvh, 100 for .obj, the file's unit for .fbx",
+          "centimetres per unit of .bvh, .obj, .fbx, .trc and .c3d files, above 0; auto: 1 for .bvh, 100 for .obj, the file's unit for the others",
       .example = "2.54" },
     { .name = "--rest",
       .kind = OPTION_TEXT,
@@ -929,7 +929,7 @@ static const option options[] = {
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .fbx, .obj, .bvh, .csv and .rcl files to one pack: the first model, the clips of all",
+    .what = "convert .gltf, .glb, .fbx, .obj, .bvh, .trc, .c3d, .csv and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1\n--terrain hill.png -o hill.noh --terrain-size 64 --terrain-height 8",
     .options = options,

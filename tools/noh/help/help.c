@@ -118,8 +118,9 @@ void help_print(FILE *out)
         "noh help FORMATS    formats of files and options\n"
         "noh help --man      the whole help as a man page; --bash: completion for bash\n"
         "noh --version\n\n"
-        "PACK|MODEL: a pack, its wire form, or a model (.glb .gltf .vrm .fbx .obj, clips: .bvh .csv .rcl). A model is built\n"
-        "as by noh build without options, and kept for the next run (noh help FORMATS)\n\n"
+        "PACK|MODEL: a pack, its wire form, or a model (.glb .gltf .vrm .fbx .obj, clips: .bvh .csv .trc\n"
+        ".c3d .rcl). A model is built as by noh build without options, and kept for the next run (noh help\n"
+        "FORMATS)\n\n"
         "exit code: 0 success, 1 the input or the check failed, 2 the command line is wrong\n",
         out);
 }

@@ -24,6 +24,9 @@ const char *const help_formats_text[] = {
     "the mean of left and right. Rotations of head and eyes are left out.",
     "   Timecode,BlendShapeCount,EyeBlinkLeft,EyeBlinkRight,JawOpen",
     "   10:30:00:00.000,3,0.012,0.011,0.250",
+    ".trc, .c3d: markers of optical capture. Nothing is solved for a skeleton: each marker becomes a joint of its name, below a joint "
+    "'markers'. Frames in which no camera saw a marker are interpolated. The "
+    "unit is the file's, or --unit-cm; the vertical axis of a .c3d (POINT:Y_SCREEN) becomes y.",
     ".rcl: raw clips, joints only, as noh clip --dump writes them. Little-endian, 32-bit floats, centimetres:",
     "   char[4] \"RCL1\"; u32 joints; u32 frames; f32 rate_hz; u32 length; char name[length]",
     "   per joint: i32 parent (-1: a root; parents first); u32 flags (1 rotation, 2 translation, 4 scale animated);",
