@@ -349,7 +349,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
         if (priority_assign(s->m, options->priorities[i], error)) return 1;
     }
     if (options->only == CONVERT_CLIPS) return 0;
-    if (size_guess(s->m, options->report)) return out_of_memory(error);
+    if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
     return surface_shapes_find(s->m, options->report, error);
 }
 

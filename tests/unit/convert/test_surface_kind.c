@@ -297,6 +297,38 @@ static void a_ball_without_an_iris_has_none(void **state)
     model_free(m);
 }
 
+/* What stands in front of eyes and is opaque would blind them; what its author blends stays. */
+static void shells_of_eyes_do_not_hide_them(void **state)
+{
+    static const struct {
+        const char *name;
+        model_alpha alpha, then;
+        float opacity;
+    } cases[] = { { "Std_Eye_Occlusion_L", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.2f },
+                  { "M_EyeOcclusion", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.2f },
+                  { "eyeocclusion", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.2f },
+                  { "Std_Tearline_R", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.0f },
+                  { "Lacrimal fluid", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.0f },
+                  { "Std_Eye_Occlusion_L", MODEL_ALPHA_BLEND, MODEL_ALPHA_BLEND, 1.0f },
+                  { "occlusion", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
+                  { "eyes", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
+                  { "eyelashes", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model_material material = model_material_default();
+        model m = { .material_count = 1, .materials = &material };
+        material.name = (char *)(uintptr_t)cases[i].name;
+        material.alpha = cases[i].alpha;
+        const int changes = cases[i].alpha != cases[i].then;
+        assert_int_equal(surface_shells_set(&m), 0);
+        assert_int_equal(material.alpha, cases[i].then);
+        assert_true(material.base_color[3] == cases[i].opacity && (material.base_color[0] == 0.0f) == changes);
+        assert_int_equal(m.warning_count, changes);
+        for (uint32_t k = 0; k < m.warning_count; k++) free(m.warnings[k]);
+        free(m.warnings);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -308,6 +340,7 @@ int main(void)
         cmocka_unit_test(irises_and_lids_are_found),
         cmocka_unit_test(irises_are_found_where_eyes_look),
         cmocka_unit_test(a_ball_without_an_iris_has_none),
+        cmocka_unit_test(shells_of_eyes_do_not_hide_them),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -99,9 +99,10 @@ const char *const names_table[] = {
     "strip Genesis8Female Genesis8Male Genesis9",
     "strip head_facs_bs blendShape1 blendShape",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
-     * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses. */
+     * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
+     * occlusion-shell, tear-shell: what stands in front of an eye and is seen through. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
-    "material eye eye eyes eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
+    "material eye eye eyes eyeocclusion eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
     "material eye глаз глаза *目 *瞳 *眼 *눈",
     "material teeth tooth teeth gum gums tongue mouth zahn zähne zaehne zunge zahnfleisch dent dents gencive",
@@ -112,6 +113,8 @@ const char *const names_table[] = {
     "material beside-eye lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture",
     "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",
     "material beside-eye eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas",
+    "material occlusion-shell occlusion eyeocclusion",
+    "material tear-shell tear tears tearline lacrimal eyemoisture",
     "material beside-eye ciglia sopracciglia ресницы брови *睫 *眉 *影 *眼鏡 *眼镜 *안경 *눈썹",
     NULL
 };

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "convert/base/names.h"
+#include "convert/model/model_build.h"
 #include "noh/format.h"
 
 static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
@@ -103,6 +104,38 @@ void surface_kind_set(model_material *m, uint32_t kind)
     for (int i = 0; i < 3; i++) {
         if (m->f0[i] > before - 1e-4f && m->f0[i] < before + 1e-4f) m->f0[i] = straight[m->surface];
     }
+}
+
+/* Black with an alpha multiplies what is behind it by the rest. */
+static int set_shell(model *m, model_material *shell, float alpha, const char *what)
+{
+    shell->alpha = MODEL_ALPHA_BLEND;
+    shell->base_color_texture = MODEL_NONE;
+    memset(shell->base_color, 0, 3 * sizeof *shell->base_color);
+    shell->base_color[3] = alpha;
+    memset(shell->f0, 0, sizeof shell->f0);
+    memset(shell->emissive, 0, sizeof shell->emissive);
+    shell->specular_texture = shell->surface_texture = shell->normal_texture = shell->emissive_texture = MODEL_NONE;
+    shell->metallic = 0.0f;
+    shell->roughness = 1.0f;
+    shell->f90_loss = 1.0f;
+    return model_warn(m, "material '%s': an opaque shell would hide its eye, so it %s; rename the material to keep it",
+                      shell->name, what);
+}
+
+int surface_shells_set(model *m)
+{
+    int failed = 0;
+    for (uint32_t i = 0; i < m->material_count && !failed; i++) {
+        model_material *shell = &m->materials[i];
+        if (shell->alpha != MODEL_ALPHA_OPAQUE || !is_of(shell->name, "beside-eye")) continue;
+        if (is_of(shell->name, "eye") && is_of(shell->name, "occlusion-shell")) {
+            failed = set_shell(m, shell, 0.2f, "darkens the eye by a fifth");
+        } else if (is_of(shell->name, "tear-shell")) {
+            failed = set_shell(m, shell, 0.0f, "is left out");
+        }
+    }
+    return failed;
 }
 
 int surface_kind_assign(model *m, const char *assignment, model_error *error)
