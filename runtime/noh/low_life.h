@@ -739,6 +739,125 @@ void noh_reach_init(noh_reach *reach);
 void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
                     float points[NOH_REACH_ARMS_MAX][3], float seconds, int cut);
 
+/* ======== retargeting ========
+ * Clips of one humanoid on another: a map from a source skeleton to a target one, and poses through it.
+ *
+ *   noh_retarget_init   make the map from both reference poses
+ *   noh_retarget_pose   a pose of the source as a pose of the target
+ *   noh_retarget_play   the source's clips as a set for the target's controllers
+ *
+ * A joint turns as its counterpart does, from a target's reference pose whose arms and legs point along the source's. So
+ * limbs have the source's directions, whatever the two bind poses are. Hands take the source's twist by their knuckles,
+ * or thumbs; half of it is given to the forearms. Soles and spine keep their angles. The hips move by the ratio of
+ * legs, and each foot is put where the source's foot is by that ratio, in a stance as wide as the target's hips: feet
+ * slide no more than the source's. Where a leg does not reach, the hips go down or towards the foot. Hands reach as far
+ * from the shoulders as the source's, and meet where those meet. Knees and elbows keep the side of their bend.
+ * source   directions of limbs as in Monzani et al., Using an intermediate skeleton and inverse kinematics for motion
+ *          retargeting, 2000
+ * Threads: a map is constant; any number of threads. */
+
+/* Bones of a person, by VRM's names; those of a side follow in the same order for left and right. */
+typedef enum noh_bone {
+    NOH_BONE_ROOT = 0, /* what is above the hips, such as a root on the ground */
+    NOH_BONE_HIPS,
+    NOH_BONE_SPINE,
+    NOH_BONE_CHEST,
+    NOH_BONE_UPPER_CHEST,
+    NOH_BONE_NECK,
+    NOH_BONE_HEAD,
+    NOH_BONE_SHOULDER, /* of the left side; NOH_BONE_RIGHT later of the right */
+    NOH_BONE_UPPER_ARM,
+    NOH_BONE_LOWER_ARM,
+    NOH_BONE_HAND,
+    NOH_BONE_UPPER_LEG,
+    NOH_BONE_LOWER_LEG,
+    NOH_BONE_FOOT,
+    NOH_BONE_TOES,
+    NOH_BONE_THUMB,                      /* three: metacarpal, proximal, distal */
+    NOH_BONE_INDEX = NOH_BONE_THUMB + 3, /* three each: proximal, intermediate, distal */
+    NOH_BONE_MIDDLE = NOH_BONE_INDEX + 3,
+    NOH_BONE_RING = NOH_BONE_MIDDLE + 3,
+    NOH_BONE_LITTLE = NOH_BONE_RING + 3,
+    NOH_BONE_RIGHT = NOH_BONE_LITTLE + 3 - NOH_BONE_SHOULDER,
+    NOH_BONES = NOH_BONE_SHOULDER + 2 * NOH_BONE_RIGHT
+} noh_bone;
+
+typedef struct noh_retarget_rig {
+    const noh_skeleton *skeleton;
+    /* [joint_count] local: stands upright on flat soles, +y is up; arms anywhere. Default (NULL) the bind pose */
+    const noh_transform *reference;
+    uint16_t bones[NOH_BONES]; /* the joint of each, or NOH_JOINT_ROOT: none. Hips are needed */
+} noh_retarget_rig;
+
+#define NOH_RETARGET_FEET 1u  /* solve the legs */
+#define NOH_RETARGET_HANDS 2u /* solve the arms */
+
+/* Of one joint of the target: 20 bytes. */
+typedef struct noh_retarget_joint {
+    int16_t before[4], after[4]; /* quaternions in 1/32,767: local rotation = before * those of the source * after */
+    uint16_t source;             /* joint of the source, or NOH_JOINT_ROOT: keeps the reference pose */
+    uint16_t above;              /* joints above `source` whose rotations come first */
+} noh_retarget_joint;
+
+/* An arm or a leg. Positions are of reference poses, in the model's space and the target's unit. */
+typedef struct noh_retarget_limb {
+    uint16_t source[3], target[3]; /* thigh, shin and foot, or upper arm, forearm and hand */
+    uint16_t exists;
+    uint16_t is_apart;         /* 1: the target's foot is not below its shin, as in rigs with feet as handles */
+    float ratio;               /* target's length / source's */
+    float length;              /* of the target's */
+    float bend[3];             /* where the middle joint of a straight limb goes, in the space of its first joint */
+    float rest[4];             /* inverse rotation of the foot */
+    float height;              /* of the target's foot */
+    float stance[3];           /* what is added to the scaled place of the source's foot */
+    float sole[3], shorter[3]; /* from foot to toes, and by how much that is longer than the source's, scaled */
+    float tip[3];              /* the foot's place in the space of the shin */
+} noh_retarget_limb;
+
+typedef struct noh_retarget {
+    const noh_skeleton *source, *target; /* borrowed */
+    const noh_transform *rest;           /* [target->joint_count] borrowed: the target's reference pose */
+    const noh_retarget_joint *joints;    /* [target->joint_count] borrowed */
+    uint32_t flags;                      /* NOH_RETARGET_*; may be changed at any time */
+    uint32_t bone_count;                 /* bones that both have */
+    float ratio;                         /* of the target's legs to the source's, each in its own unit */
+    /* how much higher than the source's reference pose its clips' ground is, in its unit; 0 unless changed */
+    float ground;
+    float facing[4];            /* turns the source's reference pose to face as the target's does */
+    uint16_t moved[2][2];       /* root and hips: joint of source and target, or NOH_JOINT_ROOT */
+    float from[2][3], to[2][3]; /* where they rest */
+    noh_retarget_limb limbs[4]; /* left and right leg, left and right arm */
+} noh_retarget;
+
+/* Make a map. Skeletons, joints and target->reference must outlive it.
+ * shapes   joints[target->skeleton->joint_count]
+ * ranges   flags of NOH_RETARGET_*; a limb that either rig lacks is not solved
+ * errors   NOT_FOUND  a rig lacks the hips, or both have no bone in common below them;
+ *          DATA       a reference pose does not stand upright (where: 0 the source's, 1 the target's) */
+noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *source, const noh_retarget_rig *target,
+                             uint32_t flags, noh_retarget_joint *joints, noh_error *error);
+
+/* Turn a pose of the source into one of the target. Other joints than the bones keep the reference pose.
+ * shapes   from[source->joint_count], to[joint_count]; local
+ * feet     [2] added to the places of the left and the right foot, in the target's unit and space; NULL: nothing
+ * ranges   joint_count at most the target's: a LOD level uses the first joints only */
+void noh_retarget_pose(const noh_retarget *retarget, const noh_transform *from, const float (*feet)[3],
+                       uint32_t joint_count, noh_transform *to);
+
+/* A source's clips for controllers of the target. */
+typedef struct noh_retarget_set {
+    noh_clip_set clips; /* with the source's names, keys, markers and floats; without masks and root motion */
+    const noh_clip_set *source;
+    const noh_retarget *retarget;
+    noh_transform *scratch; /* [source->joint_count] */
+} noh_retarget_set;
+
+/* Play a set through a map. All arguments must outlive the set; `set` must not be moved.
+ * shapes   scratch[source->joint_count], of one thread
+ * ranges   source has all joints of retarget->source */
+void noh_retarget_play(noh_retarget_set *set, const noh_retarget *retarget, const noh_clip_set *source,
+                       noh_transform *scratch);
+
 #ifdef __cplusplus
 }
 #endif

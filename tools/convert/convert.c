@@ -356,9 +356,11 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
 static int join_all(const char *const *inputs, int count, int base, const convert_options *options, source *all,
                     convert_failure *failure)
 {
+    joint_match_options joints = options->joints;
+    joints.report = options->report;
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
-        if (i != base && source_join(&all[base], inputs[base], &all[i], inputs[i], &options->joints, &failure->error)) {
+        if (i != base && source_join(&all[base], inputs[base], &all[i], inputs[i], &joints, &failure->error)) {
             return 1;
         }
     }

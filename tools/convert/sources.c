@@ -22,6 +22,7 @@
 #include "convert/mocap/clean.h"
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
+#include "convert/retarget/retarget_set.h"
 #include "convert/skin/eye_split.h"
 
 #define BONES_RATIO 2.0 /* a larger ratio of bone lengths means another unit, not another person */
@@ -49,7 +50,7 @@ static int resample_set(raw_set *set, double sample_rate_hz, model_error *error)
 static int turn(raw_set *set, const source_options *options, model_error *error)
 {
     double degrees = options->turn.degrees;
-    if (options->turn.rest_first_frame && raw_rest_from_frame(set)) {
+    if (options->turn.rest_first_frame && raw_rest_from_frame(set, 0)) {
         return model_fail(error, "", "--rest first-frame: no clip moves the skeleton's joints");
     }
     if (options->turn.faces_ahead) {
@@ -208,7 +209,7 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, const
             return model_fail(
                 error, "",
                 "its skeleton differs from %.80s: joint %u is '%.40s' here and '%.40s' there; --partial uses the "
-                "joints that both have, --rename FILE maps names",
+                "joints that both have, --rename FILE maps names, --retarget auto moves clips to another humanoid",
                 base_path, j, here, there);
         }
         if (other->joints[j].parent != base->joints[j].parent) {
@@ -381,12 +382,24 @@ static int join_clip(source *base, const char *base_path, const raw_set *from, r
     return move_clip(clip, to, error);
 }
 
+/* Clips of one humanoid on the first of the base's skeletons. */
+static int retarget_joints(const source *base, raw_set *from, const joint_match_options *options, model_error *error)
+{
+    const char *map = options->retarget && strcmp(options->retarget, "auto") != 0 ? options->retarget : NULL;
+    for (uint32_t i = 0; i < base->set_count && from->skeleton.joint_count; i++) {
+        const raw_skeleton *to = &base->sets[i]->skeleton;
+        if (!to->joint_count) continue;
+        return retarget_same(&from->skeleton, to) ? 0 : retarget_set(from, to, map, options->report, error);
+    }
+    return 0;
+}
+
 /* Give a set the joints of the first of the base's skeletons that they can be matched with. */
 static int match_joints(source *base, raw_set *from, const char *path, const joint_match_options *options,
                         model_error *error)
 {
     joint_match match = JOINTS_DIFFER;
-    for (uint32_t i = 0; i < base->set_count && !options->by_rest; i++) {
+    for (uint32_t i = 0; i < base->set_count; i++) {
         if (raw_skeleton_hash(&base->sets[i]->skeleton) == raw_skeleton_hash(&from->skeleton)) return 0;
     }
     for (uint32_t i = 0; i < base->set_count && match == JOINTS_DIFFER; i++) {
@@ -417,7 +430,7 @@ static double bones_ratio(const raw_set *from, const raw_clip *clip, const raw_s
     return own > 0.0 && theirs > 0.0 ? own * from->skeleton.unit_cm / (theirs * to->unit_cm) : 1.0;
 }
 
-/* Nothing is retargeted: clips of a body of another size make the mesh as large as that. Before clips are moved. */
+/* Clips of a body of another size make the mesh as large as that. Before clips are moved. */
 static int warn_of_bones(source *base, const char *base_path, const raw_set *from, const char *path)
 {
     for (uint32_t i = 0; i < base->set_count && from->clip_count; i++) {
@@ -453,11 +466,13 @@ static int keep_warnings(source *base, const char *base_path, const source *othe
 int source_join(source *base, const char *base_path, source *other, const char *other_path,
                 const joint_match_options *options, model_error *error)
 {
-    joint_match_options matching = *options;
+    const int retargets = options->retarget || other->m->for_any_body;
     uint32_t joined = 0;
-    matching.by_rest = other->m->for_any_body;
     for (uint32_t i = 0; i < other->set_count; i++) {
-        if (match_joints(base, other->sets[i], other_path, &matching, error)) return 1;
+        if (retargets ? retarget_joints(base, other->sets[i], options, error)
+                      : match_joints(base, other->sets[i], other_path, options, error)) {
+            return 1;
+        }
     }
     if (keep_warnings(base, base_path, other, other_path)) return out_of_memory(error);
     for (uint32_t i = 0; i < other->set_count; i++) {

@@ -1,9 +1,9 @@
 /* sources.h: the files that one pack is built from.
  *
  * One of them is the base: its model and its skeletons are the pack's. From the others only clips are added: clips of
- * joints if their skeleton has the same joints as one of the base's (names and parents; joint_match.h), morph weights
- * if the base has a node of the same name with as many targets, facial capture by the names of targets
- * (shape_match.h). */
+ * joints if their skeleton has the same joints as one of the base's (names and parents; joint_match.h), or as they are
+ * retargeted (retarget/retarget_set.h), morph weights if the base has a node of the same name with as many targets,
+ * facial capture by the names of targets (shape_match.h). */
 #ifndef NOH_CONVERT_SOURCES_H
 #define NOH_CONVERT_SOURCES_H
 

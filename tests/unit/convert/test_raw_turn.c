@@ -110,12 +110,12 @@ static void the_rest_is_the_first_frame(void **state)
     raw_set *set = figure(spelled[0]);
     double rest[JOINTS * 12], first[JOINTS * 12];
     (void)state;
-    assert_int_equal(raw_rest_from_frame(set), 0);
+    assert_int_equal(raw_rest_from_frame(set, 0), 0);
     raw_pose_object(&set->skeleton, NULL, 0, rest);
     raw_pose_object(&set->skeleton, &set->clips[0], 0, first);
     assert_memory_equal(rest, first, sizeof rest);
     set->clips[0].joint_count = 0; /* scalars alone */
-    assert_int_equal(raw_rest_from_frame(set), 1);
+    assert_int_equal(raw_rest_from_frame(set, 0), 1);
     set->clips[0].joint_count = JOINTS;
     raw_set_free(set);
 }

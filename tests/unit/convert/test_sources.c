@@ -12,7 +12,7 @@
 
 #define FRAMES 40u
 
-static const joint_match_options by_name = { NULL, 0, 0 }, in_part = { NULL, 1, 0 };
+static const joint_match_options by_name = { .names = NULL }, in_part = { .partial = 1 };
 
 static source source_of(const char *path)
 {
@@ -275,7 +275,7 @@ static void names_are_read_from_a_file(void **state)
 {
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "xbz", FRAMES));
     const char *path = names_file("# theirs ours\nx a\n\n\"z\" c # the tip\nnever b\n");
-    const joint_match_options options = { path, 0, 0 };
+    const joint_match_options options = { .names = path };
     model_error error = { "", "" };
     (void)state;
     if (source_join(&base, "walk.bvh", &other, "run.bvh", &options, &error)) fail_msg("%s", error.what);
@@ -287,7 +287,7 @@ static void names_are_read_from_a_file(void **state)
 static void refuse_names(const char *text, const char *what)
 {
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "xbz", FRAMES));
-    const joint_match_options options = { names_file(text), 0, 0 };
+    const joint_match_options options = { .names = names_file(text) };
     model_error error = { "", "" };
     assert_int_equal(source_join(&base, "walk.bvh", &other, "run.bvh", &options, &error), 1);
     if (!strstr(error.what, what)) fail_msg("'%s' does not say '%s'", error.what, what);

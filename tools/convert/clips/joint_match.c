@@ -11,7 +11,6 @@
 #include "convert/base/names.h"
 #include "convert/base/quat.h"
 #include "convert/base/text_scan.h"
-#include "convert/clips/rest_fit.h"
 #include "convert/model/model.h"
 
 #define LISTED 5u          /* names of each kind in a report */
@@ -23,7 +22,6 @@ typedef struct matcher {
     uint32_t *counterpart; /* [to->joint_count] joint of the set, or MODEL_NONE */
     uint8_t *taken;        /* [joints of the set] */
     uint32_t found;
-    int by_rest;
 } matcher;
 
 /* ---- names ---- */
@@ -286,51 +284,13 @@ static int refit_clip(const matcher *m, raw_clip *clip)
         free(to.scales);
         return 1;
     }
-    if (m->by_rest && rest_fit_clip(&m->set->skeleton, m->to, m->counterpart, clip, &to)) {
-        free(to.rotations);
-        free(to.translations);
-        free(to.scales);
-        return 1;
-    }
-    for (uint32_t f = 0; f < clip->frame_count && !m->by_rest; f++) {
+    for (uint32_t f = 0; f < clip->frame_count; f++) {
         for (uint32_t j = 0; j < m->to->joint_count; j++) fill_joint(m, clip, &to, f, j);
     }
     free(clip->rotations);
     free(clip->translations);
     free(clip->scales);
     *clip = to;
-    return 0;
-}
-
-static char *copy_name(const char *name)
-{
-    char *copy = malloc(strlen(name) + 1u);
-    return copy ? strcpy(copy, name) : NULL;
-}
-
-/* Take the bind pose of `to`, in the set's unit. */
-static int refit_skeleton(const matcher *m)
-{
-    raw_set copy, old;
-    memset(&copy, 0, sizeof copy);
-    memset(&old, 0, sizeof old);
-    copy.skeleton.unit_cm = m->set->skeleton.unit_cm;
-    if (raw_skeleton_alloc(&copy.skeleton, m->to->joint_count)) return 1;
-    for (uint32_t j = 0; j < m->to->joint_count; j++) {
-        raw_joint *joint = &copy.skeleton.joints[j];
-        *joint = m->to->joints[j];
-        joint->name = m->to->joints[j].name ? copy_name(m->to->joints[j].name) : NULL;
-        for (int i = 0; i < 3; i++) {
-            joint->translation[i] = (float)((double)joint->translation[i] * m->to->unit_cm / copy.skeleton.unit_cm);
-        }
-        if (m->to->joints[j].name && !joint->name) {
-            raw_set_clear(&copy);
-            return 1;
-        }
-    }
-    old.skeleton = m->set->skeleton;
-    m->set->skeleton = copy.skeleton;
-    raw_set_clear(&old);
     return 0;
 }
 
@@ -376,7 +336,7 @@ static char *write_report(const matcher *m)
     buffer_print(&out, "%u of its %u joints were found by name", m->found, m->set->skeleton.joint_count);
     list_left(&out, m->to, m->counterpart, NULL, "; these keep the bind pose:");
     list_left(&out, &m->set->skeleton, NULL, m->taken, "; these were left out:");
-    if (apart > LENGTHS_EQUAL && !m->by_rest)
+    if (apart > LENGTHS_EQUAL)
         buffer_print(&out, "; bones differ in length by up to %.0f %%, and the pack's lengths are kept", 100.0 * apart);
     buffer_append(&out, "", 1);
     return out.failed ? NULL : (char *)out.bytes;
@@ -396,22 +356,22 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
     if (options->names && pair_by_file(m, options->names, error)) return JOINTS_FAILED;
     pair_by_name(m);
     if (!is_whole(m) && pair_by_meaning(m)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
-    if (!is_whole(m) && !((options->partial || options->by_rest) &&
-                          (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
+    if (!is_whole(m) &&
+        !(options->partial && (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
         return JOINTS_DIFFER;
     *report = write_report(m);
     if (!*report) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
     for (uint32_t c = 0; c < m->set->clip_count; c++) {
         if (refit_clip(m, &m->set->clips[c])) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
     }
-    if (refit_skeleton(m)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+    if (raw_skeleton_take(&m->set->skeleton, m->to)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
     return JOINTS_MATCHED;
 }
 
 joint_match joint_match_set(raw_set *set, const raw_skeleton *to, const joint_match_options *options, char **report,
                             model_error *error)
 {
-    matcher m = { set, to, NULL, NULL, 0, options->by_rest };
+    matcher m = { set, to, NULL, NULL, 0 };
     joint_match result;
     *report = NULL;
     m.counterpart = malloc(((size_t)to->joint_count + 1u) * sizeof *m.counterpart);

@@ -1,15 +1,19 @@
 /* joint_match.h: fits clips of one skeleton to another that has the same joints under other names, or only some of
- * them. Bones keep the lengths of the clip, except by rest pose (rest_fit.h). */
+ * them. Bones keep the lengths of the clip. */
 #ifndef NOH_CONVERT_CLIPS_JOINT_MATCH_H
 #define NOH_CONVERT_CLIPS_JOINT_MATCH_H
+
+#include <stdio.h>
 
 #include "raw_set.h"
 
 typedef struct joint_match_options {
-    const char *names; /* a file of lines "THEIRS OURS", # begins a comment; NULL: none */
-    int partial;       /* 1: joints that only one of the two has are left out, where at least half of the other's or
+    const char *names;    /* a file of lines "THEIRS OURS", # begins a comment; NULL: none */
+    int partial;          /* 1: joints that only one of the two has are left out, where at least half of the other's or
                           of these joints are found */
-    int by_rest;       /* 1: a VRM animation, for any body with its bones */
+    const char *retarget; /* clips of humanoids are retargeted (retarget/retarget_set.h): "auto", or a file of bones;
+                             NULL: VRM animations alone */
+    FILE *report;         /* of what was retargeted; NULL: quiet */
 } joint_match_options;
 
 typedef enum joint_match {

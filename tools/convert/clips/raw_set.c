@@ -148,3 +148,34 @@ uint32_t raw_skeleton_hash(const raw_skeleton *skeleton)
         hash = hash_word(hash_string(hash, skeleton->joints[j].name), skeleton->joints[j].parent);
     return hash;
 }
+
+static char *copy_name(const char *name)
+{
+    char *copy = malloc(strlen(name) + 1u);
+    return copy ? strcpy(copy, name) : NULL;
+}
+
+int raw_skeleton_take(raw_skeleton *skeleton, const raw_skeleton *from)
+{
+    raw_set copy, old;
+    memset(&copy, 0, sizeof copy);
+    memset(&old, 0, sizeof old);
+    copy.skeleton.unit_cm = skeleton->unit_cm;
+    if (raw_skeleton_alloc(&copy.skeleton, from->joint_count)) return 1;
+    for (uint32_t j = 0; j < from->joint_count; j++) {
+        raw_joint *joint = &copy.skeleton.joints[j];
+        *joint = from->joints[j];
+        joint->name = from->joints[j].name ? copy_name(from->joints[j].name) : NULL;
+        for (int i = 0; i < 3; i++) {
+            joint->translation[i] = (float)((double)joint->translation[i] * from->unit_cm / copy.skeleton.unit_cm);
+        }
+        if (from->joints[j].name && !joint->name) {
+            raw_set_clear(&copy);
+            return 1;
+        }
+    }
+    old.skeleton = *skeleton;
+    *skeleton = copy.skeleton;
+    raw_set_clear(&old);
+    return 0;
+}

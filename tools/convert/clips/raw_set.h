@@ -27,6 +27,8 @@ raw_set *raw_set_new(uint32_t joint_count, uint32_t clip_count);
 void raw_set_free(raw_set *set);
 void raw_set_clear(raw_set *set);
 int raw_skeleton_alloc(raw_skeleton *skeleton, uint32_t joint_count);
+/* Take another skeleton's joints and bind pose, in the unit that it has. */
+int raw_skeleton_take(raw_skeleton *skeleton, const raw_skeleton *from);
 /* Frames of zeros, to be filled; the clip's other fields are untouched. */
 int raw_clip_alloc(raw_clip *clip, uint32_t frame_count, uint32_t joint_count);
 int raw_floats_alloc(raw_floats *floats, uint32_t frame_count, uint32_t width);

@@ -11,17 +11,18 @@
 
 #define DEGREE (3.14159265358979323846 / 180.0)
 
-int raw_rest_from_frame(raw_set *set)
+int raw_rest_from_frame(raw_set *set, uint32_t frame)
 {
     raw_skeleton *skeleton = &set->skeleton;
     uint32_t c = 0;
     while (c < set->clip_count && set->clips[c].joint_count != skeleton->joint_count) c++;
-    if (c == set->clip_count || !skeleton->joint_count) return 1;
+    if (c == set->clip_count || !skeleton->joint_count || frame >= set->clips[c].frame_count) return 1;
     for (uint32_t j = 0; j < skeleton->joint_count; j++) {
+        const size_t at = (size_t)frame * skeleton->joint_count + j;
         raw_joint *joint = &skeleton->joints[j];
-        memcpy(joint->rotation, set->clips[c].rotations + 4u * (size_t)j, sizeof joint->rotation);
-        memcpy(joint->translation, set->clips[c].translations + 3u * (size_t)j, sizeof joint->translation);
-        memcpy(joint->scale, set->clips[c].scales + 3u * (size_t)j, sizeof joint->scale);
+        memcpy(joint->rotation, set->clips[c].rotations + 4u * at, sizeof joint->rotation);
+        memcpy(joint->translation, set->clips[c].translations + 3u * at, sizeof joint->translation);
+        memcpy(joint->scale, set->clips[c].scales + 3u * at, sizeof joint->scale);
     }
     return 0;
 }

@@ -1,6 +1,6 @@
 /* raw_turn.h: the rest pose and the direction of recordings, which .bvh files leave open.
  *
- *   raw_rest_from_frame  take the bind pose from the first frame
+ *   raw_rest_from_frame  take the bind pose from a frame
  *   raw_side             whether a joint is a left or a right one
  *   raw_facing           where a skeleton faces, by its left and right
  *   raw_turn             skeleton and clips turned about +y */
@@ -15,13 +15,13 @@ extern "C" {
 
 /* The pose and direction of .bvh and .rcl recordings. Zeros: as in the file. */
 typedef struct turn_options {
-    int rest_first_frame; /* 1: take the bind pose from the first frame */
+    int rest_first_frame; /* 1: take the bind pose from a frame */
     int faces_ahead;      /* 1: turned so that the bind pose faces +z, by its left and right */
     double degrees;       /* else the turn, from +z towards +x */
 } turn_options;
 
 /* Uses the first clip that moves joints. Clips are unchanged. Returns 0, or 1: there is none. */
-int raw_rest_from_frame(raw_set *set);
+int raw_rest_from_frame(raw_set *set, uint32_t frame);
 
 /* By the names of the joint and of those above it, as below: 1 left, -1 right, 0 neither. */
 int raw_side(const raw_skeleton *skeleton, uint32_t joint);

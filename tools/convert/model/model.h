@@ -210,7 +210,7 @@ typedef struct model {
     model_spring *springs;     /* of an extension; nodes that are no joints may be among theirs */
     model_collider *colliders; /* [collider_count], at most NOH_SPRING_COLLIDERS_MAX */
     char *spring_lines;        /* lines of springs (springs/springs_read.h) out of extras; NULL: none */
-    int for_any_body;          /* 1: a VRM animation: its clips move any body with VRM's bones (clips/rest_fit.h) */
+    int for_any_body;          /* 1: a VRM animation: its clips are retargeted (retarget/) */
     uint32_t warning_count;
     char **warnings; /* sentences for the user, e.g. what was skipped and why */
 } model;

@@ -22,7 +22,7 @@
 #define INPUTS_MAX 64
 
 typedef struct clip_args {
-    const char *events, *unit_cm, *rest, *facing, *bound, *rename, *clean, *error_cm;
+    const char *events, *unit_cm, *rest, *facing, *bound, *rename, *retarget, *clean, *error_cm;
     int partial, loop, open_loop;
     double rate, shell_cm, split_hz, segment_frames, effort;
     option_list clip_errors, joint_errors;
@@ -366,6 +366,7 @@ static int set_options(const build_args *a, convert_options *o)
     o->source.targets = a->face.targets;
     o->joints.names = a->clips.rename;
     o->joints.partial = a->clips.partial;
+    o->joints.retarget = a->clips.retarget;
     o->source.split_eyes = a->face.eyes;
     memcpy(o->texts, a->texts, sizeof o->texts);
     o->spring_lines = a->spring_lines.items;
@@ -892,6 +893,14 @@ static const option options[] = {
       .at = offsetof(build_args, clips.partial),
       .what =
           "accept clips if at least half of their joints, or half of the pack's, match; other joints keep the bind pose or are left out" },
+    { .name = "--retarget",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, clips.retarget),
+      .value = "auto|FILE",
+      .what =
+          "move clips of other humanoids to the model's: bones by their names, feet on the ground, hands as far out; or also by a text file of lines BONE THEIRS OURS (VRM's names of bones) and 'reference FRAME', the frame that stands upright where the bind pose does not",
+      .excludes = "--rename",
+      .example = "auto" },
     { .name = "--unit-cm",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, clips.unit_cm),
