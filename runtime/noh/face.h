@@ -21,6 +21,7 @@ extern "C" {
  *   noh_face_look_at       turn the eyes to a point, and the head if the eyes do not reach; noh_face_follow: track it
  *   noh_face_set_emotion   start an emotion, which rises, holds and fades
  *   noh_face_set_activity  resting, talking or reading: sets the blink rate and how long the gaze rests on a point
+ *   noh_face_speak         what speech asks of brows, head, lids and gaze
  *   noh_face_phrase_end    a phrase ends: people often blink then
  *   noh_face_blink         blink now
  *   noh_face_pose_of       the visible pose
@@ -93,6 +94,14 @@ typedef struct noh_face_emotion {
     uint8_t emotion, on, holds, reserved;
 } noh_face_emotion;
 
+/* What speech asks of the face besides the mouth: each 0..1. */
+typedef struct noh_face_speech {
+    float brows; /* up */
+    float nod;   /* of the head, down */
+    float blink; /* blinks once, as it rises above one half */
+    float away;  /* looks aside for as long as it is above one half */
+} noh_face_speech;
+
 /* Fields are private; the type is complete so that it can be stored in an array. */
 typedef struct noh_face {
     int64_t clock;
@@ -109,6 +118,7 @@ typedef struct noh_face {
     noh_face_emotion emotions[NOH_FACE_EMOTIONS_MAX];
     uint8_t activity, flags, gaze, blinking;
     uint32_t moods; /* number of spontaneous emotions so far */
+    noh_face_speech speech;
 } noh_face;
 
 /* The visible state of a face in one frame. */
@@ -157,6 +167,11 @@ void noh_face_set_activity(noh_face *face, const noh_face_desc *desc, noh_activi
 
 /* Blink now. Replaces the next spontaneous blink, so that the blink rate stays the same. */
 void noh_face_blink(noh_face *face, const noh_face_desc *desc);
+
+/* Set what speech asks of the face, until it is set again. Blinks of speech take the place of spontaneous ones.
+ * speech  NULL: nothing
+ * errors  ARG a field is not in 0..1 */
+noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_face_speech *speech, noh_error *error);
 
 /* Blink now with a probability of one half. */
 void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
@@ -210,8 +225,8 @@ typedef enum noh_face_channel {
     NOH_CHANNEL_LIDS_UP = NOH_CHANNEL_EYES + 8, /* lids that follow the eyes up */
     NOH_CHANNEL_LIDS_DOWN,                      /* lids that follow the eyes down, where no eye target does that */
     NOH_CHANNEL_BREATH,
-    NOH_CHANNEL_BROWS, /* brows up, at rest and with speech, in addition to those of emotions */
-    NOH_CHANNEL_UPPER,                                         /* brows, lids and nose of each emotion */
+    NOH_CHANNEL_BROWS, /* brows up, at rest and with speech, in addition to what emotions do */
+    NOH_CHANNEL_UPPER, /* brows, lids and nose of each emotion */
     NOH_CHANNEL_MOUTH = NOH_CHANNEL_UPPER + NOH_EMOTION_COUNT, /* its mouth, as far as speech allows */
     NOH_CHANNEL_VISEMES = NOH_CHANNEL_MOUTH + NOH_EMOTION_COUNT,
     NOH_CHANNEL_COUNT = NOH_CHANNEL_VISEMES + NOH_VISEME_COUNT
@@ -219,7 +234,7 @@ typedef enum noh_face_channel {
 
 /* How speech affects the mouth shape of an emotion, like VRM's overrideMouth. */
 typedef enum noh_mouth_rule {
-    NOH_MOUTH_BLEND = 0, /* reduces it by as much as speech moves the mouth */
+    NOH_MOUTH_BLEND = 0, /* reduces it by half as much as speech moves the mouth: a smile stays below the shapes */
     NOH_MOUTH_BLOCK,     /* removes it while speech moves the mouth at all */
     NOH_MOUTH_NONE       /* both add up, except for lips that must close */
 } noh_mouth_rule;
@@ -231,8 +246,8 @@ typedef enum noh_override {
     NOH_OVERRIDE_BLEND     /* reduces the other by as much as the expression shows */
 } noh_override;
 
-/* Conflict rules for mouth, lids and eyes. Zeros: speech reduces an emotion's mouth by as much as it moves the mouth,
- * and an emotion leaves blinks, looks and speech unchanged. Whatever the rules, lips closed by p, b, m, f or v stay
+/* Conflict rules for mouth, lids and eyes. Zeros: speech reduces an emotion's mouth by half as much as it moves the
+ * mouth, and an emotion leaves blinks, looks and speech unchanged. Whatever the rules, lips closed by p, b, m, f or v stay
  * closed. */
 typedef struct noh_face_rules {
     uint8_t mouth[NOH_EMOTION_COUNT];  /* noh_mouth_rule: speech over the emotion's mouth */

@@ -93,7 +93,6 @@ ineffective() { # NAME-OF-THE-OPTION ARGUMENTS...
 }
 ineffective --clip clip "$pack" --clip foo
 ineffective --driver budget "$pack" --driver egl --nominal
-ineffective --time render "$pack" -o "$work/x.png" --time 1
 ineffective --anim render "$pack" -o "$work/x.png" --anim "$pack"
 ineffective --weight render "$pack" -o "$work/x.png" --bones --weight smile=1
 ineffective --path render "$pack" -o "$work/x.png" --bones --path cpu
@@ -101,6 +100,7 @@ ineffective --driver dump "$pack" -o "$work/x.obj" --driver egl
 ineffective --accumulate dump "$pack" -o "$work/x.obj" --path cpu --accumulate f16
 ineffective --time dump "$pack" -o "$work/x.obj" --time 1
 ineffective --tiles sheet "$pack" -o "$work/x.png" --tiles 4
+ineffective --time sheet "$pack" -o "$work/x.png" --time 1
 ineffective --transition sheet "$pack" -o "$work/x.png" --clip speak --transition fade
 ineffective --over sheet "$pack" -o "$work/x.png" --clip speak --over 1
 ineffective --target sheet "$pack" -o "$work/x.png" --clip speak --target smile

@@ -85,7 +85,7 @@ noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.n
 expect 0 'a clip for the mask'
 check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test "$(wc -c <"$1")" -gt 40000' - "$work/line.wav"
 noh info "$work/line.noh"
-check 'one clip, a key for each word' grep -q "clip 'speech': .* 59 floats, .* 5 callback keys" "$work/out"
+check 'one clip, a key for each word' grep -q "clip 'speech': .* 63 floats, .* 5 callback keys" "$work/out"
 
 # a puppet that walks and speaks: two packs of clips, and a face that lives
 noh speak 'Papa bought me five boats.' --face "$build/demo/puppet_levels.noh" -o "$work/says.noh"
@@ -100,6 +100,13 @@ noh render "$build/mask.noh" -o "$work/joy.png" --anim "$work/line.noh" --clip s
     --face on --feel joy=1
 expect 0 'a face that lives'
 check 'and feels' sh -c '! cmp -s "$1" "$2"' - "$work/still.png" "$work/joy.png"
+noh speak 'I really love to dance, but today, I am tired.' --json
+expect 0 'speech for the whole face'
+check 'stress raises brows and nods; a pause blinks' awk '/"(brows|nod|blink)": \[/ { key = $1 } /\]/ { key = "" }
+    key != "" { sub(",", "", $1); if ($1 + 0 > 0.5) seen[key] = 1; if ($1 + 0 == 0) rest[key] = 1 }
+    END { for (k in seen) n++; for (k in rest) m++; exit n != 3 || m != 3 }' "$work/out"
+noh speak 'I really love to dance, but today, I am tired.'
+check 'in words' grep -Eq '^face: [1-9][0-9]* stresses .* [1-9][0-9]* pauses blink$' "$work/out"
 noh render "$build/mask.noh" -o "$work/x.png" --face maybe
 expect 2 '--face takes on or off'
 noh render "$build/mask.noh" -o "$work/x.png" --face on --feel hunger=1

@@ -14,7 +14,7 @@
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 
-NOH_STATIC_ASSERT(sizeof(noh_face) == 240, face_bytes);
+NOH_STATIC_ASSERT(sizeof(noh_face) == 256, face_bytes);
 
 #define NEAREST_M 0.05f
 #define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less per call is followed without a saccade */
@@ -401,4 +401,21 @@ void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc)
     if (noh_face_uniform(face->seed, NOH_FACE_PHRASE, face->blinks) < 0.5f) {
         noh_face_blink_pull(face, desc);
     }
+}
+
+noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_face_speech *speech, noh_error *error)
+{
+    static const noh_face_speech none = { 0.0f, 0.0f, 0.0f, 0.0f };
+    const noh_face_speech *s = speech ? speech : &none;
+    noh_face_speech before;
+    NOH_ASSERT(face && desc);
+    before = face->speech;
+    if (!(s->brows >= 0.0f && s->brows <= 1.0f && s->nod >= 0.0f && s->nod <= 1.0f && s->blink >= 0.0f &&
+          s->blink <= 1.0f && s->away >= 0.0f && s->away <= 1.0f)) {
+        return noh_fail(error, NOH_ERR_ARG, "what speech asks of a face must be 0 to 1", 0, 0);
+    }
+    face->speech = *s;
+    if (s->blink > 0.5f && !(before.blink > 0.5f)) noh_face_blink_pull(face, desc);
+    if ((s->away > 0.5f) != (before.away > 0.5f)) noh_face_look_aside(face, desc, s->away > 0.5f);
+    return NOH_OK;
 }

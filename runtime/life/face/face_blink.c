@@ -13,6 +13,7 @@
 #define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by this time */
 #define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two blinks of a double blink */
 #define STRATA 32u
+#define SEEN_S 5.0f   /* from a blink of another owner to a spontaneous one, at least */
 #define DEBT_MAX 4.0f /* mean intervals by which blinks in advance may delay the next one */
 
 static const float rates[NOH_ACTIVITY_COUNT] = { 17.0f, 26.0f, 4.5f };
@@ -140,4 +141,10 @@ void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc)
 void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc)
 {
     face->next_blink = (uint32_t)face->clock + interval(face, desc, face->blinks++);
+}
+
+void noh_face_blink_seen(noh_face *face)
+{
+    const uint32_t now = (uint32_t)face->clock, least = noh_face_ticks(SEEN_S);
+    if (face->next_blink - now < least) face->next_blink = now + least;
 }

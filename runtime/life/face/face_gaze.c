@@ -247,6 +247,11 @@ void noh_face_glance(noh_face *face, const noh_face_desc *desc)
     noh_face_glance_schedule(face);
 }
 
+void noh_face_look_aside(noh_face *face, const noh_face_desc *desc, int aside)
+{
+    if (is_away(face) != aside) noh_face_glance(face, desc);
+}
+
 /* Microsaccades. Human ones are 0.1 to 0.5 degrees, once or twice per second; these stay below 0.1 degrees, so that a
  * held gaze keeps a reliable aim. */
 void noh_face_tremor(noh_face *face)

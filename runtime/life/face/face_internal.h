@@ -88,6 +88,7 @@ float noh_face_blink_at(const noh_face *face);                        /* 0 open 
 void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* begin the blink that is due */
 void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* begin the next blink now */
 void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc);
+void noh_face_blink_seen(noh_face *face); /* another owner shuts the lids: no spontaneous blink for a while */
 float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* mean seconds between two blinks */
 
 /* ---- the mode of four channels ---- */
@@ -118,6 +119,7 @@ void noh_face_gaze_shift(noh_face *face, const float from[3], uint32_t latency);
 void noh_face_gaze_event(noh_face *face, const noh_face_desc *desc); /* a latency or a saccade has ended */
 void noh_face_glance(noh_face *face, const noh_face_desc *desc);
 void noh_face_glance_schedule(noh_face *face);
+void noh_face_look_aside(noh_face *face, const noh_face_desc *desc, int aside); /* or back, if it is not so already */
 void noh_face_tremor(noh_face *face);
 void noh_face_head_follow(noh_face *face, const noh_face_desc *desc);
 uint32_t noh_face_latency(const noh_face *face);

@@ -12,6 +12,8 @@
 #define LIFT 0.03f         /* the head on a full breath, as a share of the distance of the eyes */
 #define BROWS 0.06f        /* mean height of brows at rest; they move from 0 to twice as much */
 #define BROWS_FOLLOW 0.15f /* how far brows go up with the lids */
+#define BROWS_SPEAK 0.5f
+#define NOD (3.5f * NOH_DEGREE)
 
 /* ---- the head ---- */
 
@@ -59,6 +61,7 @@ void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, flo
         angles[i] += size *
                      (wave(face, NOH_FACE_IDLE + i, periods[i]) + SWAY * wave(face, NOH_FACE_SWAY + i, sways[i]));
     }
+    angles[1] -= NOD * face->speech.nod;
     turn_about(1, angles[0], rotation);
     turn_about(0, -angles[1], part);
     noh_quat_mul(rotation, part, rotation);
@@ -144,7 +147,7 @@ float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
 static float brows_at(const noh_face *face, float lids_up)
 {
     const float idle = is_still(face) ? 0.0f : BROWS + BROWS * wave(face, NOH_FACE_BROWS, 110400u);
-    return clamped(idle + BROWS_FOLLOW * lids_up, 0.0f, 1.0f);
+    return clamped(idle + BROWS_FOLLOW * lids_up + BROWS_SPEAK * face->speech.brows, 0.0f, 1.0f);
 }
 
 static void show_emotions(const noh_face *face, float emotions[NOH_EMOTION_COUNT])

@@ -11,6 +11,8 @@
 #include "core/base/name_internal.h"
 #include "life/face/face_internal.h"
 
+#define TAKEN 0.5f /* by speech, of an emotion's mouth: NOH_MOUTH_BLEND */
+
 /* ---- channels ---- */
 
 static float unit(float x)
@@ -73,7 +75,9 @@ void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, con
     if (pose) upper_channels(pose, desc, channels);
     if (visemes) moves = speech_channels(visemes, channels);
     shut = channels[NOH_CHANNEL_VISEMES + NOH_VISEME_PP] + channels[NOH_CHANNEL_VISEMES + NOH_VISEME_FF];
-    left = rule == NOH_MOUTH_NONE ? 1.0f : rule == NOH_MOUTH_BLOCK ? (moves > 0.0f ? 0.0f : 1.0f) : 1.0f - moves;
+    left = rule == NOH_MOUTH_NONE    ? 1.0f
+           : rule == NOH_MOUTH_BLOCK ? (moves > 0.0f ? 0.0f : 1.0f)
+                                     : 1.0f - TAKEN * moves;
     left = left < 1.0f - shut ? left : unit(1.0f - shut);
     for (int i = 0; pose && i < NOH_EMOTION_COUNT; i++) {
         channels[NOH_CHANNEL_UPPER + i] = pose->emotions[i];
@@ -117,7 +121,7 @@ void noh_face_share(const noh_face_rules *rules, float moves, float shut, float 
         const uint8_t rule = rules->mouth[i];
         float left = rule == NOH_MOUTH_NONE    ? 1.0f
                      : rule == NOH_MOUTH_BLOCK ? (spoken > 0.0f ? 0.0f : 1.0f)
-                                               : 1.0f - spoken;
+                                               : 1.0f - TAKEN * spoken;
         left = left < 1.0f - shut ? left : 1.0f - shut;
         channels[NOH_CHANNEL_MOUTH + i] = shows[i] * left;
     }

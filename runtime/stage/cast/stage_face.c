@@ -20,6 +20,7 @@
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
 #define NECK_SHARE 0.4f
+#define LIDS_SHUT 0.6f   /* by a clip: counts as a blink */
 #define CHEST_RAD 0.012f /* of a breath */
 #define REACH_MAX 1e5f   /* model units: what is further off is looked at as if it were there */
 #define NEAREST_M 0.06f
@@ -202,8 +203,21 @@ static void shut_lids(const noh_stage_face_kind *k, const noh_stage_face *f, con
     }
 }
 
-static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_modifier_work *w,
-                         const noh_face_pose *pose)
+/* Lids have one owner: where clips shut them, a face adds only what they leave open, and its own blinks wait. */
+static void share_lids(const noh_stage_face_kind *k, noh_stage_face *f, const noh_modifier_work *w, float *channels)
+{
+    float shut = 0.0f;
+    for (uint32_t i = 0; i < NOH_IDENTITY_CLOSINGS; i++) {
+        const float lid = float_of(w, k->lids[i]), both = i < 2u ? float_of(w, k->shuts[i]) : 0.0f;
+        shut = lid > shut ? lid : shut;
+        shut = both > shut ? both : shut;
+    }
+    channels[NOH_CHANNEL_BLINK_LEFT] *= 1.0f - shut;
+    channels[NOH_CHANNEL_BLINK_RIGHT] *= 1.0f - shut;
+    if (shut > LIDS_SHUT) noh_face_blink_seen(&f->face);
+}
+
+static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifier_work *w, const noh_face_pose *pose)
 {
     const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
     float channels[NOH_CHANNEL_COUNT], two[NOH_VISEME_COUNT];
@@ -217,8 +231,17 @@ static void move_targets(const noh_stage_kind *k, const noh_stage_face *f, noh_m
     noh_face_channels(pose, &shared->desc, says, NOH_MOUTH_NONE, channels);
     if (turns(w, &shared->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
     noh_face_share(&shared->rules, float_of(w, shared->speech), float_of(w, shared->lips_shut), channels);
+    share_lids(shared, f, w, channels);
     noh_face_apply(shared->links, shared->link_count, channels, w->floats);
     shut_lids(shared, f, channels, w->floats);
+}
+
+/* What the floats of speech clips ask. */
+static void speak(const noh_stage_face_kind *k, noh_stage_face *f, const noh_modifier_work *w)
+{
+    const noh_face_speech asked = { float_of(w, k->speaks[0]), float_of(w, k->speaks[1]), float_of(w, k->speaks[2]),
+                                    float_of(w, k->speaks[3]) };
+    (void)noh_face_speak(&f->face, &k->desc, &asked, NULL);
 }
 
 /* ---- all of it ---- */
@@ -271,6 +294,7 @@ void noh_stage_run_face(noh_modifier_work *w)
     breathe(w, noh_stage_face_kind_of(k), noh_face_breath(&f->face, &noh_stage_face_kind_of(k)->desc));
     neck_space_of(k, w, &n);
     look(w->stage, k, f, w, &n);
+    speak(noh_stage_face_kind_of(k), f, w);
     noh_face_pose_of(&f->face, &noh_stage_face_kind_of(k)->desc, &pose);
     if (noh_stage_turns(k) || turns(w, &noh_stage_face_kind_of(k)->head)) {
         noh_face aimed = f->face;

@@ -47,8 +47,10 @@ typedef struct noh_stage_face_kind {
     float middle[3]; /* between the eyes at rest, model space */
     uint32_t flags;
     uint32_t speech, lips_shut;           /* floats of clips; NOH_NONE: no clip has them */
+    uint32_t speaks[4];                   /* the same: fields of noh_face_speech */
     noh_face_link *links;                 /* to floats of the set */
     uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
+    uint32_t shuts[2]; /* floats of targets that shut both eyes and that no channel moves; NOH_NONE: none */
     uint32_t link_count;
 } noh_stage_face_kind;
 

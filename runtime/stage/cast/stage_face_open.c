@@ -346,6 +346,12 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     return NOH_OK;
 }
 
+/* As clips of masks and of VRM have them, and avatars with ARKit's names. */
+static const char *const shutting[2] = { "blink", "eyesClosed" };
+
+/* In the order of noh_face_speech. */
+static const char *const speaks[4] = { "speech-brows", "speech-nod", "speech-blink", "speech-away" };
+
 static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
     noh_stage_face_kind *f = k->modules[NOH_SLOT_FACE].shared;
@@ -359,12 +365,14 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     find_lids(f);
+    for (int i = 0; i < 2; i++) f->shuts[i] = find_in_kind(k, shutting[i], 0);
     open_turns(k, desc, f);
     for (int r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
         k->modules[NOH_SLOT_FACE].error_m[r] = lids_off[r] * LID * (f->desc.eyes[0][0] - f->desc.eyes[1][0]);
     }
     f->speech = find_float(k, "speech");
     f->lips_shut = find_float(k, "lips-shut");
+    for (int i = 0; i < 4; i++) f->speaks[i] = find_float(k, speaks[i]);
     return NOH_OK;
 }
 
@@ -396,8 +404,9 @@ static void shift(noh_stage_kind *k, const float by[3])
 /* What the arithmetic of a face cannot stand: counts and enumerations out of range, values that are not finite. */
 static int is_sound(const noh_face *f)
 {
-    float sum = f->head[0].from + f->head[0].speed + f->head[0].goal + f->head[1].from + f->head[1].speed +
-                f->head[1].goal;
+    const noh_face_speech *s = &f->speech;
+    float sum = s->brows + s->nod + s->blink + s->away + f->head[0].from + f->head[0].speed + f->head[0].goal +
+                f->head[1].from + f->head[1].speed + f->head[1].goal;
     for (int i = 0; i < 3; i++) sum += f->from[i] + f->target[i] + (i < 2 ? f->away[i] + f->tremor[i] : 0.0f);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         const noh_face_emotion *e = &f->emotions[i];

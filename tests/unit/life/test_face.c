@@ -578,6 +578,43 @@ static void a_face_lives_past_the_day_at_which_ticks_wrap(void **state)
     assert_true(fabs(face.blinks / 3600.0 - 17.0) < 0.4);
 }
 
+/* Stress raises brows and nods the head, with eyes that keep their aim; a rise of `blink` is one blink; `away` looks aside
+ * until it falls. */
+static void speech_moves_the_upper_face(void **state)
+{
+    const float point[3] = { 0.1f, 0.1f, 1.0f };
+    noh_face face = face_of(3, NOH_FACE_NO_IDLE | NOH_FACE_NO_WANDER | NOH_FACE_NO_BLINK);
+    noh_face_speech asked = { 1.0f, 1.0f, 1.0f, 0.0f };
+    noh_error error;
+    uint32_t blinks;
+    noh_face_pose before, now;
+    (void)state;
+    noh_face_look_at(&face, &desc, point, NULL);
+    noh_face_step(&face, &desc, 2u * SECOND);
+    before = pose_of(&face);
+    blinks = face.blinks;
+    for (int i = 0; i < 3; i++) assert_int_equal(noh_face_speak(&face, &desc, &asked, NULL), NOH_OK);
+    noh_face_step(&face, &desc, SECOND / 12u);
+    now = pose_of(&face);
+    assert_true(now.brows > before.brows + 0.4f && now.blink > 0.5f);
+    assert_true((double)(before.head_angles[1] - now.head_angles[1]) * DEGREES > 3.0);
+    assert_true(miss(&now, 0, point) < 0.1 && miss(&now, 1, point) < 0.1);
+    assert_true(face.blinks - blinks <= 2u); /* one, or a double one */
+    asked = (noh_face_speech){ 0.0f, 0.0f, 0.0f, 1.0f };
+    assert_int_equal(noh_face_speak(&face, &desc, &asked, NULL), NOH_OK);
+    noh_face_step(&face, &desc, SECOND / 2u);
+    now = pose_of(&face);
+    assert_true(now.brows < 0.2f && miss(&now, 0, point) > 0.5);
+    assert_int_equal(noh_face_speak(&face, &desc, NULL, NULL), NOH_OK);
+    noh_face_step(&face, &desc, SECOND / 2u);
+    now = pose_of(&face);
+    assert_true(miss(&now, 0, point) < 0.1);
+    asked.nod = 1.5f;
+    assert_int_equal(noh_face_speak(&face, &desc, &asked, &error), NOH_ERR_ARG);
+    asked.nod = NAN;
+    assert_int_equal(noh_face_speak(&face, &desc, &asked, &error), NOH_ERR_ARG);
+}
+
 /* Equal on every processor: `make cross` runs this there. */
 static void the_bits_are_the_same_everywhere(void **state)
 {
@@ -618,6 +655,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(emotions_come_hold_and_go),
         cmocka_unit_test(bad_values_are_refused),
         cmocka_unit_test(a_face_lives_past_the_day_at_which_ticks_wrap),
+        cmocka_unit_test(speech_moves_the_upper_face),
         cmocka_unit_test(the_bits_are_the_same_everywhere),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -1,6 +1,7 @@
 /* Heads without joints: they turn as a whole, with eyes that keep their aim, within their reach, and under rays; in
  * what is attached; in any number of jobs. */
 #include "support/stage_fixture.h"
+#include "stage/cast/stage_face_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #include "core/base/math_internal.h"
@@ -134,6 +135,71 @@ static void a_blink_is_posed_in_every_frame(void **state)
         most = fmaxf(most, floats[lid]);
     }
     assert_true(most > 0.95f);
+    close_heads(&c);
+}
+
+/* Where a clip blinks, the face does not, then or for five seconds after; what a clip leaves open is shut by a blink that is asked
+ * for. Without the clip it blinks in that time. */
+static void lids_have_one_owner(void **state)
+{
+    uint32_t own[2] = { 0, 0 };
+    (void)state;
+    for (int plays = 0; plays < 2; plays++) {
+        const noh_play loop = { .loop = NOH_LOOP_REPEAT };
+        noh_kind_face face = { .flags = 0 };
+        float lid_before = 0.0f;
+        uint32_t blink, shut = 0;
+        noh_actor actor;
+        cast c;
+        open_heads(&c, &face, 1);
+        actor = enter(&c, 0, NULL);
+        blink = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "blink");
+        assert_true(blink != NOH_NONE);
+        if (plays) assert_int_equal(noh_actor_play(c.stage, actor, 1, "blink", &loop, &said), NOH_OK);
+        for (uint32_t f = 0; f < 1200; f++) {
+            noh_face_pose pose;
+            run(&c, 1);
+            assert_int_equal(noh_actor_face(c.stage, actor, &pose, NULL), NOH_OK);
+            own[plays] += pose.blink > 0.0f && !(lid_before > 0.0f);
+            shut += noh_actor_floats(c.stage, actor)[blink] > 0.6f;
+            lid_before = pose.blink;
+        }
+        assert_true(plays == (shut > 0));
+        close_heads(&c);
+    }
+    print_message("blinks of its own in 20 s: %u, and %u with a clip that blinks\n", own[0], own[1]);
+    assert_true(own[0] >= 4 && own[1] <= own[0] / 3u);
+}
+
+/* A clip's floats raise the brows, nod the head and shut the lids: here one that smiles stands for one that speaks. */
+static void a_clip_that_speaks_moves_the_face(void **state)
+{
+    noh_kind_face face = { .flags = NOH_FACE_CALM };
+    float world[12], most = 0.0f, lid = 0.0f, down = 0.0f;
+    uint32_t smile, brow, lids;
+    noh_stage_face_kind *shared;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_heads(&c, &face, 1);
+    actor = enter(&c, 0, NULL);
+    shared = c.stage->kinds[0].modules[NOH_SLOT_FACE].shared;
+    smile = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "smile");
+    brow = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "browOuterUpLeft");
+    lids = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "eyeBlinkLeft");
+    assert_int_equal(shared->speaks[0], NOH_NONE);
+    for (int i = 0; i < 3; i++) shared->speaks[i] = smile;
+    assert_int_equal(noh_actor_play(c.stage, actor, 1, "smile", NULL, &said), NOH_OK);
+    for (uint32_t f = 0; f < 200; f++) {
+        run(&c, 1);
+        world_of(&c, actor, world);
+        most = fmaxf(most, noh_actor_floats(c.stage, actor)[brow]);
+        lid = fmaxf(lid, noh_actor_floats(c.stage, actor)[lids]);
+        down = fmaxf(down, asinf(-world[6]) / DEGREE);
+    }
+    print_message("brows up by %.2f, nods of %.1f degrees, lids shut by %.2f\n", (double)most, (double)down,
+                  (double)lid);
+    assert_true(most > 0.4f && lid > 0.9f && down > 3.0f);
     close_heads(&c);
 }
 
@@ -332,6 +398,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_head_moves_in_every_frame),
         cmocka_unit_test(a_blink_is_posed_in_every_frame),
+        cmocka_unit_test(lids_have_one_owner),
+        cmocka_unit_test(a_clip_that_speaks_moves_the_face),
         cmocka_unit_test(a_head_turns_to_what_it_looks_at),
         cmocka_unit_test(a_turned_head_is_within_its_spheres),
         cmocka_unit_test(a_ray_meets_a_turned_head),

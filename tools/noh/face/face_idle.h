@@ -14,7 +14,7 @@ extern const char *const face_region_names[FACE_REGIONS];
 
 typedef struct face_idle {
     uint32_t pairs;               /* of one picture and the next */
-    uint32_t still[FACE_REGIONS]; /* pairs in which nothing of a region moves */
+    uint32_t still[FACE_REGIONS]; /* pairs in which no part of a region moves */
     int is_there[FACE_REGIONS];   /* 0: no target moves it, which leaves it out */
 } face_idle;
 

@@ -31,6 +31,7 @@ typedef struct spoken {
     char *text;
     synthesis said;
     speech_track track;
+    prosody voice;
     int recorded, heard; /* heard: a recording without words */
     double score;        /* of the alignment */
     size_t clipped;
@@ -70,7 +71,22 @@ static void json_curve(json *j, const char *key, const speech_track *t, uint32_t
     json_close(j, ']');
 }
 
-static void json_frames(json *j, const speech_track *t)
+/* Fields of noh_face_speech. */
+static void json_voice(json *j, const prosody *voice, uint32_t frames)
+{
+    static const char *const keys[] = { "brows", "nod", "blink", "away" };
+    for (uint32_t i = 0; i < 4u; i++) {
+        json_open(j, keys[i], '[');
+        for (uint32_t f = 0; f < frames; f++) {
+            const noh_face_speech asked = prosody_at(voice, tick_of(f)).face;
+            const float fields[4] = { asked.brows, asked.nod, asked.blink, asked.away };
+            json_number(j, NULL, (double)fields[i]);
+        }
+        json_close(j, ']');
+    }
+}
+
+static void json_frames(json *j, const speech_track *t, const prosody *voice)
 {
     const uint32_t frames = (uint32_t)(t->seconds * FRAME_RATE) + 1u;
     json_open(j, "frames", '{');
@@ -82,6 +98,7 @@ static void json_frames(json *j, const speech_track *t)
     json_close(j, ']');
     json_curve(j, "open", t, frames, speech_track_open);
     json_curve(j, "round", t, frames, speech_track_round);
+    json_voice(j, voice, frames);
     json_close(j, '}');
 }
 
@@ -119,7 +136,7 @@ static int print_json(const speak_args *a, const spoken *s)
     }
     if (s->labelled) json_labels(&j, &s->against);
     json_phones(&j, &s->said);
-    json_frames(&j, &s->track);
+    json_frames(&j, &s->track, &s->voice);
     return json_end(&j);
 }
 
@@ -141,6 +158,8 @@ static void print_text(const speak_args *a, const spoken *s)
         fprintf(out, " %s", s->said.phones[i].name[0] ? s->said.phones[i].name : "_");
     }
     fprintf(out, "\n");
+    fprintf(out, "face: %u stresses raise the brows and nod the head, %u pauses blink\n", s->voice.stresses,
+            s->voice.pauses);
     if (s->recorded && !s->heard)
         fprintf(out, "alignment score %.2f (%.2f or less: other words)\n", s->score, ALIGNMENT_SCORE_POOR);
     if (s->labelled) {
@@ -260,6 +279,7 @@ static int align(const speak_args *a, spoken *s)
     int status = read_recording(a, &recording);
     if (status) return status;
     status = check_length(a, s, &recording);
+    if (!status) status = prosody_make(&recording, &s->voice);
     if (!status) status = alignment_make(&recording, s->text, a->language, &aligned);
     s->clipped = recording.clipped;
     sound_free(&recording);
@@ -278,6 +298,7 @@ static int hear(const speak_args *a, spoken *s)
     int status = read_recording(a, &recording);
     if (status) return status;
     status = hearing_make(&recording, &a->how, &s->said, &s->track);
+    if (!status) status = prosody_make(&recording, &s->voice);
     s->clipped = recording.clipped;
     sound_free(&recording);
     if (!status && a->labels) status = labels_score(a->labels, &s->said, &s->against);
@@ -292,7 +313,7 @@ static int write_pack(const speak_args *a, const spoken *s)
     pack_file face;
     int status = pack_file_open(&face, a->face);
     if (status) return status;
-    status = speech_track_pack(&s->track, &s->said, s->text, &face, a->name, &out);
+    status = speech_track_pack(&s->track, &s->voice, &s->said, s->text, &face, a->name, &out);
     if (!status && noh_file_write(a->output, out.bytes, out.count, &error)) {
         status = tool_fail(a->output, "cannot write: %s", error.what);
     }
@@ -301,14 +322,23 @@ static int write_pack(const speak_args *a, const spoken *s)
     return status;
 }
 
+static int synthesize(const speak_args *a, spoken *s)
+{
+    sound voice;
+    int status = synthesis_make(s->text, a->language, &s->said);
+    if (!status) status = sound_from_pcm(s->said.samples, s->said.sample_count, s->said.sample_rate, &voice);
+    if (status) return status;
+    status = prosody_make(&voice, &s->voice);
+    sound_free(&voice);
+    return status;
+}
+
 static int say(const speak_args *a, spoken *s)
 {
     int status = take_text(a, s);
     if (!status && s->heard) return hear(a, s);
     if (!status) {
-        status = s->recorded ? align(a, s)
-                 : a->labels ? labels_say(a->labels, &s->said)
-                             : synthesis_make(s->text, a->language, &s->said);
+        status = s->recorded ? align(a, s) : a->labels ? labels_say(a->labels, &s->said) : synthesize(a, s);
     }
     synthesis_end();
     if (!status) status = speech_track_make(&s->said, &s->track);
@@ -327,6 +357,7 @@ static int run(void *args)
     if (!status && a->as_json) status = print_json(a, &s);
     if (!status && !a->as_json) print_text(a, &s);
     speech_track_free(&s.track);
+    prosody_free(&s.voice);
     synthesis_free(&s.said);
     free(s.text);
     return status;
@@ -407,7 +438,7 @@ const verb verb_speak = {
     .files = "TEXT|IN.wav",
     .what = "make phones and a mouth clip for a face from a text, a recording, or both",
     .more =
-        "eSpeak NG speaks a text (Debian: libespeak-ng1, espeak-ng-data), and phones are exact to the sample. [[h@l'oU]] in a text is phones in its own spelling. To edit phones, write the lines that --labels reads from the phones of --json. Mouth shapes blend as they do in speech, and the lips meet for every p, b and m. Words become callback keys of the clip. With --text, the words are found in a recording (8 to 32 bits or floats, any rate, up to ten minutes; Debian: libsndfile1) by aligning it with several voices of eSpeak NG, in any of its languages; a warning says if the words do not seem to match. A recording without words goes through the same ear as a microphone: fewer shapes are right, but any language works.",
+        "eSpeak NG speaks a text (Debian: libespeak-ng1, espeak-ng-data), and phones are exact to the sample. [[h@l'oU]] in a text is phones in its own spelling. To edit phones, write the lines that --labels reads from the phones of --json. Mouth shapes blend as they do in speech, and the lips meet for every p, b and m. Words become callback keys of the clip. Pitch and loudness tell a live face (--face on) when to raise its brows and to nod, and pauses when to blink and to look aside. With --text, the words are found in a recording (8 to 32 bits or floats, any rate, up to ten minutes; Debian: libsndfile1) by aligning it with several voices of eSpeak NG, in any of its languages; a warning says if the words do not seem to match. A recording without words goes through the same ear as a microphone: fewer shapes are right, but any language works.",
     .example =
         "\"Hello, my name is Noh.\" --face face.noh -o line.noh --wav line.wav\n\"Guten Morgen\" --lang de --json\n"
         "line.wav --text \"Hello.\" --face face.noh -o line.noh\nline.wav --face face.noh -o line.noh",

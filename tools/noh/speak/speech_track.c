@@ -10,7 +10,8 @@
 #include "convert/pack/pack_write.h"
 
 #define FRAMES_PER_SECOND 60u
-#define REST_S 0.3 /* of silence behind the last phone: the mouth shuts */
+#define QUIET 0.75f /* how far vowels of a quiet voice move the mouth, as a share of a loud voice */
+#define REST_S 0.3  /* of silence behind the last phone: the mouth shuts */
 
 static const struct {
     const char *name;
@@ -229,17 +230,24 @@ static void visemes_of(const speech_track *t, uint32_t frame, float *visemes)
     }
 }
 
-static void fill_frame(const speech_track *t, const face_node *n, uint32_t frame, float *weights)
+static int64_t tick_of_frame(uint32_t frame)
+{
+    return (int64_t)frame * (NOH_TICKS_PER_SECOND / FRAMES_PER_SECOND);
+}
+
+static void fill_frame(const speech_track *t, const prosody *voice, const face_node *n, uint32_t frame, float *weights)
 {
     float visemes[NOH_VISEME_COUNT], channels[NOH_CHANNEL_COUNT];
+    const float size = QUIET + (1.0f - QUIET) * prosody_at(voice, tick_of_frame(frame)).loud;
     visemes_of(t, frame, visemes);
+    for (uint32_t v = NOH_VISEME_AA; v <= NOH_VISEME_OU; v++) visemes[v] *= size;
     noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, channels);
     memcpy(weights, n->mesh.weights, n->mesh.header->target_count * sizeof *weights);
     noh_face_apply(n->links, n->link_count, channels, weights);
 }
 
-static int fill_floats(const speech_track *t, const noh_pack *pack, const face_node *n, uint32_t frames,
-                       raw_floats *out)
+static int fill_floats(const speech_track *t, const prosody *voice, const noh_pack *pack, const face_node *n,
+                       uint32_t frames, raw_floats *out)
 {
     const uint32_t targets = n->mesh.header->target_count;
     const char *name = n->node == NOH_NONE ? n->mesh.name : noh_pack_string(pack, pack->nodes[n->node].name);
@@ -249,7 +257,7 @@ static int fill_floats(const speech_track *t, const noh_pack *pack, const face_n
     out->radius = calloc(targets + 1u, sizeof *out->radius);
     if (!out->name || !out->radius) return 1;
     for (uint32_t i = 0; i < targets; i++) out->radius[i] = 100.0f * n->mesh.targets[i].radius; /* centimetres */
-    for (uint32_t f = 0; f < frames; f++) fill_frame(t, n, f, out->values + (size_t)f * targets);
+    for (uint32_t f = 0; f < frames; f++) fill_frame(t, voice, n, f, out->values + (size_t)f * targets);
     return 0;
 }
 
@@ -296,24 +304,43 @@ static int add_float(const speech_track *t, const char *name, int shut_alone, ra
     return !out->name;
 }
 
+/* Named floats with the fields of noh_face_speech. */
+static int add_voice(const prosody *voice, raw_clip *clip)
+{
+    static const char *const names[] = { "speech-brows", "speech-nod", "speech-blink", "speech-away" };
+    for (uint32_t i = 0; i < 4u; i++) {
+        raw_floats *out = &clip->floats[clip->float_count++];
+        if (raw_floats_alloc(out, clip->frame_count, 1)) return 1;
+        out->name = model_string(names[i]);
+        out->node = MODEL_NONE;
+        for (uint32_t f = 0; f < clip->frame_count; f++) {
+            const noh_face_speech asked = prosody_at(voice, tick_of_frame(f)).face;
+            const float fields[4] = { asked.brows, asked.nod, asked.blink, asked.away };
+            out->values[f] = fields[i];
+        }
+        if (!out->name) return 1;
+    }
+    return 0;
+}
+
 /* The clip's floats: the weights of every node with mouth shapes. Returns 1 when out of memory. */
-static int add_faces(const speech_track *t, const noh_pack *pack, raw_clip *clip)
+static int add_faces(const speech_track *t, const prosody *voice, const noh_pack *pack, raw_clip *clip)
 {
     const uint32_t count = pack->node_count ? pack->node_count : pack->runs[NOH_CHUNK_MESH].count;
     int failed = 0;
-    clip->floats = calloc(count + 2u, sizeof *clip->floats);
+    clip->floats = calloc(count + 6u, sizeof *clip->floats);
     failed = !clip->floats;
     for (uint32_t i = 0; i < count && !failed; i++) {
         face_node n;
         if (!drawn_mesh(pack, i, &n)) continue;
         failed = bind(pack, &n);
         if (!failed && n.link_count) {
-            failed = fill_floats(t, pack, &n, clip->frame_count, &clip->floats[clip->float_count++]);
+            failed = fill_floats(t, voice, pack, &n, clip->frame_count, &clip->floats[clip->float_count++]);
         }
         free(n.links);
     }
     if (!failed && clip->float_count) {
-        failed = add_float(t, "speech", 0, clip) || add_float(t, "lips-shut", 1, clip);
+        failed = add_float(t, "speech", 0, clip) || add_float(t, "lips-shut", 1, clip) || add_voice(voice, clip);
     }
     return failed;
 }
@@ -335,8 +362,8 @@ static int encode(raw_set *set, const char *path, byte_buffer *out)
     return failed ? tool_fail(path, "%s", error.what) : 0;
 }
 
-int speech_track_pack(const speech_track *t, const synthesis *said, const char *text, const pack_file *face,
-                      const char *name, byte_buffer *out)
+int speech_track_pack(const speech_track *t, const prosody *voice, const synthesis *said, const char *text,
+                      const pack_file *face, const char *name, byte_buffer *out)
 {
     raw_set *set = raw_set_new(0, 1);
     raw_clip *clip = set ? set->clips : NULL;
@@ -347,7 +374,7 @@ int speech_track_pack(const speech_track *t, const synthesis *said, const char *
         clip->name = model_string(name);
         clip->sample_rate_hz = FRAMES_PER_SECOND;
         clip->frame_count = frames;
-        if (!clip->name || raw_clip_alloc(clip, frames, 0) || add_faces(t, &face->pack, clip) ||
+        if (!clip->name || raw_clip_alloc(clip, frames, 0) || add_faces(t, voice, &face->pack, clip) ||
             add_words(said, text, clip)) {
             status = tool_fail(face->path, "out of memory");
         } else if (!clip->float_count) {

@@ -4,6 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "file/pack_file.h"
+#include "prosody.h"
 #include "synthesis.h"
 #include "noh/face.h"
 
@@ -29,10 +30,10 @@ int speech_track_make(const synthesis *said, speech_track *out);
 int speech_track_frames(speech_track *t, double seconds);
 void speech_track_free(speech_track *t);
 
-/* A pack with one clip of weights, at 60 frames a second, for every node of `face` with mouth shapes, and callback keys
- * where words begin. text: what was said, whose words name the keys */
-int speech_track_pack(const speech_track *t, const synthesis *said, const char *text, const pack_file *face,
-                      const char *name, byte_buffer *out);
+/* A pack with one clip of weights, at 60 frames a second, for every node of `face` with mouth shapes, callback keys
+ * where words begin, and floats that a live face takes (modules.h). text: what was said, whose words name the keys */
+int speech_track_pack(const speech_track *t, const prosody *voice, const synthesis *said, const char *text,
+                      const pack_file *face, const char *name, byte_buffer *out);
 
 /* The shape of the sound that is made at a tick, without those before and behind it. */
 uint32_t speech_track_viseme(const speech_track *t, int64_t tick);
