@@ -417,16 +417,20 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
  *
  * A face moves morph targets by recipes (face.h), and joints of head, neck, chest and eyes by name, as far as the kind
  * has them. A head without joints turns, breathes and drifts as a whole, about the base of its skull, which is found by
- * its eyes: spheres, rays, hair and what noh_actor_mesh_at returns follow. A face changes the pose after clips and before the game's modifiers; held floats override it. The named floats
- * "speech" and "lips-shut" of a speech clip (noh speak) give the share of the mouth that speech uses: emotions leave half
- * of it alone, and lips that close entirely. "speech-brows", "speech-nod", "speech-blink" and "speech-away" are the
- * fields of noh_face_speech (face.h). Where clips or held floats shut the lids, faces do not blink as well.
+ * its eyes: spheres, rays, hair and what noh_actor_mesh_at returns follow. A face changes the pose after clips and
+ * before the game's modifiers; held floats override it.
  *
- * Memory: 352 bytes for each actor (NOH_ACTOR_FACE_BYTES), part of the stage's state: saved, restored, forked and
+ * Speech comes from clips (noh speak) and from noh_actor_set_visemes. The clip's named floats "speech" and "lips-shut"
+ * give the share of the mouth that speech uses: emotions leave half of it alone, and lips that close entirely.
+ * "speech-brows", "speech-nod", "speech-blink" and "speech-away" are the fields of noh_face_speech (face.h). Live mouth
+ * shapes move brows, head, lids and gaze, too: by how far they open, and by pauses. Where clips shut the lids, a face
+ * does not blink as well.
+ *
+ * Memory: 368 bytes for each actor (NOH_ACTOR_FACE_BYTES), part of the stage's state: saved, restored, forked and
  * hashed. A face out of view pauses until it is visible again.
  * errors  of all: NOT_FOUND the actor is gone; ARG its kind has no face, or a value is out of range */
 
-#define NOH_ACTOR_FACE_BYTES 352u
+#define NOH_ACTOR_FACE_BYTES 368u
 
 /* Zero is a good value for all fields if the kind has eye joints. Strings and recipes are read at init. */
 typedef struct noh_kind_face {

@@ -20,6 +20,12 @@
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
 #define NECK_SHARE 0.4f
+/* Of live shapes */
+#define OPEN_S 0.12f
+#define MEAN_S 1.5f
+#define STRESS 2.5f
+#define PAUSE_S 0.18f
+
 #define LIDS_SHUT 0.6f   /* by a clip: counts as a blink */
 #define CHEST_RAD 0.012f /* of a breath */
 #define REACH_MAX 1e5f   /* model units: what is further off is looked at as if it were there */
@@ -236,11 +242,39 @@ static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifie
     shut_lids(shared, f, channels, w->floats);
 }
 
-/* What the floats of speech clips ask. */
+static float larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+/* What live shapes ask: a mouth that opens farther than lately stresses, a pause blinks, a long one looks aside. */
+static void hear(noh_stage_face *f, uint32_t ticks, noh_face_speech *asked)
+{
+    const float *v = f->visemes, seconds = (float)ticks / (float)NOH_TICKS_PER_SECOND;
+    const float open = v[NOH_VISEME_AA] + 0.7f * v[NOH_VISEME_OH] + 0.6f * v[NOH_VISEME_E] + 0.3f * v[NOH_VISEME_IH];
+    float over;
+    if (!f->says) {
+        f->open = f->mean = f->quiet = f->said = 0.0f;
+        return;
+    }
+    f->open += (open - f->open) * (seconds < OPEN_S ? seconds / OPEN_S : 1.0f);
+    f->mean += (open - f->mean) * (seconds < MEAN_S ? seconds / MEAN_S : 1.0f);
+    f->quiet = v[NOH_VISEME_SIL] > 0.8f ? f->quiet + seconds : 0.0f;
+    if (open > 0.1f) f->said = 1.0f;
+    over = STRESS * (f->open - f->mean);
+    over = over < 0.0f ? 0.0f : over > 1.0f ? 1.0f : over;
+    asked->brows = larger(asked->brows, over);
+    asked->nod = larger(asked->nod, over);
+    if (f->said > 0.0f && f->quiet > PAUSE_S) asked->blink = 1.0f;
+    if (f->said > 0.0f && f->quiet > 2.0f * PAUSE_S && f->quiet < 6.0f * PAUSE_S) asked->away = 1.0f;
+}
+
+/* What the floats of speech clips ask, and live shapes. */
 static void speak(const noh_stage_face_kind *k, noh_stage_face *f, const noh_modifier_work *w)
 {
-    const noh_face_speech asked = { float_of(w, k->speaks[0]), float_of(w, k->speaks[1]), float_of(w, k->speaks[2]),
-                                    float_of(w, k->speaks[3]) };
+    noh_face_speech asked = { float_of(w, k->speaks[0]), float_of(w, k->speaks[1]), float_of(w, k->speaks[2]),
+                              float_of(w, k->speaks[3]) };
+    hear(f, w->ticks, &asked);
     (void)noh_face_speak(&f->face, &k->desc, &asked, NULL);
 }
 

@@ -24,8 +24,9 @@ typedef struct noh_stage_face {
     float point[3];
     uint32_t target; /* id of an actor */
     float visemes[NOH_VISEME_COUNT];
-    uint8_t looks, says, begun; /* noh_stage_looks */
-    uint8_t fresh;              /* 1: what it looks at is new: reached by a saccade */
+    float open, mean, quiet, said; /* of live shapes: how far they open, now and lately; seconds of silence; 1: begun */
+    uint8_t looks, says, begun;    /* noh_stage_looks */
+    uint8_t fresh;                 /* 1: what it looks at is new: reached by a saccade */
     uint16_t
         shut[NOH_IDENTITY_CLOSINGS]; /* of noh_stage_face_kind.lids: 1 + (weight at which it is shut) * 16,384; 0: 1 */
 } noh_stage_face;

@@ -421,7 +421,7 @@ static int is_sound(const noh_face *f)
 static noh_result check(const noh_stage_kind *k, const void *state, noh_error *error)
 {
     const noh_stage_face *f = state;
-    float sum = f->point[0] + f->point[1] + f->point[2];
+    float sum = f->point[0] + f->point[1] + f->point[2] + f->open + f->mean + f->quiet + f->said;
     (void)k;
     for (int i = 0; i < NOH_VISEME_COUNT; i++) sum += f->visemes[i];
     return !noh_is_finite(sum) || f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||

@@ -203,6 +203,41 @@ static void a_clip_that_speaks_moves_the_face(void **state)
     close_heads(&c);
 }
 
+/* Live shapes: vowels nod the head and raise the brows, a pause blinks once; without shapes nothing is left. */
+static void live_speech_moves_the_face(void **state)
+{
+    noh_kind_face face = { .flags = NOH_FACE_CALM };
+    float world[12], most = 0.0f, down = 0.0f, before = 0.0f;
+    uint32_t brow, blinks = 0;
+    noh_face_pose pose;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_heads(&c, &face, 1);
+    actor = enter(&c, 0, NULL);
+    brow = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "browOuterUpLeft");
+    for (uint32_t f = 0; f < 240; f++) {
+        float shapes[NOH_VISEME_COUNT] = { 0.0f };
+        shapes[f < 180 && f % 40u < 12u ? NOH_VISEME_AA : f < 180 ? NOH_VISEME_DD : NOH_VISEME_SIL] = 1.0f;
+        assert_int_equal(noh_actor_set_visemes(c.stage, actor, shapes, NULL), NOH_OK);
+        run(&c, 1);
+        world_of(&c, actor, world);
+        assert_int_equal(noh_actor_face(c.stage, actor, &pose, NULL), NOH_OK);
+        most = fmaxf(most, noh_actor_floats(c.stage, actor)[brow]);
+        down = fmaxf(down, asinf(-world[6]) / DEGREE);
+        blinks += pose.blink > 0.0f && !(before > 0.0f);
+        before = pose.blink;
+        assert_true(f < 180 || f > 190 || blinks == 0);
+    }
+    print_message("brows up by %.2f, nods of %.1f degrees, %u blinks\n", (double)most, (double)down, blinks);
+    assert_true(most > 0.2f && down > 1.5f && (blinks == 1 || blinks == 2)); /* one may be a double blink */
+    assert_int_equal(noh_actor_set_visemes(c.stage, actor, NULL, NULL), NOH_OK);
+    run(&c, 60);
+    world_of(&c, actor, world);
+    assert_true(noh_actor_floats(c.stage, actor)[brow] == 0.0f && fabsf(world[6]) < 1e-6f);
+    close_heads(&c);
+}
+
 /* What an eye of the turned head misses the point by, in degrees, by its targets; *yaw: how far the head is turned. */
 static float miss(const cast *c, const noh_kind_face *face, noh_actor actor, const float point[3], int eye, float *yaw)
 {
@@ -400,6 +435,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_blink_is_posed_in_every_frame),
         cmocka_unit_test(lids_have_one_owner),
         cmocka_unit_test(a_clip_that_speaks_moves_the_face),
+        cmocka_unit_test(live_speech_moves_the_face),
         cmocka_unit_test(a_head_turns_to_what_it_looks_at),
         cmocka_unit_test(a_turned_head_is_within_its_spheres),
         cmocka_unit_test(a_ray_meets_a_turned_head),
