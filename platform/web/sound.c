@@ -18,19 +18,15 @@ static float shapes[NOH_VISEME_COUNT];
 
 /* ---- the ear ---- */
 
-/* Start a new ear. rate: Hz. */
-EMSCRIPTEN_KEEPALIVE int web_ear_open(uint32_t rate)
+/* Start a new ear. rate: Hz; latency_ms: 40 to 80. */
+EMSCRIPTEN_KEEPALIVE int web_ear_open(uint32_t rate, uint32_t latency_ms)
 {
-    return (int)noh_ear_init(&ear, rate, &web.error);
+    return (int)noh_ear_init(&ear, rate, latency_ms, &web.error);
 }
 /* Restart the sound; the ear keeps its adaptation to the speaker and the room. */
 EMSCRIPTEN_KEEPALIVE void web_ear_restart(void)
 {
     noh_ear_restart(&ear);
-}
-EMSCRIPTEN_KEEPALIVE uint32_t web_ear_latency(void) /* ms */
-{
-    return NOH_EAR_LATENCY_MS;
 }
 /* Where the page writes samples, -1..1, and how many per call. */
 EMSCRIPTEN_KEEPALIVE float *web_ear_samples(void)

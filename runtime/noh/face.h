@@ -397,20 +397,22 @@ void noh_amplitude_between(const noh_amplitude_frame *from, const noh_amplitude_
  *   noh_ear_restart  start the next line of the same speaker
  *
  * Windows of 25 ms every 10 ms become thirteen mel-frequency cepstral coefficients (Davis and Mermelstein, 1980), minus
- * their running mean, and loudness relative to recent loudness. A network with one hidden layer, trained on synthetic
- * speech, reads shapes from six of twelve such frames. Lips change after enough evidence, and close
- * immediately. All arithmetic is in integers: the same bits on every processor, whatever the size of the chunks.
+ * their running mean, and loudness relative to recent loudness. A time-delay network of 16 KB, trained on synthetic
+ * speech, reads the probabilities of shapes from fourteen such frames. Lips (closed, lip on teeth, rounded, open,
+ * narrow) follow the likeliest path (Viterbi, 1967). All arithmetic is in integers: the same bits on every processor,
+ * whatever the size of the chunks.
  *
- * A frame is ready NOH_EAR_LATENCY_MS after its middle: a program that plays the sound itself can delay it by the same
- * time.
+ * A frame is ready latency_ms after its middle: a program that plays the sound itself can delay it by the same time.
+ * More latency decides on lips with more of the sound known, and misses fewer closures.
  *
  * Threads: an ear belongs to one thread at a time. */
 
 enum {
     NOH_EAR_MIN_RATE = 8000, /* Hz */
     NOH_EAR_MAX_RATE = 48000,
-    NOH_EAR_FRAME_RATE = 100, /* Hz */
-    NOH_EAR_LATENCY_MS = 40,  /* sound needed after the middle of a frame */
+    NOH_EAR_FRAME_RATE = 100,    /* Hz */
+    NOH_EAR_LATENCY_MIN_MS = 40, /* sound needed after the middle of a frame */
+    NOH_EAR_LATENCY_MAX_MS = 80,
     NOH_EAR_BYTES = 2048
 };
 
@@ -423,12 +425,12 @@ typedef struct noh_ear_frame {
     uint32_t index;                  /* 0, 1, ...; its middle is at 10 * index + 12.5 ms */
     noh_viseme shape;                /* the visible shape */
     float visemes[NOH_VISEME_COUNT]; /* 0..1, sum 1: as from noh_speech_visemes */
-    float open, round, closed;       /* 0..1: the jaw from shape and loudness, lips forward, lips closed */
+    float open, round, closed;       /* 0..1: the jaw from all shapes and loudness, lips forward, lips closed */
 } noh_ear_frame;
 
-/* Start.
- * errors  ARG a sample rate outside NOH_EAR_MIN_RATE..NOH_EAR_MAX_RATE */
-noh_result noh_ear_init(noh_ear *ear, uint32_t sample_rate, noh_error *error);
+/* Start. latency_ms: NOH_EAR_LATENCY_MIN_MS..NOH_EAR_LATENCY_MAX_MS, in steps of 10 (rounded down).
+ * errors  ARG a sample rate outside NOH_EAR_MIN_RATE..NOH_EAR_MAX_RATE, or a latency outside its range */
+noh_result noh_ear_init(noh_ear *ear, uint32_t sample_rate, uint32_t latency_ms, noh_error *error);
 
 /* Start a new sound with frame 0. Keeps the adaptation to speaker and room. */
 void noh_ear_restart(noh_ear *ear);

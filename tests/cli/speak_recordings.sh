@@ -162,6 +162,17 @@ done
 noh speak "$work/said.wav" --live --json
 cp "$work/out" "$work/heard.json"
 check 'live: 40 ms late, and it says so' python3 "$work/heard.py" "$work/heard.json" ear 40 spoken
+noh speak "$work/said.wav" --live --latency 80 --json
+cp "$work/out" "$work/heard.json"
+check 'or 80 ms' python3 "$work/heard.py" "$work/heard.json" ear 80 spoken
+for late in 39 81; do
+    noh speak "$work/said.wav" --live --latency $late
+    expect 2 "$late ms is refused"
+    says 'must be 40 to 80 ms'
+done
+noh speak "$work/said.wav" --latency 80
+expect 2 'a latency is of live sound'
+says '--live'
 noh speak "$work/said.wav" --amplitude --json
 cp "$work/out" "$work/heard.json"
 check 'by loudness alone' python3 "$work/heard.py" "$work/heard.json" amplitude 0 spoken

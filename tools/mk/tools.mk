@@ -109,11 +109,14 @@ $(BUILD)/clip_tables: $(BUILD)/tools/clip_tables/main.o $(CONVERT_O) $(PLATFORM_
 	$(Q)$(CXX) $(ALL_LDFLAGS) $^ -o $@ $(TOOL_LIBS)
 
 # Makes runtime/life/face/ear_tables.c out of synthetic speech, after a change of the ear only: `make ear-tables` (ten
-# minutes; `tools/deps.sh ear` installs the synthesisers).
+# minutes; `tools/deps.sh ear` installs the synthesisers). To see how a synthesiser is read that was not heard, run
+# build/train_ear with its name as the third argument.
 TRAIN_EAR_O := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tools/train_ear/*.c)))
 $(BUILD)/train_ear: $(TRAIN_EAR_O) $(patsubst %,$(BUILD)/runtime/life/face/%.o,ear_cepstra ear_net phones)
 	$(call say,CC,$@)
 	$(Q)$(CC) $(ALL_LDFLAGS) $^ -o $@ -lespeak-ng -lm
+
+$(BUILD)/tools/train_ear/learn.o: OPT := -O3 -march=native
 
 ear-tables: $(BUILD)/train_ear
 	$(Q)cd $(BUILD) && ./train_ear $(CURDIR)/tools/train_ear/sentences.txt $(CURDIR)/tools/train_ear/phones.txt \

@@ -1,10 +1,10 @@
 /* main.c: teaches the ear out of synthetic speech, and writes ear_tables.c.
  *
- *   train_ear SENTENCES.txt PHONES.txt >ear_tables.c
+ *   train_ear SENTENCES.txt PHONES.txt [espeak|flite|festival] >ear_tables.c
  *
  * Every sentence is heard as it was said, and four times more as bad rooms and microphones have it, always the same. No
  * recording of a person's speech is used: those are there to judge what has been learnt. Four speakers are kept back,
- * and how well they are read is printed. */
+ * and how well they are read is printed; or a whole synthesiser, with its name as the last argument. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,7 +21,7 @@ static ear_tables tables;
 static int16_t cepstra[MAX_FRAMES][EAR_CEPSTRA], loudness[MAX_FRAMES];
 static int8_t features[MAX_FRAMES][N];
 static signed char shapes[MAX_FRAMES];
-static int first_frame[MAX_UTTERANCES + 1], voices[MAX_UTTERANCES], utterances;
+static int first_frame[MAX_UTTERANCES + 1], voices[MAX_UTTERANCES], spans[MAX_UTTERANCES][2], utterances;
 
 /* ---- the numbers that are mathematics ---- */
 
@@ -126,38 +126,70 @@ static void learn_scale(void)
     for (int u = 0; u < utterances; u++) measure(u, NULL, NULL);
 }
 
-static int is_kept_back(int voice)
+static void learn_prior(void)
 {
+    double count[V] = { 0 }, all = 0;
+    for (int f = 0; f < first_frame[utterances]; f++) {
+        if (shapes[f] < 0) continue;
+        count[(int)shapes[f]]++;
+        all++;
+    }
+    for (int v = 0; v < V; v++) tables.prior[v] = (int16_t)lrint(256 * log2(all / count[v]));
+}
+
+static int is_kept_back(int voice, const char *synthesiser)
+{
+    const char *of = voice < VOICE_FLITE ? "espeak" : voice < VOICE_FESTIVAL ? "flite" : "festival";
+    if (synthesiser) return !strcmp(synthesiser, of);
     for (size_t i = 0; i < sizeof kept_back / sizeof kept_back[0]; i++) {
         if (kept_back[i] == voice) return 1;
     }
     return 0;
 }
 
-/* The frames to learn from, or those of the speakers that are kept back. */
-static int choose_frames(int kept, int *middles)
+/* The utterances to learn from, or those that are kept back. */
+static int choose_spans(int kept, const char *synthesiser)
 {
     int count = 0;
     for (int u = 0; u < utterances; u++) {
-        if (is_kept_back(voices[u]) != kept) continue;
-        for (int f = first_frame[u] + EAR_BEFORE; f < first_frame[u + 1] - EAR_AFTER; f++) {
-            if (shapes[f] >= 0) middles[count++] = f;
-        }
+        if (is_kept_back(voices[u], synthesiser) != kept) continue;
+        spans[count][0] = first_frame[u];
+        spans[count++][1] = first_frame[u + 1];
     }
     return count;
 }
 
-static void judge(const int *middles, int count)
+static int likeliest(int8_t (*past)[EAR_FIRST], int frame)
 {
-    int right = 0;
+    int32_t weights[V];
+    int best = 0;
+    memmove(past, past + 1, EAR_BEFORE * sizeof *past);
+    noh_ear_see(&tables, (const int8_t(*)[N])features[frame - EAR_AFTER], past[EAR_BEFORE]);
+    noh_ear_read(&tables, (const int8_t(*)[EAR_FIRST])past, weights);
+    for (int v = 1; v < V; v++) best = weights[v] > weights[best] ? v : best;
+    return best;
+}
+
+static int lips_of(int shape)
+{
+    static const char lips[V + 1] = "001444444433422";
+    return lips[shape];
+}
+
+static void judge(int count)
+{
+    static int8_t past[EAR_BEFORE + 1][EAR_FIRST];
+    double right = 0, lips = 0, all = 0;
     for (int i = 0; i < count; i++) {
-        int32_t weights[V];
-        int best = 0;
-        noh_ear_read(&tables, (const int8_t(*)[N])features[middles[i] - EAR_BEFORE], weights);
-        for (int v = 1; v < V; v++) best = weights[v] > weights[best] ? v : best;
-        right += best == shapes[middles[i]];
+        for (int f = spans[i][0] + EAR_AFTER; f < spans[i][1] - EAR_AFTER; f++) {
+            const int best = likeliest(past, f), is = shapes[f];
+            if (is < 0 || f < spans[i][0] + EAR_BEFORE + EAR_AFTER) continue;
+            right += best == is;
+            lips += lips_of(best) == lips_of(is);
+            all++;
+        }
     }
-    fprintf(stderr, "speakers that were kept back: %.3f of %d frames right\n", (double)right / count, count);
+    fprintf(stderr, "kept back: %.3f of shapes, %.3f of lips right in %.0f frames\n", right / all, lips / all, all);
 }
 
 /* ---- what is written ---- */
@@ -200,29 +232,32 @@ static void write_tables(uint64_t hash)
     put("share", tables.share, EAR_FFT / 2 + 1, 1);
     put("mean", tables.mean, EAR_CEPSTRA, 2);
     put("scale", tables.scale, N, -2);
-    put_rows("hidden", tables.hidden[0], EAR_HIDDEN, EAR_INPUTS);
-    put("hidden_bias", tables.hidden_bias, EAR_HIDDEN, 4);
-    put_rows("output", tables.output[0], V, EAR_HIDDEN);
+    put_rows("first", tables.first[0], EAR_FIRST, EAR_INPUTS);
+    put("first_bias", tables.first_bias, EAR_FIRST, 4);
+    put("first_scale", tables.first_scale, EAR_FIRST, 4);
+    put_rows("second", tables.second[0], EAR_SECOND, EAR_TAPS * EAR_FIRST);
+    put("second_bias", tables.second_bias, EAR_SECOND, 4);
+    put_rows("output", tables.output[0], V, EAR_SECOND);
     put("output_bias", tables.output_bias, V, 4);
+    put("prior", tables.prior, V, 2);
     printf("    .unit = %ld,\n};\n", (long)tables.unit);
 }
 
 int main(int argc, char **argv)
 {
+    const char *synthesiser = argc == 4 ? argv[3] : NULL;
     uint64_t hash = 14695981039346656037u;
-    int *middles = malloc(MAX_FRAMES * sizeof *middles);
     lesson l;
-    if (argc != 3) voices_die("SENTENCES.txt PHONES.txt >ear_tables.c", "usage");
-    if (!middles) voices_die("out of memory", "frames");
+    if (argc != 3 && argc != 4) voices_die("SENTENCES.txt PHONES.txt [espeak|flite|festival] >ear_tables.c", "usage");
     make_tables();
     voices_say(argv[1], argv[2], hear_often, &hash);
     fprintf(stderr, "%d sentences, %d frames\n", utterances, first_frame[utterances]);
     learn_mean();
     learn_scale();
-    l = (lesson){ (const int8_t(*)[N])features, shapes, middles, choose_frames(0, middles) };
+    learn_prior();
+    l = (lesson){ (const int8_t(*)[N])features, shapes, (const int(*)[2])spans, choose_spans(0, synthesiser) };
     learn(&l, ROUNDS, &tables);
-    judge(middles, choose_frames(1, middles));
+    judge(choose_spans(1, synthesiser));
     write_tables(hash);
-    free(middles);
     return 0;
 }

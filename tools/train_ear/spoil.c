@@ -5,12 +5,13 @@
 
 #include "life/face/ear_internal.h"
 
-enum { ROOM = 2 * VOICE_SAMPLES_MAX, ECHOES = 50, ZEROS = 12 };
+enum { ROOM = 2 * VOICE_SAMPLES_MAX, CROWD = 120 * EAR_RATE, ECHOES = 50, ZEROS = 12 };
 
 #define PI 3.14159265358979323846
 
-static float sound[ROOM], wet[ROOM];
+static float sound[ROOM], wet[ROOM], crowd[CROWD];
 static int16_t heard[ROOM];
+static int joined; /* where the next of the crowd goes */
 
 static double decibels(double low, double high)
 {
@@ -52,10 +53,10 @@ static void tilt(int count)
     }
 }
 
-/* A few dozen echoes that fade: by 60 dB in 0.1 to 0.5 s. */
+/* A few dozen echoes that fade: by 60 dB in 0.08 to 0.7 s. */
 static void reverberate(int count)
 {
-    const double fade = voices_random(.1, .5), level = decibels(-16, -4);
+    const double fade = voices_random(.08, .7), level = decibels(-14, 2);
     double energy = 0, gain[ECHOES];
     int delay[ECHOES];
     for (int k = 0; k < ECHOES; k++) {
@@ -107,28 +108,77 @@ static void cut_high(int count)
     }
 }
 
-static void add_noise(int count, int hard)
+/* Other people, of what was said before; their times and levels are drawn. */
+static void add_crowd(int count)
 {
-    const double gain = decibels(-24, 0), colour = hard ? voices_random(0, .95) : 0;
-    double energy = 0, level, noise = 0;
-    for (int i = 0; i < count; i++) energy += (double)sound[i] * sound[i] / count;
-    level = sqrt(energy) * gain * (hard ? decibels(-45, -10) : decibels(-70, -40)) + .3;
+    for (int k = (int)voices_random(2, 6); k > 0; k--) {
+        const double gain = voices_random(.3, 1);
+        int from = (int)voices_random(0, CROWD);
+        for (int i = 0; i < count; i++, from = (from + 1) % CROWD) wet[i] += (float)(gain * crowd[from]);
+    }
+}
+
+static void add_hum(int count)
+{
+    const double w = 2 * PI * (voices_random(0, 1) < .5 ? 50 : 60) / EAR_RATE;
+    for (int k = 1; k <= 8; k++) {
+        const double gain = voices_random(0, 1) / k;
+        for (int i = 0; i < count; i++) wet[i] += (float)(gain * sin(w * k * i));
+    }
+}
+
+/* Hiss of some colour; it may come and go, or have a crowd or a hum in it. */
+static void make_noise(int count, int hard)
+{
+    const double colour = hard ? voices_random(0, .99) : 0, kind = hard ? voices_random(0, 1) : 0;
+    double noise = 0, level = 1;
+    memset(wet, 0, sizeof *wet * (size_t)count);
+    if (kind > .65 && kind < .85) add_crowd(count);
+    if (kind > .85 && kind < .92) add_hum(count);
     for (int i = 0; i < count; i++) {
         const double white = voices_random(-1, 1) + voices_random(-1, 1) + voices_random(-1, 1);
         noise = colour * noise + sqrt(1 - colour * colour) * white;
-        heard[i] = (int16_t)fmax(-32768, fmin(32767, rint(gain * sound[i] + level * noise)));
+        if (kind > .92 && i % 1600 == 0) level = pow(4, voices_random(-1, 1));
+        wet[i] = (float)(wet[i] + (kind > .65 && kind < .92 ? .2 : level) * noise);
     }
+}
+
+static double loudness_of(const float *samples, int count)
+{
+    double energy = 0;
+    for (int i = 0; i < count; i++) energy += (double)samples[i] * samples[i] / count;
+    return sqrt(energy);
+}
+
+static void add_noise(int count, int hard)
+{
+    const double gain = hard ? decibels(-30, 6) : decibels(-24, 0),
+                 ratio = hard ? decibels(-40, 0) : decibels(-70, -40);
+    double level;
+    make_noise(count, hard);
+    level = loudness_of(sound, count) * ratio / (loudness_of(wet, count) + 1e-9);
+    for (int i = 0; i < count; i++) {
+        sound[i] += (float)(level * wet[i]);
+        heard[i] = (int16_t)fmax(-32768, fmin(32767, rint(gain * sound[i] + voices_random(-.5, .5))));
+    }
+}
+
+static void join_crowd(int count)
+{
+    const double gain = 1 / (loudness_of(sound, count) + 1);
+    for (int i = 0; i < count; i++, joined = (joined + 1) % CROWD) crowd[joined] = (float)(gain * sound[i]);
 }
 
 const int16_t *spoil(const utterance *said, double warp, int hard, int *count)
 {
     *count = resample(said, warp);
+    if (!hard) join_crowd(*count);
     if (hard) {
         tilt(*count);
         if (voices_random(0, 1) < .5) reverberate(*count);
         if (voices_random(0, 1) < .7) resonate(*count);
         if (voices_random(0, 1) < .4) cut_low(*count);
-        if (voices_random(0, 1) < .2) cut_high(*count);
+        if (voices_random(0, 1) < .3) cut_high(*count);
     }
     add_noise(*count, hard);
     return heard;

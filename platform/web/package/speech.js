@@ -5,11 +5,12 @@
 import { reach } from './reach.js';
 
 const earRates = [8000, 48000]; // Hz
+const liveLatency = 40, fileLatency = 80; // ms; more misses fewer closures
 const ticksPerMs = 48;
 export const shapeCount = 15;
 const silent = { open: 0, shapes: null };
 const voicesMs = 1000, startMs = 3000; // to wait for the browser's voices, and for a voice to begin
-const soundDelay = 0.05; // seconds from a media element to its sound: what the ear is late
+const soundDelay = 0.05; // seconds from a media element to its sound: the ear's latency and a picture
 const media = new WeakMap(); // nodes by media element, which can have only one
 
 const micErrors = {
@@ -178,10 +179,10 @@ export class Speech {
 
     // ---- the ear ----
 
-    openEar(rate) {
+    openEar(rate, latency) {
         if (rate < earRates[0] || rate > earRates[1]) throw new Error(`sound of ${rate} Hz: the ear takes ${earRates.join(' to ')}`);
         this.rate = rate;
-        this.program.check(this.program._web_ear_open(rate));
+        this.program.check(this.program._web_ear_open(rate, latency));
     }
 
     // Continue with another program of the character.
@@ -275,16 +276,16 @@ export class Speech {
     listenTo(node, source, from, stop) {
         const mine = () => this.speaker && this.speaker.node === node, rate = node.context.sampleRate;
         let frame = silent;
-        this.openEar(rate);
+        this.openEar(rate, liveLatency);
         node.port.onmessage = ({ data }) => { if (mine()) frame = this.hear(data).pop() || frame; };
         from.addEventListener('ended', () => {
             if (!mine()) return;
             this.end(true);
             if (source === 'microphone') this.tell('The microphone is gone.');
         }, { once: true });
-        this.speakBy(source, { stop, node, moved: () => this.openEar(rate), frame: () => frame });
+        this.speakBy(source, { stop, node, moved: () => this.openEar(rate, liveLatency), frame: () => frame });
         const { latency } = from.getSettings ? from.getSettings() : {}, device = latency ? `, ${Math.round(latency * 1000)} by the microphone` : '';
-        this.tell(`Listening. The mouth is ${this.program._web_ear_latency()} ms late by the ear, 10 by the page${device}, and a picture. Nothing is kept.`);
+        this.tell(`Listening. The mouth is ${liveLatency} ms late by the ear, 10 by the page${device}, and a picture. Nothing is kept.`);
     }
 
     // ---- sounds ----
@@ -305,7 +306,7 @@ export class Speech {
     // Frames of a whole sound. It is heard twice, so that the ear knows the voice from its beginning.
     framesOf(buffer) {
         const samples = mixed(buffer);
-        this.openEar(buffer.sampleRate);
+        this.openEar(buffer.sampleRate, fileLatency);
         this.hear(samples);
         this.program._web_ear_restart();
         return this.hear(samples);
@@ -333,18 +334,18 @@ export class Speech {
             },
         });
         this.now.frames = frames;
-        this.tell(frames ? `${name}, ${buffer.duration.toFixed(1)} s. The mouth is that of the live ear, without its ${this.program._web_ear_latency()} ms.` : `${name}, ${buffer.duration.toFixed(1)} s.`);
+        this.tell(frames ? `${name}, ${buffer.duration.toFixed(1)} s. The mouth is that of the live ear, without its latency.` : `${name}, ${buffer.duration.toFixed(1)} s.`);
     }
 
     // Samples as they come, each piece played after the one before.
     async playChunks(chunks, { rate = 24000, words }, mine) {
         const context = new AudioContext(), frames = [], left = [...words || []];
         let start = 0, seconds = 0, whole = false;
-        this.openEar(rate);
+        this.openEar(rate, liveLatency);
         const at = () => (start ? context.currentTime - (context.outputLatency || 0) - start : -1);
         this.caption(left.map(({ word }) => word).join(' '));
         this.speakBy('chunks', {
-            stop: () => context.close(), moved: () => this.openEar(rate),
+            stop: () => context.close(), moved: () => this.openEar(rate, liveLatency),
             frame: () => {
                 this.passWords(left, 1000 * at());
                 return whole && at() > seconds ? null : frames[Math.round((1000 * at() - 12.5) / 10)] || silent;

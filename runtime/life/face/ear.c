@@ -9,18 +9,27 @@
 enum {
     ONE = 32768,
     DECIBEL = 85, /* 1/256 octaves of power */
-    LIPS = 6,     /* closed for p, b, m; lip on teeth, rounded, open, narrow; at rest */
-    SHUT = 0,
-    REST = 5,
+    LIPS = 5,     /* closed, lip on teeth, rounded, open, narrow */
+    CLOSED = 0,
+    TEETH = 1,
     /* 1/256 octaves of probability that other lips must accumulate */
-    TO_SHUT = 800,
-    TO_REST = 3400,
-    TO_OTHER = 2200,
-    FROM_SHUT = 1300,  /* from closed or resting lips to others */
-    LEAST_LIKELY = 32, /* 1/32768: minimum weight of a frame */
-    OTHER_SHAPE = 200, /* halves: lead that another shape of the same lips needs */
-    SMOOTHED = 3       /* frames whose weights are averaged */
+    TO_CLOSED = 1365,
+    TO_TEETH = 2048,
+    TO_OTHER = 3072,
+    FROM_CLOSED = 1365,
+    LEAST_LIKELY = 128, /* 1/32768: minimum weight of a frame */
+    OTHER_SHAPE = 3,    /* halves: the lead that another shape of the same lips needs */
+    AROUND = 2,         /* frames on both sides whose weights are averaged, as far as they are known */
+    LAG_MAX = (NOH_EAR_LATENCY_MAX_MS - NOH_EAR_LATENCY_MIN_MS) / 10,
+    KEPT = AROUND + 1 + LAG_MAX
 };
+
+/* A frame that the network has read. */
+typedef struct ear_read {
+    uint16_t weights[NOH_VISEME_COUNT];
+    uint16_t level;     /* 1/32768 */
+    uint8_t from[LIPS]; /* the lips before these, on the likeliest path */
+} ear_read;
 
 typedef struct ear {
     uint32_t rate, phase; /* phase: of the sample being made, in 1/rate of it */
@@ -30,39 +39,44 @@ typedef struct ear {
     uint16_t skipped, filled, heard, ready;
     uint32_t frames;
     ear_voice voice;
-    int8_t seen[EAR_SEEN][EAR_FEATURES];
-    uint16_t weights[SMOOTHED][NOH_VISEME_COUNT];
+    int8_t seen[EAR_NEAR][EAR_FEATURES];
+    int8_t past[EAR_BEFORE + 1][EAR_FIRST];
     int32_t loud[EAR_AFTER + 1];
+    ear_read kept[KEPT]; /* the latest frame is last */
     /* 1/256 octave: of the likeliest path that ends with these lips; 0: the likeliest of all */
     int32_t cost[LIPS];
     int32_t shapes[NOH_VISEME_COUNT]; /* 1/32768: decaying sums */
-    uint8_t shape;
+    uint8_t shape, lag;
 } ear;
 
 typedef char ear_fits[sizeof(ear) <= NOH_EAR_BYTES ? 1 : -1];
 
 static const uint8_t opens[NOH_VISEME_COUNT] = { 0, 0, 10, 20, 20, 25, 15, 10, 20, 20, 100, 60, 30, 70, 25 };
 static const uint8_t rounds[NOH_VISEME_COUNT] = { 0, 0, 0, 0, 0, 0, 60, 0, 0, 40, 0, 0, 0, 80, 100 };
-static const uint8_t lips[NOH_VISEME_COUNT] = { REST, SHUT, 1, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
+static const uint8_t lips[NOH_VISEME_COUNT] = { CLOSED, CLOSED, TEETH, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
 
-static void begin(ear *e)
+static void begin(ear *e, uint32_t sample_rate, uint32_t lag)
 {
+    e->rate = sample_rate;
+    e->lag = (uint8_t)lag;
     e->shapes[NOH_VISEME_SIL] = ONE;
-    for (uint32_t i = 0; i < REST; i++) e->cost[i] = TO_OTHER;
-    for (uint32_t i = 0; i < SMOOTHED; i++) e->weights[i][NOH_VISEME_SIL] = ONE - 1;
+    for (uint32_t i = CLOSED + 1; i < LIPS; i++) e->cost[i] = TO_OTHER;
+    for (uint32_t i = 0; i < KEPT; i++) e->kept[i].weights[NOH_VISEME_SIL] = ONE - 1;
 }
 
-noh_result noh_ear_init(noh_ear *memory, uint32_t sample_rate, noh_error *error)
+noh_result noh_ear_init(noh_ear *memory, uint32_t sample_rate, uint32_t latency_ms, noh_error *error)
 {
     ear *e = (ear *)(void *)memory;
     NOH_ASSERT(memory);
     if (sample_rate < NOH_EAR_MIN_RATE || sample_rate > NOH_EAR_MAX_RATE) {
         return noh_fail(error, NOH_ERR_ARG, "sample_rate must be 8000 to 48000 Hz", sample_rate, NOH_EAR_MAX_RATE);
     }
+    if (latency_ms < NOH_EAR_LATENCY_MIN_MS || latency_ms > NOH_EAR_LATENCY_MAX_MS) {
+        return noh_fail(error, NOH_ERR_ARG, "latency_ms must be 40 to 80", latency_ms, NOH_EAR_LATENCY_MAX_MS);
+    }
     memset(memory, 0, sizeof *memory);
-    e->rate = sample_rate;
     noh_ear_voice_init(&noh_ear_tables, &e->voice);
-    begin(e);
+    begin(e, sample_rate, (latency_ms - NOH_EAR_LATENCY_MIN_MS) / 10u);
     return NOH_OK;
 }
 
@@ -70,14 +84,14 @@ void noh_ear_restart(noh_ear *memory)
 {
     ear *e = (ear *)(void *)memory;
     ear_voice voice;
-    uint32_t rate;
+    uint32_t rate, lag;
     NOH_ASSERT(memory);
     voice = e->voice;
     rate = e->rate;
+    lag = e->lag;
     memset(memory, 0, sizeof *memory);
     e->voice = voice;
-    e->rate = rate;
-    begin(e);
+    begin(e, rate, lag);
 }
 
 /* Position between the quietest and the loudest recent level: 1/32768. */
@@ -97,6 +111,60 @@ static void drop_first(void *bytes, size_t drop, size_t size)
     memcpy(bytes, rest, size - drop);
 }
 
+/* The network's weights; silence replaces what is too quiet to be speech, except p, b and m. */
+static void weigh(const ear *e, ear_read *read)
+{
+    const int32_t speech = read->level * 6 > ONE ? ONE : read->level * 6;
+    int32_t weights[NOH_VISEME_COUNT], rest = ONE - 1;
+    noh_ear_read(&noh_ear_tables, (const int8_t(*)[EAR_FIRST])e->past, weights);
+    for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
+        if (v != NOH_VISEME_PP) weights[v] = (int32_t)((int64_t)weights[v] * speech / ONE);
+        read->weights[v] = (uint16_t)weights[v];
+        rest -= weights[v];
+    }
+    read->weights[NOH_VISEME_SIL] = (uint16_t)rest;
+}
+
+static int32_t cost_of_change(uint32_t from, uint32_t to)
+{
+    if (from == to) return 0;
+    return to == CLOSED ? TO_CLOSED : to == TEETH ? TO_TEETH : from == CLOSED ? FROM_CLOSED : TO_OTHER;
+}
+
+/* The likeliest path through all frames so far to each of the lips (Viterbi, 1967). */
+static void follow(ear *e, ear_read *read)
+{
+    int32_t sum[LIPS] = { 0 }, cost[LIPS], least = INT32_MAX;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum[lips[v]] += read->weights[v];
+    for (uint32_t to = 0; to < LIPS; to++) {
+        cost[to] = INT32_MAX;
+        for (uint32_t from = 0; from < LIPS; from++) {
+            const int32_t path = e->cost[from] + cost_of_change(from, to);
+            if (path > cost[to] || (path == cost[to] && from != to)) continue;
+            cost[to] = path;
+            read->from[to] = (uint8_t)from;
+        }
+        cost[to] += 15 * 256 - noh_ear_log2((uint64_t)(sum[to] > LEAST_LIKELY ? sum[to] : LEAST_LIKELY));
+        least = cost[to] < least ? cost[to] : least;
+    }
+    for (uint32_t i = 0; i < LIPS; i++) e->cost[i] = cost[i] - least;
+}
+
+/* The newest frame whose surroundings are known. */
+static void read_frame(ear *e)
+{
+    ear_read *read = &e->kept[KEPT - 1];
+    drop_first(e->past, sizeof e->past[0], sizeof e->past);
+    noh_ear_see(&noh_ear_tables, (const int8_t(*)[EAR_FEATURES])e->seen, e->past[EAR_BEFORE]);
+    for (uint32_t f = 0; e->heard == EAR_AFTER && f < EAR_BEFORE; f++) {
+        memcpy(e->past[f], e->past[EAR_BEFORE], sizeof e->past[f]);
+    }
+    drop_first(e->kept, sizeof e->kept[0], sizeof e->kept);
+    read->level = (uint16_t)level(e, e->loud[0]);
+    weigh(e, read);
+    follow(e, read);
+}
+
 static void analyse(ear *e)
 {
     const ear_tables *t = &noh_ear_tables;
@@ -105,15 +173,16 @@ static void analyse(ear *e)
     noh_ear_measure(&e->voice, cepstra, loudness, features);
     drop_first(e->seen, sizeof e->seen[0], sizeof e->seen);
     drop_first(e->loud, sizeof e->loud[0], sizeof e->loud);
-    noh_ear_scale(t, features, e->seen[EAR_SEEN - 1]);
+    noh_ear_scale(t, features, e->seen[EAR_NEAR - 1]);
     /* before the first frame the sound is assumed to be like the first frame */
-    for (uint32_t f = 0; !e->heard && f < EAR_SEEN - 1; f++) memcpy(e->seen[f], e->seen[EAR_SEEN - 1], EAR_FEATURES);
+    for (uint32_t f = 0; !e->heard && f < EAR_NEAR - 1; f++) memcpy(e->seen[f], e->seen[EAR_NEAR - 1], EAR_FEATURES);
     e->loud[EAR_AFTER] = loudness;
     e->before = e->samples[EAR_HOP - 1];
     drop_first(e->samples, sizeof(int16_t) * EAR_HOP, sizeof e->samples);
     e->filled = EAR_WINDOW - EAR_HOP;
-    e->ready = ++e->heard > EAR_AFTER;
-    if (e->heard > EAR_AFTER) e->heard = EAR_AFTER + 1;
+    if (e->heard >= EAR_AFTER) read_frame(e);
+    e->ready = e->heard >= EAR_AFTER + e->lag;
+    e->heard = (uint16_t)(e->heard + !e->ready);
 }
 
 static void add_sample(ear *e, int64_t value)
@@ -161,81 +230,57 @@ size_t noh_ear_hear(noh_ear *memory, const int16_t *samples, size_t count)
     return taken;
 }
 
-/* The network's weights; silence replaces what is too quiet to be speech. */
-static void weigh(ear *e, int32_t loudness, int32_t *weights)
+/* The lips of the frame shown: on the path that is likeliest now. */
+static uint32_t look_back(const ear *e)
 {
-    const int32_t speech = loudness * 6 > ONE ? ONE : loudness * 6;
-    int32_t rest = ONE - 1;
-    noh_ear_read(&noh_ear_tables, (const int8_t(*)[EAR_FEATURES])e->seen, weights);
-    for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
-        weights[v] = (int32_t)((int64_t)weights[v] * speech / ONE);
-        rest -= weights[v];
-    }
-    weights[NOH_VISEME_SIL] = rest;
+    uint32_t at = 0;
+    for (uint32_t i = 1; i < LIPS; i++) at = e->cost[i] < e->cost[at] ? i : at;
+    for (uint32_t k = 0; k < e->lag; k++) at = e->kept[KEPT - 1 - k].from[at];
+    return at;
 }
 
-static int32_t least_of(const int32_t *cost)
+/* When lips change, their likeliest shape in the frames known; else another shape has to lead. */
+static void choose(ear *e)
 {
-    int32_t least = cost[0];
-    for (uint32_t i = 1; i < LIPS; i++) least = cost[i] < least ? cost[i] : least;
-    return least;
-}
-
-/* The lips at the end of the likeliest path through all frames so far (Viterbi, 1967); changing lips costs something,
- * and least to close. */
-static uint32_t follow(ear *e, const int32_t *weights)
-{
-    const int32_t least = least_of(e->cost), shut = e->cost[SHUT] < e->cost[REST] ? e->cost[SHUT] : e->cost[REST];
-    const int32_t opens_up = shut + FROM_SHUT, other = least + TO_OTHER < opens_up ? least + TO_OTHER : opens_up;
-    int32_t sum[LIPS] = { 0 };
-    uint32_t best = 0;
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) sum[lips[v]] += weights[v];
-    for (uint32_t i = 0; i < LIPS; i++) {
-        const int32_t change = i == SHUT ? least + TO_SHUT : i == REST ? least + TO_REST : other;
-        if (e->cost[i] > change) e->cost[i] = change;
-        e->cost[i] += 15 * 256 - noh_ear_log2((uint64_t)(sum[i] > LEAST_LIKELY ? sum[i] : LEAST_LIKELY));
-        if (e->cost[i] < e->cost[best]) best = i;
-    }
-    for (uint32_t i = 0, from = (uint32_t)e->cost[best]; i < LIPS; i++) e->cost[i] -= (int32_t)from;
-    return best;
-}
-
-/* Lips at rest are closed, too. */
-static int is_alike(uint32_t a, uint32_t b)
-{
-    return a == b || ((a == SHUT || a == REST) && (b == SHUT || b == REST));
-}
-
-/* When lips change, the likeliest shape of this frame; else another shape has to lead for a while. */
-static void choose(ear *e, const int32_t *weights)
-{
-    const uint32_t now = follow(e, weights);
-    const int same = is_alike(lips[e->shape], now);
-    uint32_t best = e->shape;
-    int32_t most = same ? e->shapes[e->shape] / 2 * OTHER_SHAPE : -1;
+    const uint32_t now = look_back(e);
+    const int same = lips[e->shape] == now;
+    int32_t most = -1;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
-        const int32_t weight = same ? e->shapes[v] : weights[v];
-        e->shapes[v] += weights[v] - e->shapes[v] / 5;
-        if (weight <= most || !(same ? is_alike(lips[v], now) : lips[v] == now)) continue;
-        most = weight;
-        best = v;
+        if (same) e->shapes[v] = e->shapes[v] / 8 * 7 + e->kept[KEPT - 1].weights[v];
+        if (!same) e->shapes[v] = 0;
+        for (uint32_t f = KEPT - 1u - e->lag; !same && f < KEPT; f++) e->shapes[v] += e->kept[f].weights[v];
     }
-    e->shape = (uint8_t)best;
+    if (same) most = e->shapes[e->shape] / 2 * OTHER_SHAPE;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
+        if (lips[v] != now || e->shapes[v] <= most) continue;
+        most = e->shapes[v];
+        e->shape = (uint8_t)v;
+    }
 }
 
-/* The mean of the last frames' weights. */
-static void smooth(ear *e, int32_t *weights)
+/* The mean weights around the frame shown. */
+static void smooth(const ear *e, int32_t *weights)
 {
+    const uint32_t at = KEPT - 1u - e->lag, end = at + (e->lag < AROUND ? e->lag : AROUND);
     int32_t rest = ONE;
-    drop_first(e->weights, sizeof e->weights[0], sizeof e->weights);
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) e->weights[SMOOTHED - 1][v] = (uint16_t)weights[v];
     for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
         weights[v] = 0;
-        for (uint32_t i = 0; i < SMOOTHED; i++) weights[v] += e->weights[i][v];
-        weights[v] /= SMOOTHED;
+        for (uint32_t f = at - AROUND; f <= end; f++) weights[v] += e->kept[f].weights[v];
+        weights[v] /= (int32_t)(end - at + AROUND + 1u);
         rest -= weights[v];
     }
     weights[NOH_VISEME_SIL] = rest;
+}
+
+/* The jaw as the shapes' mean has it, by loudness. Closed lips leave it little. */
+static float jaw(const ear *e, const int32_t *weights)
+{
+    const int32_t loudness = e->kept[KEPT - 1u - e->lag].level;
+    const int32_t quiet = loudness * 6, loud = ONE * 2 / 5 + loudness / 5 * 3;
+    int64_t open = 0;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) open += weights[v] * opens[v] / 100;
+    open = open * (quiet < loud ? quiet : loud) / ONE;
+    return (float)(int32_t)(lips[e->shape] == CLOSED ? open * 3 / 10 : open) * (1.0f / ONE);
 }
 
 /* The visible shape leads: others are reduced until it does. Closed lips exclude all others. */
@@ -256,35 +301,24 @@ static void lead(const ear *e, int32_t *weights)
     }
 }
 
-static void show(const ear *e, const int32_t *weights, int32_t loudness, noh_ear_frame *frame)
-{
-    const int32_t quiet = loudness * 6, loud = ONE * 2 / 5 + loudness / 5 * 3;
-    int64_t open = 0, round = 0, as_loud;
-    frame->shape = (noh_viseme)e->shape;
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
-        frame->visemes[v] = (float)weights[v] * (1.0f / ONE);
-        open += weights[v] * opens[v] / 100;
-        round += weights[v] * rounds[v] / 100;
-    }
-    as_loud = open * (quiet < loud ? quiet : loud) / ONE;
-    frame->open = (float)as_loud * (1.0f / ONE);
-    frame->round = (float)round * (1.0f / ONE);
-    frame->closed = frame->visemes[NOH_VISEME_PP];
-}
-
 int noh_ear_next(noh_ear *memory, noh_ear_frame *frame)
 {
     ear *e = (ear *)(void *)memory;
-    int32_t weights[NOH_VISEME_COUNT], loudness;
+    int32_t weights[NOH_VISEME_COUNT], round = 0;
     NOH_ASSERT(memory && frame);
     if (!e->ready) return 0;
     e->ready = 0;
-    loudness = level(e, e->loud[0]);
-    weigh(e, loudness, weights);
-    choose(e, weights);
+    choose(e);
     smooth(e, weights);
-    lead(e, weights);
-    show(e, weights, loudness, frame);
     frame->index = e->frames++;
+    frame->shape = (noh_viseme)e->shape;
+    frame->open = jaw(e, weights);
+    lead(e, weights);
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
+        frame->visemes[v] = (float)weights[v] * (1.0f / ONE);
+        round += weights[v] * rounds[v] / 100;
+    }
+    frame->round = (float)round * (1.0f / ONE);
+    frame->closed = frame->visemes[NOH_VISEME_PP];
     return 1;
 }

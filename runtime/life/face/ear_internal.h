@@ -13,12 +13,13 @@ enum {
     EAR_MELS = 24,
     EAR_CEPSTRA = 13,
     EAR_FEATURES = EAR_CEPSTRA + 2, /* and the loudness above the quietest and the loudest recent levels */
-    EAR_BEFORE = 9,                 /* frames that the network uses before its own, and after */
-    EAR_AFTER = 2,
-    EAR_SEEN = EAR_BEFORE + 1 + EAR_AFTER,
-    EAR_TAPS = 6, /* the number of these frames that it reads */
-    EAR_INPUTS = EAR_TAPS * EAR_FEATURES,
-    EAR_HIDDEN = 24
+    EAR_AFTER = 2,                  /* frames that the first layer reads on each side of its own */
+    EAR_NEAR = 2 * EAR_AFTER + 1,
+    EAR_INPUTS = EAR_NEAR * EAR_FEATURES,
+    EAR_FIRST = 64, /* outputs of the first layer */
+    EAR_BEFORE = 9, /* frames that the second layer uses before its own, and how many of all it reads */
+    EAR_TAPS = 4,
+    EAR_SECOND = 40
 };
 
 typedef struct ear_tables {
@@ -28,11 +29,15 @@ typedef struct ear_tables {
     uint8_t share[EAR_FFT / 2 + 1]; /* share of the upper one, 1/256 */
     int16_t mean[EAR_CEPSTRA];      /* of speech, 1/256 octave */
     uint16_t scale[EAR_FEATURES];   /* 1/4096: scales a standard deviation to 32 */
-    int8_t hidden[EAR_HIDDEN][EAR_INPUTS];
-    int32_t hidden_bias[EAR_HIDDEN];
-    int8_t output[NOH_VISEME_COUNT][EAR_HIDDEN];
+    int8_t first[EAR_FIRST][EAR_INPUTS];
+    int32_t first_bias[EAR_FIRST];
+    int32_t first_scale[EAR_FIRST]; /* 1/65536: scales the first layer's outputs to bytes */
+    int8_t second[EAR_SECOND][EAR_TAPS * EAR_FIRST];
+    int32_t second_bias[EAR_SECOND];
+    int8_t output[NOH_VISEME_COUNT][EAR_SECOND];
     int32_t output_bias[NOH_VISEME_COUNT];
-    int32_t unit; /* scale of the outputs: this many units are an octave of probability */
+    int16_t prior[NOH_VISEME_COUNT]; /* 1/256 octave: log2 of one over the share of a shape in the training's frames */
+    int32_t unit;                    /* scale of the outputs: this many units are an octave of probability */
 } ear_tables;
 
 extern const ear_tables noh_ear_tables;
@@ -56,9 +61,11 @@ void noh_ear_voice_init(const ear_tables *t, ear_voice *v);
 void noh_ear_measure(ear_voice *v, const int32_t *cepstra, int32_t loudness, int32_t *features);
 void noh_ear_scale(const ear_tables *t, const int32_t *features, int8_t *scaled);
 
-/* Get the index of the n-th frame that the network reads. */
+/* The first layer's outputs for the middle one of EAR_NEAR frames: first[EAR_FIRST]. */
+void noh_ear_see(const ear_tables *t, const int8_t (*near)[EAR_FEATURES], int8_t *first);
+/* Get the index of the n-th frame that the second layer reads. */
 uint32_t noh_ear_tap(uint32_t n);
-/* Compute the probabilities of shapes, 1/32768. */
-void noh_ear_read(const ear_tables *t, const int8_t (*seen)[EAR_FEATURES], int32_t *weights);
+/* Compute the probabilities of shapes, 1/32768, from the first layer's outputs for EAR_BEFORE + 1 frames. */
+void noh_ear_read(const ear_tables *t, const int8_t (*past)[EAR_FIRST], int32_t *weights);
 
 #endif

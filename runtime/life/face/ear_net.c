@@ -1,4 +1,6 @@
-/* ear_net.c: a network with one hidden layer, in integers, and its inputs. */
+/* ear_net.c: a network with two hidden layers, in integers, and its inputs. The second layer reads the first at several
+ * times, so that the first is computed once for each frame (Waibel et al., "Phoneme Recognition Using Time-Delay Neural
+ * Networks", 1989). */
 #include "life/face/ear_internal.h"
 #include "noh/face.h"
 
@@ -51,17 +53,25 @@ void noh_ear_scale(const ear_tables *t, const int32_t *features, int8_t *scaled)
     }
 }
 
-uint32_t noh_ear_tap(uint32_t n)
-{
-    static const uint8_t taps[EAR_TAPS] = { 0, 3, 6, 8, 9, 11 };
-    return taps[n];
-}
-
 static int32_t dot(const int8_t *a, const int8_t *b, uint32_t count)
 {
     int32_t sum = 0;
     for (uint32_t i = 0; i < count; i++) sum += a[i] * b[i];
     return sum;
+}
+
+void noh_ear_see(const ear_tables *t, const int8_t (*near)[EAR_FEATURES], int8_t *first)
+{
+    for (uint32_t h = 0; h < EAR_FIRST; h++) {
+        const int64_t value = t->first_bias[h] + dot(t->first[h], near[0], EAR_INPUTS);
+        first[h] = (int8_t)(value < 0 ? 0 : limit((int32_t)(value * t->first_scale[h] >> 16), 127));
+    }
+}
+
+uint32_t noh_ear_tap(uint32_t n)
+{
+    static const uint8_t taps[EAR_TAPS] = { 0, 3, 6, 9 };
+    return taps[n];
 }
 
 /* 2^-x, x in 1/32768: 1/32768, within 1/300 of it. */
@@ -73,19 +83,19 @@ static int32_t power_of_half(int64_t x)
     return whole > 15 ? 0 : (int32_t)((line - bend) >> whole);
 }
 
-void noh_ear_read(const ear_tables *t, const int8_t (*seen)[EAR_FEATURES], int32_t *weights)
+void noh_ear_read(const ear_tables *t, const int8_t (*past)[EAR_FIRST], int32_t *weights)
 {
-    int64_t hidden[EAR_HIDDEN], score[NOH_VISEME_COUNT], best = INT64_MIN, sum = 0;
-    for (uint32_t h = 0; h < EAR_HIDDEN; h++) {
-        int32_t value = t->hidden_bias[h];
+    int64_t second[EAR_SECOND], score[NOH_VISEME_COUNT], best = INT64_MIN, sum = 0;
+    for (uint32_t h = 0; h < EAR_SECOND; h++) {
+        int32_t value = t->second_bias[h];
         for (uint32_t n = 0; n < EAR_TAPS; n++) {
-            value += dot(t->hidden[h] + n * EAR_FEATURES, seen[noh_ear_tap(n)], EAR_FEATURES);
+            value += dot(t->second[h] + n * EAR_FIRST, past[noh_ear_tap(n)], EAR_FIRST);
         }
-        hidden[h] = value < 0 ? 0 : value;
+        second[h] = value < 0 ? 0 : value;
     }
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
         score[v] = t->output_bias[v];
-        for (uint32_t h = 0; h < EAR_HIDDEN; h++) score[v] += t->output[v][h] * hidden[h];
+        for (uint32_t h = 0; h < EAR_SECOND; h++) score[v] += t->output[v][h] * second[h];
         best = score[v] > best ? score[v] : best;
     }
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {

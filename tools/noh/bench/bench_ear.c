@@ -93,7 +93,7 @@ int bench_ear(bench_job *job)
         return status;
     }
     make_sound(b);
-    (void)noh_ear_init(&b->ear, RATE, NULL); /* a rate that it takes */
+    (void)noh_ear_init(&b->ear, RATE, NOH_EAR_LATENCY_MAX_MS, NULL); /* a rate that it takes */
     status = bench_weights_open(&b->weights, &job->mesh, job->mesh.header->target_count);
     if (!status) {
         status = open_path(b);

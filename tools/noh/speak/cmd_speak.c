@@ -113,6 +113,10 @@ static void json_labels(json *j, const label_score *l)
     json_integer(j, "phones", l->phones);
     json_integer(j, "onsets", l->onsets);
     json_number(j, "onset_median_s", l->onset_median_s);
+    json_integer(j, "vowels", l->vowels);
+    json_integer(j, "vowels_shut", l->vowels_shut);
+    json_integer(j, "lip_changes", l->lip_changes);
+    if (l->with_opening) json_number(j, "opening_correlation", l->opening_correlation);
     json_close(j, '}');
 }
 
@@ -168,6 +172,10 @@ static void print_text(const speak_args *a, const spoken *s)
                 "against %s: visemes %.3f, lips %.3f of %u frames; p, b, m %u of %u; onsets %.1f ms (median of %u)\n",
                 a->labels, part(l->visemes_right, l->frames), part(l->lips_right, l->frames), l->frames,
                 l->closures_found, l->closures, 1000.0 * l->onset_median_s, l->onsets);
+        fprintf(out, "vowels shut %.3f of %u frames; %.1f changes of lips a second", part(l->vowels_shut, l->vowels),
+                l->vowels, FRAME_RATE * part(l->lip_changes, l->frames));
+        if (l->with_opening) fprintf(out, "; correlation of the opening %.3f", l->opening_correlation);
+        fprintf(out, "\n");
     }
 }
 
@@ -219,6 +227,9 @@ static int take_text(const speak_args *a, spoken *s)
     const char *text = a->text ? a->text : a->subject;
     s->recorded = a->text || a->text_file;
     s->heard = !s->recorded && is_sound_file(a->subject);
+    if (a->how.latency_ms < NOH_EAR_LATENCY_MIN_MS || a->how.latency_ms > NOH_EAR_LATENCY_MAX_MS) {
+        return tool_usage("speak: --latency must be 40 to 80 ms");
+    }
     if ((a->how.live || a->how.amplitude) && !s->heard) {
         return tool_usage("speak: --live and --amplitude need a recording without words");
     }
@@ -287,7 +298,7 @@ static int align(const speak_args *a, spoken *s)
     s->said = aligned.said;
     s->score = aligned.score;
     warn(a, s);
-    if (a->labels) status = labels_score(a->labels, &s->said, &s->against);
+    if (a->labels) status = labels_score(a->labels, &s->said, NULL, &s->against);
     s->labelled = a->labels != NULL;
     return status;
 }
@@ -301,7 +312,7 @@ static int hear(const speak_args *a, spoken *s)
     if (!status) status = prosody_make(&recording, &s->voice);
     s->clipped = recording.clipped;
     sound_free(&recording);
-    if (!status && a->labels) status = labels_score(a->labels, &s->said, &s->against);
+    if (!status && a->labels) status = labels_score(a->labels, &s->said, &s->track, &s->against);
     s->labelled = a->labels != NULL;
     return status;
 }
@@ -391,6 +402,15 @@ static const option options[] = {
       .at = offsetof(speak_args, how.live),
       .what = "process a recording without words like a live microphone (JSON has the latency)",
       .excludes = "--text --text-file" },
+    { .name = "--latency",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(speak_args, how.latency_ms),
+      .value = "MS",
+      .initial = "40",
+      .what = "how late the ear may be, 40 to 80 ms: more misses fewer closures",
+      .example = "80",
+      .needs = "--live",
+      .excludes = "--amplitude" },
     { .name = "--amplitude",
       .kind = OPTION_FLAG,
       .at = offsetof(speak_args, how.amplitude),

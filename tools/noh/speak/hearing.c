@@ -18,7 +18,7 @@ typedef struct listening {
 
 double hearing_latency_ms(const hearing *how)
 {
-    return !how->live ? 0.0 : how->amplitude ? NOH_AMPLITUDE_LATENCY_MS : NOH_EAR_LATENCY_MS;
+    return !how->live ? 0.0 : how->amplitude ? NOH_AMPLITUDE_LATENCY_MS : how->latency_ms;
 }
 
 /* At RATE, with silence behind it: the last frames are known only then. */
@@ -58,11 +58,12 @@ static void hear_ear(listening *l, noh_ear *ear)
     }
 }
 
-static void by_ear(listening *l, int live)
+static void by_ear(listening *l, const hearing *how)
 {
     noh_ear ear;
-    (void)noh_ear_init(&ear, RATE, NULL); /* the rate is one that it takes */
-    if (!live) {
+    /* the rate is one that it takes, and so is the latency */
+    (void)noh_ear_init(&ear, RATE, how->live ? (uint32_t)how->latency_ms : NOH_EAR_LATENCY_MAX_MS, NULL);
+    if (!how->live) {
         hear_ear(l, &ear);
         noh_ear_restart(&ear);
     }
@@ -152,7 +153,7 @@ int hearing_make(const sound *recording, const hearing *how, synthesis *said, sp
     l.track = track;
     status = speech_track_frames(track, (double)recording->count / recording->rate);
     if (!status) status = listen(recording, &l);
-    if (!status && !how->amplitude) by_ear(&l, how->live);
+    if (!status && !how->amplitude) by_ear(&l, how);
     if (!status && how->amplitude) status = by_amplitude(&l, how->live);
     if (!status) status = find_runs(track, recording, said);
     free(l.samples);

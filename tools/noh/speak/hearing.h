@@ -6,8 +6,9 @@
 #include "speech_track.h"
 
 typedef struct hearing {
-    int live;      /* in one pass, as from a microphone; otherwise a second pass knows the voice from the start */
-    int amplitude; /* by loudness alone, not by the ear (face.h) */
+    int live;          /* in one pass, as from a microphone; otherwise a second pass knows the voice from the start */
+    double latency_ms; /* of the ear, where live */
+    int amplitude;     /* by loudness alone, not by the ear (face.h) */
 } hearing;
 
 /* Fills `said` with runs of one shape, each as a phone of that shape, and `track` with frames. Prints an

@@ -108,13 +108,41 @@ static int lips_of(noh_viseme v)
 
 static void score_frames(const label_list *wanted, const label_list *got, double seconds, label_score *out)
 {
+    int lips = 0;
     for (uint32_t t = 0; (t + 0.5) / RATE < seconds; t++) {
         const noh_viseme w = viseme_at(wanted, (t + 0.5) / RATE), g = viseme_at(got, (t + 0.5) / RATE);
         if (w == NOH_VISEME_COUNT) continue;
         out->frames++;
         out->visemes_right += w == g;
         out->lips_right += g != NOH_VISEME_COUNT && lips_of(w) == lips_of(g);
+        out->vowels += w >= NOH_VISEME_AA;
+        out->vowels_shut += w >= NOH_VISEME_AA && lips_of(g) == 0;
+        out->lip_changes += lips != lips_of(g);
+        lips = lips_of(g);
     }
+}
+
+/* Pearson's, over frames that have a label; each value is the mean of seven frames. */
+static double correlate_opening(const label_list *wanted, const speech_track *track)
+{
+    double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, yy = 0.0, xy = 0.0, spread;
+    for (uint32_t t = 3; t + 3u < track->frame_count; t++) {
+        double a = 0.0, b = 0.0;
+        if (viseme_at(wanted, (t + 0.5) / RATE) == NOH_VISEME_COUNT) continue;
+        for (uint32_t k = t - 3u; k <= t + 3u; k++) {
+            const noh_viseme v = viseme_at(wanted, (k + 0.5) / RATE);
+            a += v == NOH_VISEME_COUNT ? 0.0 : (double)viseme_open((uint32_t)v) / 7.0;
+            b += (double)track->frames[k].open / 7.0;
+        }
+        n++;
+        x += a;
+        y += b;
+        xx += a * a;
+        yy += b * b;
+        xy += a * b;
+    }
+    spread = (n * xx - x * x) * (n * yy - y * y);
+    return spread > 0.0 ? (n * xy - x * y) / sqrt(spread) : 0.0;
 }
 
 static void score_closures(const label_list *wanted, const label_list *got, label_score *out)
@@ -184,7 +212,7 @@ static int score_onsets(const label_list *a, const label_list *b, label_score *o
     return edits && errors ? 0 : tool_fail("speak", "out of memory");
 }
 
-int labels_score(const char *path, const synthesis *said, label_score *out)
+int labels_score(const char *path, const synthesis *said, const speech_track *track, label_score *out)
 {
     label_list wanted = { NULL, 0 }, got = { NULL, 0 };
     int status = read_labels(path, &wanted);
@@ -194,6 +222,8 @@ int labels_score(const char *path, const synthesis *said, label_score *out)
         out->phones = (uint32_t)wanted.count;
         score_frames(&wanted, &got, (double)said->sample_count / said->sample_rate, out);
         score_closures(&wanted, &got, out);
+        out->with_opening = track != NULL;
+        if (track) out->opening_correlation = correlate_opening(&wanted, track);
         status = score_onsets(&wanted, &got, out);
     }
     free(wanted.items);
