@@ -135,7 +135,7 @@ cp "$work/out" "$work/text.json"
 noh speak "$work/german.wav" --text "$german" --lang de --json
 expect 0 'is found in its recording'
 cp "$work/out" "$work/german.json"
-check 'its phones begin where they do, 10 ms' python3 "$work/near.py" "$work/text.json" "$work/german.json" 0.01
+check 'its phones begin where they do, 15 ms' python3 "$work/near.py" "$work/text.json" "$work/german.json" 0.015
 
 # ---- without words: heard ----
 cat >"$work/heard.py" <<'PY'
@@ -277,7 +277,7 @@ visemes, lips = total("visemes_right") / total("frames"), total("lips_right") / 
 onset = sum(x["onset_median_s"] * x["onsets"] for x in l) / total("onsets")
 print("visemes %.3f, lips %.3f of %d frames; p, b, m %d of %d; onsets %.1f ms" % (visemes, lips, total("frames"),
       total("closures_found"), total("closures"), 1000 * onset))
-assert visemes >= 0.74 and lips >= 0.81 and total("closures_found") == total("closures") and onset <= 0.018
+assert visemes >= 0.79 and lips >= 0.855 and total("closures_found") == total("closures") and onset <= 0.018
 assert all(j["words_match"] for j in files)
 ' "$work"
 cat "$work/check" | sed 's/^/# /'

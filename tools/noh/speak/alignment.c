@@ -1,221 +1,258 @@
 #include "alignment.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
 #include "noh/face.h"
-#include "warp.h"
+#include "posteriors.h"
 
-#define TOP_HZ 7600.0f
-#define TOP_PART 0.475f   /* of the recording's rate, where that is less */
-#define SPOKEN_PART 0.3f  /* share of the range from the quietest to the loudest above which a frame is speech */
-#define SPOKEN_GAP 12u    /* frames: a shorter silence is within speech, as before a p, t or k */
-#define RANGE_DB 45.0f    /* floor of speech in a room: quieter differences carry no information */
-#define QUIET_DB (-75.0f) /* a recording below this everywhere has no speech */
-#define RIDGE 0.2         /* on the diagonal of the voices' differences: people differ more */
-#define PAUSE_COST 0.45f  /* of the quietest frame in a pause, where a frame that fits costs about 1 */
-#define PAUSE_SLOPE 2.75f /* and more up to the loudest: breath is cheaper than speech */
-#define SHIFT_FRAMES 10.0 /* of a class, at which its own mean counts as much as the mean of all */
+#define LOUDEST_MIN (14 * 256) /* 1/256 octave: a recording below this everywhere, -75 dB, has no speech */
+#define PAUSE_FRAMES 3u
+#define PAUSE_COST (2 * POSTERIOR_OCTAVE) /* of a pause missing in the text */
+#define FRAMES_MAX 8u                     /* most that a phone must last */
+#define DURATION_PART 0.6                 /* of its duration in the text as it was synthesised */
+#define WIDTH 1536u                       /* states around the likeliest: a third of a minute of speech */
+#define FAR (INT32_MAX / 2)
 
-/* ---- which frames are speech ---- */
+/* A frame or more of a phone, or of a pause before it. */
+typedef struct path_state {
+    uint32_t phone;
+    uint8_t shape, pause;
+    uint8_t last; /* of its phone's shape: may last */
+    uint8_t skip; /* the first state behind a pause: the states of the pause, which may be left out */
+} path_state;
 
-typedef struct heard {
-    features f;
-    float *pause_cost;
-    uint32_t *at;
-    double seconds;  /* of speech */
-    float low, high; /* levels in dB */
-} heard;
+typedef struct state_list {
+    path_state *items;
+    size_t count;
+} state_list;
 
-static void fill_gaps(unsigned char *spoken, size_t frames)
+/* ---- the states of a text ---- */
+
+static uint32_t apart(uint32_t a, uint32_t b)
 {
-    size_t gap = SPOKEN_GAP;
-    for (size_t t = 0; t < frames; t++) {
-        if (!spoken[t]) {
-            gap++;
-            continue;
-        }
-        if (gap < SPOKEN_GAP) memset(spoken + t - gap, 1, gap);
-        gap = 0;
-    }
+    return a > b ? a - b : b - a;
 }
 
-static int hear_speech(heard *h)
+/* Whether a word begins with the phone: it is the nearest to the word's own sample, which may lie somewhat before. */
+static int begins_word(const synthesis *s, size_t phone)
 {
-    unsigned char *spoken = calloc(h->f.frames + 1u, 1);
-    const float limit = h->low + SPOKEN_PART * (h->high - h->low);
-    if (!spoken) return tool_fail("speak", "out of memory");
-    for (size_t t = 0; t < h->f.frames; t++) spoken[t] = h->f.level[t] >= limit;
-    fill_gaps(spoken, h->f.frames);
-    for (size_t t = 0; t < h->f.frames; t++) h->seconds += spoken[t] ? 1.0 / FEATURE_RATE : 0.0;
-    features_normalise(&h->f, spoken);
-    free(spoken);
+    const uint32_t at = s->phones[phone].sample;
+    for (size_t i = 0; i < s->word_count; i++) {
+        const uint32_t word = s->words[i].sample, far = apart(word, at);
+        if ((!phone || apart(word, s->phones[phone - 1u].sample) > far) &&
+            (phone + 1u == s->phone_count || apart(word, s->phones[phone + 1u].sample) >= far)) {
+            return 1;
+        }
+    }
     return 0;
 }
 
-static int hear(const sound *recording, float top_hz, heard *h)
+static double duration_of(const synthesis *s, size_t phone)
 {
-    sound at_rate;
-    int status = sound_resample(recording, FEATURE_SOUND_RATE, &at_rate);
-    if (status) return status;
-    status = features_make(&at_rate, top_hz, &h->f);
-    sound_free(&at_rate);
-    if (status) return status;
-    h->low = features_level(&h->f, 0.05f);
-    h->high = features_level(&h->f, 0.95f);
-    if (h->low < h->high - RANGE_DB) h->low = h->high - RANGE_DB;
-    h->pause_cost = malloc((h->f.frames + 1u) * sizeof *h->pause_cost);
-    h->at = malloc((h->f.frames + 1u) * sizeof *h->at);
-    if (!h->pause_cost || !h->at) return tool_fail("speak", "out of memory");
-    if (!h->f.frames || h->high < QUIET_DB) {
-        return tool_fail("speak", "the recording is silent: it never exceeds %d dB", (int)QUIET_DB);
-    }
-    for (size_t t = 0; t < h->f.frames; t++) {
-        const float part = (h->f.level[t] - h->low) / (h->high - h->low + 1e-3f);
-        h->pause_cost[t] = (PAUSE_COST + PAUSE_SLOPE * (part > 0.0f ? part : 0.0f)) * sqrtf(FEATURE_COUNT);
-    }
-    return hear_speech(h);
+    const size_t end = phone + 1u < s->phone_count ? s->phones[phone + 1u].sample : s->sample_count;
+    return (double)(end - s->phones[phone].sample) / s->sample_rate;
 }
 
-static void heard_free(heard *h)
+/* The fewest frames of a shape that is expected for some seconds. */
+static uint32_t frames_of(noh_viseme shape, double seconds)
 {
-    features_free(&h->f);
-    free(h->pause_cost);
-    free(h->at);
+    static const uint8_t least[NOH_VISEME_COUNT] = { 3, 4, 4, 3, 3, 3, 5, 5, 3, 3, 3, 4, 3, 4, 3 };
+    const uint32_t frames = (uint32_t)(DURATION_PART * POSTERIOR_RATE * seconds + 0.5);
+    return frames < least[shape] ? least[shape] : frames < FRAMES_MAX ? frames : FRAMES_MAX;
 }
 
-/* ---- features by how much they say ---- */
-
-/* The lower triangle of a matrix into its Cholesky factor. It is positive: a ridge stands on its diagonal. */
-static void factor(double *a)
+/* How much slower the recording is than the text as it was synthesised. */
+static double slowness(const synthesis *s, const posteriors *heard)
 {
-    for (uint32_t i = 0; i < FEATURE_COUNT; i++) {
-        for (uint32_t j = 0; j <= i; j++) {
-            double sum = a[i * FEATURE_COUNT + j];
-            for (uint32_t k = 0; k < j; k++) sum -= a[i * FEATURE_COUNT + k] * a[j * FEATURE_COUNT + k];
-            a[i * FEATURE_COUNT + j] = i == j ? sqrt(fmax(sum, 1e-9)) : sum / a[j * FEATURE_COUNT + j];
+    double frames = 0.0, expected = 0.0;
+    for (size_t t = 0; t < heard->frames; t++) {
+        uint32_t best = 0;
+        for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) best = heard->cost[t][v] < heard->cost[t][best] ? v : best;
+        frames += best != NOH_VISEME_SIL;
+    }
+    for (size_t i = 0; i < s->phone_count; i++) {
+        if (noh_viseme_of_phone(s->phones[i].name, NULL) != NOH_VISEME_SIL) expected += duration_of(s, i);
+    }
+    return expected > 0.0 ? frames / POSTERIOR_RATE / expected : 1.0;
+}
+
+static void add(state_list *l, size_t phone, noh_viseme shape, uint32_t frames, int pause)
+{
+    for (uint32_t k = 0; k < frames; k++) {
+        path_state *s = &l->items[l->count++];
+        memset(s, 0, sizeof *s);
+        s->phone = (uint32_t)phone;
+        s->shape = (uint8_t)shape;
+        s->pause = (uint8_t)pause;
+        s->last = k + 1u == frames;
+        if (!k && !pause && l->count > PAUSE_FRAMES && s[-1].pause) s->skip = PAUSE_FRAMES;
+    }
+}
+
+/* A pause may stand before every word, and at the end. */
+static int make_states(const synthesis *s, double slower, state_list *out)
+{
+    out->items = malloc((s->phone_count + 1u) * (PAUSE_FRAMES + 2u * FRAMES_MAX) * sizeof *out->items);
+    if (!out->items) return tool_fail("speak", "out of memory");
+    for (size_t i = 0; i < s->phone_count; i++) {
+        const double seconds = slower * duration_of(s, i);
+        noh_viseme second;
+        const noh_viseme first = noh_viseme_of_phone(s->phones[i].name, &second);
+        const int after_pause = out->count && out->items[out->count - 1u].pause;
+        if (!after_pause && (!out->count || first == NOH_VISEME_SIL || begins_word(s, i))) {
+            add(out, i, NOH_VISEME_SIL, PAUSE_FRAMES, 1);
         }
+        if (first == NOH_VISEME_SIL || first == NOH_VISEME_COUNT) continue;
+        add(out, i, first, frames_of(first, second == NOH_VISEME_COUNT ? seconds : seconds / 2.0), 0);
+        if (second != NOH_VISEME_COUNT) add(out, i, second, frames_of(second, seconds / 2.0), 0);
     }
-}
-
-/* Frames times the inverse of the factor: distances between them are then Mahalanobis's. */
-static void whiten(const double *l, float *values, size_t frames)
-{
-    for (size_t t = 0; t < frames; t++) {
-        float *v = values + t * FEATURE_COUNT;
-        for (uint32_t i = 0; i < FEATURE_COUNT; i++) {
-            double sum = (double)v[i];
-            for (uint32_t k = 0; k < i; k++) sum -= l[i * FEATURE_COUNT + k] * (double)v[k];
-            v[i] = (float)(sum / l[i * FEATURE_COUNT + i]);
-        }
+    if (out->count <= PAUSE_FRAMES) {
+        return tool_fail("speak", "the text contains no words to speak");
     }
+    if (!out->items[out->count - 1u].pause) add(out, s->phone_count - 1u, NOH_VISEME_SIL, PAUSE_FRAMES, 1);
+    return 0;
 }
 
-static void weigh(reference *r, features *f)
+/* ---- the likeliest path (Viterbi, 1967) ---- */
+
+/* A frame counts by how much likelier it makes a shape (Bourlard and Morgan, "Connectionist Speech Recognition", 1994).
+ * A band of states rises with the likeliest one, so that memory grows with the recording's length alone. */
+typedef struct grid {
+    const state_list *states;
+    const posteriors *heard;
+    size_t width;
+    int32_t *now, *before; /* [width] costs of paths to the band's states */
+    uint32_t *low;         /* [frames] the band's first state */
+    uint8_t *back;         /* [frames * width] how many states back the path came from */
+} grid;
+
+static int32_t cost_before(const grid *g, size_t frame, size_t state)
 {
-    for (uint32_t i = 0; i < FEATURE_COUNT; i++) r->within[i * FEATURE_COUNT + i] += RIDGE;
-    factor(r->within);
-    whiten(r->within, f->values, f->frames);
-    whiten(r->within, r->means, r->state_count);
+    const size_t low = g->low[frame - 1u];
+    return state < low || state >= low + g->width ? FAR : g->before[state - low];
 }
 
-/* ---- the speaker ---- */
-
-static uint32_t class_of(const reference *r, size_t state)
+static int32_t step(const grid *g, size_t frame, size_t state, uint8_t *from)
 {
-    return noh_viseme_of_phone(r->said.phones[r->states[state].phone].name, NULL);
-}
-
-typedef struct shifts {
-    double sum[NOH_VISEME_COUNT + 1][FEATURE_COUNT], count[NOH_VISEME_COUNT + 1];
-    double all[FEATURE_COUNT], all_count;
-} shifts;
-
-static void measure_shifts(const reference *r, const heard *h, shifts *s)
-{
-    memset(s, 0, sizeof *s);
-    for (size_t t = 0; t < h->f.frames; t++) {
-        const size_t state = h->at[t];
-        const uint32_t class = class_of(r, state);
-        if (r->states[state].pause) continue;
-        s->count[class] += 1.0;
-        s->all_count += 1.0;
-        for (uint32_t c = 0; c < FEATURE_COUNT; c++) {
-            const double d = (double)(h->f.values[t * FEATURE_COUNT + c] - r->means[state * FEATURE_COUNT + c]);
-            s->sum[class][c] += d;
-            s->all[c] += d;
-        }
+    const path_state *s = &g->states->items[state];
+    int32_t best = s->last ? cost_before(g, frame, state) : FAR;
+    *from = 0;
+    for (size_t k = 1; k <= 1u + s->skip && k <= state; k += s->skip ? s->skip : 1u) {
+        const int32_t enter = s->pause && s[-1].phone != s->phone ? PAUSE_COST : 0;
+        const int32_t cost = cost_before(g, frame, state - k) + enter;
+        if (cost >= best) continue;
+        best = cost;
+        *from = (uint8_t)k;
     }
+    return best;
 }
 
-/* The voices' sounds are moved to the speaker's, class by class, by the result of a first warp. */
-static void adapt(reference *r, const heard *h)
+/* The band's place for the next frame: around the likeliest state, never falling. */
+static uint32_t band_of(const grid *g, size_t frame)
 {
-    shifts s;
-    measure_shifts(r, h, &s);
-    for (size_t i = 0; i < r->state_count; i++) {
-        const uint32_t class = class_of(r, i);
-        if (r->states[i].pause) continue;
-        for (uint32_t c = 0; c < FEATURE_COUNT; c++) {
-            const double common = SHIFT_FRAMES * s.all[c] / fmax(s.all_count, 1.0);
-            r->means[i * FEATURE_COUNT + c] += (float)((s.sum[class][c] + common) / (s.count[class] + SHIFT_FRAMES));
-        }
+    const size_t most = g->states->count - g->width;
+    size_t best = 0, low;
+    for (size_t i = 1; i < g->width; i++) best = g->now[i] < g->now[best] ? i : best;
+    low = g->low[frame] + best;
+    low = low < g->width / 2u ? 0u : low - g->width / 2u;
+    if (low < g->low[frame]) low = g->low[frame];
+    return (uint32_t)(low < most ? low : most);
+}
+
+static void advance(grid *g, size_t frame)
+{
+    int32_t *kept = g->before, least = FAR;
+    g->before = g->now;
+    g->now = kept;
+    for (size_t i = 0; i < g->width; i++) {
+        const size_t state = g->low[frame] + i;
+        uint8_t *from = &g->back[frame * g->width + i];
+        int32_t cost = state == 0u || state == PAUSE_FRAMES ? 0 : FAR;
+        *from = 0;
+        if (frame) cost = step(g, frame, state, from);
+        const uint32_t shape = g->states->items[state].shape;
+        g->now[i] = cost >= FAR ? FAR : cost + g->heard->cost[frame][shape] - g->heard->prior[shape];
+        least = g->now[i] < least ? g->now[i] : least;
     }
+    for (size_t i = 0; i < g->width; i++) g->now[i] -= g->now[i] < FAR ? least : 0;
+    if (frame + 1u < g->heard->frames) g->low[frame + 1u] = band_of(g, frame);
+}
+
+/* returns  1: no path leads to the end */
+static int trace(const grid *g, uint32_t *at)
+{
+    const size_t frames = g->heard->frames, count = g->states->count, low = g->low[frames - 1u];
+    size_t state = count - 1u;
+    if (low + g->width < count) return 1;
+    if (g->now[state - PAUSE_FRAMES - low] <= g->now[state - low]) state -= PAUSE_FRAMES;
+    if (g->now[state - low] >= FAR) return 1;
+    for (size_t t = frames; t-- > 0;) {
+        at[t] = (uint32_t)state;
+        state -= g->back[t * g->width + (state - g->low[t])];
+    }
+    return 0;
+}
+
+/* at[frame]: the state of each frame. */
+static int find_path(const state_list *states, const posteriors *heard, uint32_t *at)
+{
+    grid g;
+    int status = -1;
+    memset(&g, 0, sizeof g);
+    g.states = states;
+    g.heard = heard;
+    g.width = states->count < WIDTH ? states->count : WIDTH;
+    g.now = malloc(g.width * sizeof *g.now);
+    g.before = malloc(g.width * sizeof *g.before);
+    g.low = calloc(heard->frames + 1u, sizeof *g.low);
+    g.back = malloc(heard->frames * g.width + 1u);
+    if (g.now && g.before && g.low && g.back) {
+        for (size_t t = 0; t < heard->frames; t++) advance(&g, t);
+        status = trace(&g, at);
+    }
+    free(g.now);
+    free(g.before);
+    free(g.low);
+    free(g.back);
+    if (status < 0) return tool_fail("speak", "out of memory");
+    return status ? tool_fail("speak", "the recording is too short for these words") : 0;
 }
 
 /* ---- how well it fits ---- */
 
-#define TURN \
-    0.38 /* of the states, which go from the beginning to the end: what repeats itself seldom does so there \
-          */
+#define TURN 0.38 /* of the states, which go from the beginning to the end: what repeats itself seldom does so there */
 
-/* The mean distance of speech to the states of its path. */
-static double distance_of(const reference *r, const heard *h)
+/* The mean improbability of speech on the path. */
+static double cost_of(const state_list *states, const posteriors *heard, const uint32_t *at)
 {
     double sum = 0.0, count = 0.0;
-    for (size_t t = 0; t < h->f.frames; t++) {
-        if (r->states[h->at[t]].pause) continue;
-        sum += (double)warp_distance(h->f.values + t * FEATURE_COUNT, r->means + h->at[t] * FEATURE_COUNT);
+    for (size_t t = 0; t < heard->frames; t++) {
+        const path_state *s = &states->items[at[t]];
+        if (s->pause) continue;
+        sum += heard->cost[t][s->shape];
         count += 1.0;
     }
     return count > 0.0 ? sum / count : 0.0;
 }
 
-/* The same sounds in another order. */
-static int turn(const reference *r, reference *out)
+/* The path's cost against the cost of the best path through the same words in another order. */
+static int score(const state_list *states, const posteriors *heard, uint32_t *at, double *out)
 {
-    size_t first = (size_t)(TURN * (double)r->state_count);
-    *out = *r;
-    while (first && r->states[first].phone == r->states[first - 1u].phone) first--;
-    out->states = malloc(r->state_count * sizeof *out->states);
-    out->means = malloc(r->state_count * FEATURE_COUNT * sizeof *out->means);
-    if (!out->states || !out->means) {
-        free(out->states);
-        free(out->means);
-        return tool_fail("speak", "out of memory");
-    }
-    for (size_t i = 0; i < r->state_count; i++) {
-        const size_t from = (i + first) % r->state_count;
-        out->states[i] = r->states[from];
-        memcpy(out->means + i * FEATURE_COUNT, r->means + from * FEATURE_COUNT, FEATURE_COUNT * sizeof *r->means);
-    }
-    return 0;
-}
-
-/* The path's distance against the best path through the same sounds in another order. */
-static int score(const reference *r, heard *h, double *out)
-{
-    reference turned;
-    double own = distance_of(r, h), other;
-    int status = turn(r, &turned);
-    if (status) return status;
-    status = warp_make(&turned, &h->f, h->pause_cost, h->at);
-    other = status ? 0.0 : distance_of(&turned, h);
+    const double own = cost_of(states, heard, at);
+    state_list turned = { malloc(states->count * sizeof *turned.items), states->count };
+    size_t first = (size_t)(TURN * (double)states->count);
+    double other;
+    int status;
+    if (!turned.items) return tool_fail("speak", "out of memory");
+    while (first && !(states->items[first].pause && !states->items[first - 1u].pause)) first--;
+    memcpy(turned.items, states->items + first, (states->count - first) * sizeof *turned.items);
+    memcpy(turned.items + states->count - first, states->items, first * sizeof *turned.items);
+    status = find_path(&turned, heard, at);
+    other = status ? 0.0 : cost_of(&turned, heard, at);
     *out = own < other ? 1.0 - own / other : 0.0;
-    free(turned.states);
-    free(turned.means);
+    free(turned.items);
     return status;
 }
 
@@ -223,7 +260,7 @@ static int score(const reference *r, heard *h, double *out)
 
 static uint32_t sample_of(const synthesis *s, size_t frame)
 {
-    return (uint32_t)((uint64_t)frame * s->sample_rate / FEATURE_RATE);
+    return frame ? (uint32_t)(((double)frame / POSTERIOR_RATE + POSTERIOR_OFFSET) * s->sample_rate) : 0u;
 }
 
 /* Words begin with the first phone at or behind their place in the text as it was synthesised. */
@@ -242,69 +279,71 @@ static void place_words(const synthesis *from, const uint32_t *start, synthesis 
     }
 }
 
-static void place_phones(const reference *r, const heard *h, uint32_t *start, synthesis *out)
+static void place_phones(const state_list *states, const uint32_t *at, size_t frames, const synthesis *from,
+                         uint32_t *start, synthesis *out)
 {
-    for (size_t t = 0; t < h->f.frames; t++) {
-        const reference_state *now = &r->states[h->at[t]], *before = t ? &r->states[h->at[t - 1u]] : NULL;
+    for (size_t t = 0; t < frames; t++) {
+        const path_state *now = &states->items[at[t]], *before = t ? &states->items[at[t - 1u]] : NULL;
         spoken_phone *p = &out->phones[out->phone_count];
         if (before && now->phone == before->phone && now->pause == before->pause) continue;
         memset(p, 0, sizeof *p);
         p->sample = sample_of(out, t);
         if (!now->pause) {
-            memcpy(p->name, r->said.phones[now->phone].name, sizeof p->name);
+            memcpy(p->name, from->phones[now->phone].name, sizeof p->name);
             start[now->phone] = p->sample;
         }
         out->phone_count++;
     }
 }
 
-static int place(const reference *r, const heard *h, const sound *recording, synthesis *out)
+static int place(const state_list *states, const uint32_t *at, size_t frames, const synthesis *from,
+                 const sound *recording, synthesis *out)
 {
-    uint32_t *start = malloc((r->said.phone_count + 1u) * sizeof *start);
+    uint32_t *start = malloc((from->phone_count + 1u) * sizeof *start);
     out->sample_rate = recording->rate;
     out->sample_count = recording->count;
-    out->phones = calloc(2u * r->said.phone_count + 2u, sizeof *out->phones);
-    out->words = calloc(r->said.word_count + 1u, sizeof *out->words);
+    out->phones = calloc(2u * from->phone_count + 2u, sizeof *out->phones);
+    out->words = calloc(from->word_count + 1u, sizeof *out->words);
     if (!start || !out->phones || !out->words) {
         free(start);
         return tool_fail("speak", "out of memory");
     }
-    for (size_t i = 0; i < r->said.phone_count; i++) start[i] = UINT32_MAX;
-    place_phones(r, h, start, out);
-    place_words(&r->said, start, out);
+    for (size_t i = 0; i < from->phone_count; i++) start[i] = UINT32_MAX;
+    place_phones(states, at, frames, from, start, out);
+    place_words(from, start, out);
     free(start);
     return 0;
 }
 
 /* ---- all of it ---- */
 
-static int align(const sound *recording, const char *text, const char *language, float top_hz, heard *h, alignment *out)
+static int align(const sound *recording, const synthesis *said, const posteriors *heard, alignment *out)
 {
-    reference r;
-    int status = reference_make(text, language, h->seconds, top_hz, &r);
-    if (status) return status;
-    weigh(&r, &h->f);
-    status = warp_make(&r, &h->f, h->pause_cost, h->at);
-    if (!status) {
-        adapt(&r, h);
-        status = warp_make(&r, &h->f, h->pause_cost, h->at);
-    }
-    if (!status) status = place(&r, h, recording, &out->said);
-    if (!status) status = score(&r, h, &out->score);
-    reference_free(&r);
+    state_list states = { NULL, 0 };
+    uint32_t *at = malloc((heard->frames + 1u) * sizeof *at);
+    int status = at ? make_states(said, slowness(said, heard), &states) : tool_fail("speak", "out of memory");
+    if (!status) status = find_path(&states, heard, at);
+    if (!status) status = place(&states, at, heard->frames, said, recording, &out->said);
+    if (!status) status = score(&states, heard, at, &out->score);
+    free(states.items);
+    free(at);
     return status;
 }
 
 int alignment_make(const sound *recording, const char *text, const char *language, alignment *out)
 {
-    const float half = TOP_PART * (float)recording->rate, top_hz = half < TOP_HZ ? half : TOP_HZ;
-    heard h;
-    int status;
+    posteriors heard;
+    synthesis said;
+    int status = posteriors_make(recording, &heard);
     memset(out, 0, sizeof *out);
-    memset(&h, 0, sizeof h);
-    status = hear(recording, top_hz, &h);
-    if (!status) status = align(recording, text, language, top_hz, &h, out);
-    heard_free(&h);
+    memset(&said, 0, sizeof said);
+    if (!status && (!heard.frames || heard.loudest < LOUDEST_MIN)) {
+        status = tool_fail("speak", "the recording is silent: it never exceeds -75 dB");
+    }
+    if (!status) status = synthesis_make(text, language, &said);
+    if (!status) status = align(recording, &said, &heard, out);
+    synthesis_free(&said);
+    posteriors_free(&heard);
     if (status) alignment_free(out);
     return status;
 }

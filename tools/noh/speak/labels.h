@@ -21,8 +21,8 @@ typedef struct label_score {
     double opening_correlation; /* of what was heard with the labels' shapes, both averaged over 70 ms */
 } label_score;
 
-/* track: what was heard, for its opening, or NULL. path: lines of "start end phone", seconds, phones of ARPABET or IPA. Prints an error and returns an exit code; 0 on
- * success. */
+/* track: what was heard, for its opening, or NULL. path: lines of "start end phone", seconds, phones of ARPABET or IPA.
+ * Prints an error and returns an exit code; 0 on success. */
 int labels_score(const char *path, const synthesis *said, const speech_track *track, label_score *out);
 
 /* The phones of such a file, with pauses between them where it has none, as if they were spoken: without sound and words.
