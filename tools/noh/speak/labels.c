@@ -145,12 +145,23 @@ static double correlate_opening(const label_list *wanted, const speech_track *tr
     return spread > 0.0 ? (n * xy - x * y) / sqrt(spread) : 0.0;
 }
 
-static void score_closures(const label_list *wanted, const label_list *got, label_score *out)
+/* Whether lips are closed from 30 ms before a phone to 30 ms after it. */
+static int is_shut(const label *p, const speech_track *track)
+{
+    for (uint32_t t = 0; t < track->frame_count; t++) {
+        const double at = (t + 0.5) / RATE;
+        if (at >= p->start - 0.03 && at <= p->end + 0.03 && !lips_of((noh_viseme)track->frames[t].shape)) return 1;
+    }
+    return 0;
+}
+
+static void score_closures(const label_list *wanted, const label_list *got, const speech_track *track, label_score *out)
 {
     for (size_t i = 0; i < wanted->count; i++) {
         int found = 0;
         if (wanted->items[i].first != NOH_VISEME_PP) continue;
-        for (size_t k = 0; k < got->count; k++) {
+        if (track) found = is_shut(&wanted->items[i], track);
+        for (size_t k = 0; !track && k < got->count; k++) {
             found |= got->items[k].first == NOH_VISEME_PP &&
                      fabs(got->items[k].start - wanted->items[i].start) <= NEAR_S;
         }
@@ -221,7 +232,7 @@ int labels_score(const char *path, const synthesis *said, const speech_track *tr
     if (!status) {
         out->phones = (uint32_t)wanted.count;
         score_frames(&wanted, &got, (double)said->sample_count / said->sample_rate, out);
-        score_closures(&wanted, &got, out);
+        score_closures(&wanted, &got, track, out);
         out->with_opening = track != NULL;
         if (track) out->opening_correlation = correlate_opening(&wanted, track);
         status = score_onsets(&wanted, &got, out);

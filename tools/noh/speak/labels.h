@@ -11,7 +11,7 @@ typedef struct label_score {
     uint32_t visemes_right;  /* of fifteen */
     uint32_t lips_right;     /* of five: closed, lip and teeth, rounded, open, other */
     uint32_t closures;       /* p, b and m */
-    uint32_t closures_found; /* one begins within 150 ms */
+    uint32_t closures_found; /* one begins within 150 ms; or, of what was heard, lips are closed within 30 ms of it */
     uint32_t phones,
         onsets;            /* all phones of the labels; those matched by a phone of the same viseme in the same order */
     double onset_median_s; /* of the onsets */
