@@ -14,18 +14,34 @@ static int is_lit(void)
     return web.light.environment != WEB_PLAIN;
 }
 
+/* The page keeps the texels of each environment, for other stages and elements (package/gl.js). take returns 1 if it
+ * has written them. */
+#define NAMED(what) __attribute__((import_module("noh"), import_name(what)))
+NAMED("take_baked") extern int take_baked(int environment, void *texels, size_t bytes);
+NAMED("keep_baked") extern void keep_baked(int environment, const void *texels, size_t bytes);
+
 noh_result web_light_bake(void)
 {
     const uint32_t side = web.cast.reflection.side;
+    const size_t bytes = noh_reflection_size(side);
+    void *texels;
     noh_reflection_desc desc;
+    noh_result result;
     if (!is_lit()) return NOH_OK;
+    texels = web_block(web.cast.texels_at);
     memset(&desc, 0, sizeof desc);
     desc.side = side;
     desc.radiance = noh_reflection_of_environment;
     desc.user = noh_environment_at((uint32_t)web.light.environment);
     noh_light_from_environment(desc.user, NOH_SH_ORDER_MAX, &web.light.all);
-    return noh_reflection_init(web_block(web.cast.texels_at), noh_reflection_size(side), web_block(web.cast.scratch_at),
-                               web.cast.scratch_bytes, &desc, &web.cast.reflection, &web.error);
+    if (take_baked(web.light.environment, texels, bytes)) {
+        web.cast.reflection.texels = texels;
+        return NOH_OK;
+    }
+    result = noh_reflection_init(texels, bytes, web_block(web.cast.scratch_at), web.cast.scratch_bytes, &desc,
+                                 &web.cast.reflection, &web.error);
+    if (!result) keep_baked(web.light.environment, texels, bytes);
+    return result;
 }
 
 /* Pass the lighting to the stage. Without a shadow map no key light is split off. */

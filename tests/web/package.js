@@ -132,6 +132,18 @@ async function used(browser) {
     await page.keyboard.press('Home');
     await page.evaluate(() => { document.getElementById('it').light = 'sky'; });
     check('used: an attribute changes the light', (await state()).light === 'sky');
+    const links = await page.evaluate(() => {
+        const it = document.getElementById('it'), { character } = it, { gl } = character, link = gl.linkProgram.bind(gl), pictures = [];
+        let count = 0;
+        gl.linkProgram = (program) => { count++; link(program); };
+        for (const light of ['plain', 'sky', 'plain', 'sky']) {
+            it.light = light;
+            character.advance(0);
+            pictures.push([count, character.canvas.toDataURL()]);
+        }
+        return { counts: pictures.map(([n]) => n), same: pictures[0][1] === pictures[2][1] && pictures[1][1] === pictures[3][1] && pictures[0][1] !== pictures[1][1] };
+    });
+    check('used: a light that was there before links nothing, and looks the same', links.counts[0] > 0 && links.counts[3] === links.counts[0] && links.same, JSON.stringify(links));
     const r = await canvas.boundingBox();
     await page.mouse.click(r.x + r.width / 2, r.y + r.height / 2);
     const seen = await page.evaluate(() => seen);

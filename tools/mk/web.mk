@@ -95,7 +95,7 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
-	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|lost\|string\|width\)'
+	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
 
 # ---- the page's converter ----
 

@@ -1,6 +1,7 @@
 // character.js: a character on a canvas: loading its pack, drawing, clips, gaze, emotions and speech. Settings are
 // stored here, so that they apply to the coarsest levels of a pack, to the whole pack, and to another pack.
 import { Camera, front } from './camera.js';
+import { forgetPrograms } from './gl.js';
 import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
 import { reach } from './reach.js';
@@ -56,6 +57,7 @@ export class Character extends EventTarget {
         this.canvas.addEventListener('webglcontextlost', (event) => {
             event.preventDefault(); // otherwise the browser never restores the context
             this.lost = true;
+            forgetPrograms(this.gl);
             if (!signal.aborted) this.emit('lost');
         }, { signal });
         this.canvas.addEventListener('webglcontextrestored', () => this.restore(), { signal });
@@ -534,6 +536,7 @@ export class Character extends EventTarget {
         this.ended.abort();
         this.resizes.disconnect();
         this.close();
+        if (this.gl) forgetPrograms(this.gl);
         this.releaseContext();
         this.gl = this.caps = null;
     }

@@ -10,7 +10,7 @@ const plain = ['Enable', 'Disable', 'BlendFunc', 'BlendFuncSeparate', 'BlendEqua
 // The meaning of a number, by letter. s: a shader, p: a program, u: a uniform location, b, v, t, f, r, m: a buffer, a
 // vertex array, a texture, a framebuffer, a renderbuffer, a sampler; n: a number.
 const mapped = {
-    AttachShader: 'ps', CompileShader: 's', LinkProgram: 'p', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform1f: 'un', Uniform2i: 'unn',
+    AttachShader: 'ps', CompileShader: 's', UseProgram: 'p', UniformBlockBinding: 'pnn', Uniform1i: 'un', Uniform1f: 'un', Uniform2i: 'unn',
     Uniform3i: 'unnn', Uniform4i: 'unnnn', Uniform2f: 'unn', Uniform3f: 'unnn', Uniform4f: 'unnnn', BindBuffer: 'nb', BindBufferBase: 'nnb',
     BindBufferRange: 'nnbnn', BindVertexArray: 'v', BindTexture: 'nt', BindFramebuffer: 'nf', FramebufferTexture2D: 'nnntn',
     FramebufferTextureLayer: 'nntnn', BindRenderbuffer: 'nr', BindSampler: 'nm',
@@ -99,8 +99,21 @@ function addNamed(out, gl, heap, what, names, make, remove) {
     };
 }
 
+// Programs that a stage has deleted, by their sources, for the next stage on the context: with another light, or with all
+// levels of the pack.
+const spares = new WeakMap(), sources = new WeakMap();
+function sparesOf(gl) {
+    if (!spares.has(gl)) spares.set(gl, new Map());
+    return spares.get(gl);
+}
+export function forgetPrograms(gl) {
+    for (const program of sparesOf(gl).values()) gl.deleteProgram(program);
+    spares.delete(gl);
+}
+
 function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     const ofProgram = new Map(); // the uniforms of each program, deleted with it
+    const varyings = new Map();
     const tell = (value, at) => { heap.I32[at >> 2] = value; };
     const log = (text, room, length, at) => {
         const written = writeText(heap, text || '', at, room);
@@ -127,10 +140,25 @@ function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
         tell(Number(value), at);
     };
     out.glGetProgramInfoLog = (program, room, length, at) => log(gl.getProgramInfoLog(programs.objects[program]), room, length, at);
-    out.glDeleteProgram = (program) => {
-        for (const uniform of ofProgram.get(program) || []) uniforms.take(uniform);
-        ofProgram.delete(program);
-        gl.deleteProgram(programs.take(program));
+    out.glLinkProgram = (name) => {
+        const program = programs.objects[name], key = [...gl.getAttachedShaders(program).map((shader) => gl.getShaderSource(shader)), varyings.get(name)].join('\0');
+        const spare = sparesOf(gl).get(key);
+        varyings.delete(name);
+        if (!spare) {
+            gl.linkProgram(program);
+            sources.set(program, key);
+            return;
+        }
+        gl.deleteProgram(program);
+        programs.objects[name] = spare;
+        sparesOf(gl).delete(key);
+    };
+    out.glDeleteProgram = (name) => {
+        const program = programs.take(name), key = program && sources.get(program);
+        for (const uniform of ofProgram.get(name) || []) uniforms.take(uniform);
+        ofProgram.delete(name);
+        if (!key || sparesOf(gl).has(key) || !gl.getProgramParameter(program, gl.LINK_STATUS)) gl.deleteProgram(program);
+        else sparesOf(gl).set(key, program);
     };
     out.glGetActiveAttrib = (program, index, room, length, size, type, name) => {
         const found = gl.getActiveAttrib(programs.objects[program], index);
@@ -154,6 +182,7 @@ function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     out.glUniformMatrix4fv = (uniform, count, transpose, at) => gl.uniformMatrix4fv(uniforms.objects[uniform] || null, transpose, heap.F32, at >> 2, 16 * count);
     out.glTransformFeedbackVaryings = (program, count, strings, mode) => {
         const names = Array.from({ length: count }, (_, i) => textAt(heap, heap.U32[(strings >> 2) + i]));
+        varyings.set(program, names.join());
         gl.transformFeedbackVaryings(programs.objects[program], names, mode);
     };
 }
@@ -199,7 +228,9 @@ function addData(out, gl, heap, kinds) {
     out.glDrawBuffers = (count, at) => gl.drawBuffers(Array.from(heap.U32.subarray(at >> 2, (at >> 2) + count)));
 }
 
-// Functions beyond GL (context.c).
+const baked = new Map(); // texels by environment, for all characters: they take half a second to compute
+
+// Functions beyond GL (context.c, light.c).
 function addOthers(gl, heap) {
     const renderer = () => {
         const info = gl.getExtension('WEBGL_debug_renderer_info');
@@ -215,6 +246,13 @@ function addOthers(gl, heap) {
         lost: () => Number(gl.isContextLost()),
         width: () => gl.drawingBufferWidth,
         height: () => gl.drawingBufferHeight,
+        take_baked(environment, at, bytes) {
+            const texels = baked.get(environment);
+            if (!texels || texels.length !== bytes) return 0;
+            heap.U8.set(texels, at);
+            return 1;
+        },
+        keep_baked: (environment, at, bytes) => { baked.set(environment, heap.U8.slice(at, at + bytes)); },
         feedback: (begins) => (begins ? gl.beginTransformFeedback(gl.POINTS) : gl.endTransformFeedback()),
     };
 }
