@@ -25,7 +25,7 @@ const pages = { vite: 'main.js', parcel: 'main.js', webpack: 'bundle.js', esbuil
 const build = {
     vite: (out) => bin('vite', 'build', '--outDir', out, '--emptyOutDir'),
     webpack: (out) => bin('webpack', '--mode', 'production', '--entry', './main.js', '--output-path', out, '--output-filename', 'bundle.js'),
-    // esbuild leaves addresses as they are: the files lie beside the bundle
+    // esbuild leaves addresses as they are: the files go to the folder of the bundle
     esbuild: (out) => {
         bin('esbuild', 'main.js', '--bundle', '--minify', '--format=esm', `--outfile=${out}/bundle.js`);
         const inside = path.join(project, 'node_modules/noh-character');
@@ -54,6 +54,7 @@ async function opened(browser, address) {
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error' && !message.location().url.endsWith('favicon.ico')) page.problems.push(message.text()); });
     await page.addInitScript(() => document.addEventListener('securitypolicyviolation', ({ violatedDirective, blockedURI }) => console.error(`${violatedDirective}: ${blockedURI}`)));
+    page.setDefaultTimeout(120000);
     await page.goto(address);
     await page.waitForFunction(() => { const it = document.getElementById('it'); return it && (it.whole || it.error); });
     return page;

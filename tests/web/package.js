@@ -12,6 +12,7 @@ const inside = path.join(project, 'node_modules/noh-character');
 
 // A page with this body. Elements of the page have their ids as names.
 async function show(browser, body, options) {
+    fs.writeFileSync(path.join(project, 'poster.svg'), '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="50"><rect width="40" height="50" fill="#c9a26b"/></svg>');
     fs.writeFileSync(path.join(project, 'page.html'), `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>test</title><link rel="icon" href="data:,">
 <style>body { margin: 0 } noh-character { height: 100px }</style><script type="module" src="node_modules/noh-character/index.js"></script><main>${body}</main></html>`);
     return visit(browser, 'page.html', options);
@@ -217,6 +218,24 @@ async function model(browser) {
     await close(page, 'model');
 }
 
+// Nothing is loaded before a visitor scrolls to it; a poster is shown until then.
+async function lazy(browser) {
+    const page = await show(browser, '<div style="height: 2000px"></div><noh-character id="it" src="face.nohz" light="plain" loading="lazy" poster="poster.svg"></noh-character>'), asked = [];
+    page.on('request', (request) => asked.push(request.url()));
+    await page.waitForTimeout(500);
+    check('lazy: the pack is not asked for', !asked.some((url) => url.includes('face')) && await page.evaluate(() => !document.getElementById('it').loads), asked.join(' '));
+    await page.evaluate(() => document.getElementById('it').scrollIntoView());
+    const poster = await page.evaluate(() => { const img = document.getElementById('it').shadowRoot.querySelector('img'); return img.decode().then(() => img.clientWidth); });
+    check('lazy: a poster', poster > 0, poster);
+    const blob = await page.evaluate(async () => {
+        const it = document.getElementById('it'), file = await it.toBlob(), picture = await createImageBitmap(file);
+        return [file.type, picture.width === it.clientWidth * devicePixelRatio, it.shadowRoot.querySelector('.poster').hidden].join();
+    });
+    check('lazy: then it comes, and a picture of it is a file', blob === 'image/png,true,true', blob);
+    await whole(page, 'it');
+    await close(page, 'lazy');
+}
+
 // Callback keys of a clip, where a pack that has some was built.
 async function keys(browser) {
     if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
@@ -232,7 +251,7 @@ async function keys(browser) {
     await close(page, 'keys');
 }
 
-// A WebP picture is decoded by the browser, to the pixels of `noh build`; what is left out is told.
+// A WebP picture is decoded by the browser, to the pixels of `noh build`; what is left out is a warning.
 async function webp(page, drop) {
     await page.evaluate(() => {
         window.warned = [];
@@ -343,4 +362,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, early, model, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, early, model, lazy, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

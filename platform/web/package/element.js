@@ -11,7 +11,7 @@ canvas { display: block; width: 100%; height: 100%; }
 :host([camera-orbit]) canvas { touch-action: pan-y; cursor: grab; }
 :host([camera-orbit]) canvas:active { cursor: grabbing; }
 canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px; }
-.poster, .poster ::slotted(*) { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain; pointer-events: none; }
+.poster, .poster ::slotted(*), .poster img { position: absolute; inset: 0; width: 100%; height: 100%; object-fit: contain; pointer-events: none; }
 .progress, .message { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; }
 .bar { display: flex; gap: .7rem; align-items: center; }
 progress { flex: 1; min-width: 0; max-width: 16rem; }
@@ -37,13 +37,13 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 // Properties and their values without an attribute.
 const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
-    alt: '', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
+    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
 // A plain class if there is no page (rendering on a server).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
-    static observedAttributes = ['src', 'clip', 'face', ...ofLight, 'level', 'speed', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
+    static observedAttributes = ['src', 'poster', 'clip', 'face', ...ofLight, 'level', 'speed', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
 
     constructor() {
         super();
@@ -61,7 +61,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     // Another `ready`, which resolves to the element when a pack is shown, and rejects if it cannot be.
     renew() {
         this.ready = new Promise((resolve, reject) => { this.settle = { resolve, reject }; });
-        this.ready.catch(() => {}); // who does not wait for it is told by an event
+        this.ready.catch(() => {}); // an unheard one is an event, not an error of the page
         this.arriving = true;
     }
 
@@ -82,7 +82,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.character = new Character(this.canvas, this.wishes());
         this.watch();
         this.nameCanvas();
-        if (this.src) this.load(this.src);
+        this.showPoster();
+        if (this.src && this.loading !== 'lazy') this.load(this.src);
     }
 
     // A moved element is in the page again before this ends.
@@ -97,6 +98,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.endPointers();
         this.sees.disconnect();
         this.character.dispose();
+        this.loads = 0;
         this.canvas.remove();
         this.character = this.canvas = null;
         this.inside('.poster').hidden = false;
@@ -128,7 +130,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.endPointers = this.addPointers();
         this.sees = new IntersectionObserver(([entry]) => { // draw only while visible
             character.stopped = !entry.isIntersecting;
-            if (!character.stopped) character.redraw();
+            if (character.stopped) return;
+            if (!this.loads && this.src) this.load(this.src); // loading="lazy"
+            character.redraw();
         });
         this.sees.observe(this);
     }
@@ -210,6 +214,13 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     flush() { for (const call of this.waiting.splice(0)) call(); }
 
+    // The attribute `poster`, an address, in place of the slot.
+    showPoster() {
+        const picture = new Image();
+        Object.assign(picture, { src: this.poster, alt: '' });
+        this.inside('slot').replaceChildren(...this.poster ? [picture] : []);
+    }
+
     showProgress({ taken, all, shows, words }) {
         const bar = this.inside('progress');
         this.inside('.progress').hidden = shows === 2;
@@ -285,7 +296,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     attributeChangedCallback(name, before, after) {
         if (!this.character || before === after) return;
         if (name === 'src') {
-            if (after) this.load(after);
+            if (after && (this.loads || this.loading !== 'lazy' || !this.character.stopped)) this.load(after);
+        } else if (name === 'poster') {
+            this.showPoster();
         } else if (ofLight.includes(name)) {
             this.character.setLight(Object.fromEntries(Object.entries(this.wishes()).filter(([key]) => ofLight.includes(key))));
         } else if (name === 'level' || name === 'speed') {
@@ -350,6 +363,16 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     feel(emotion, amount) { return this.ask((character) => character.feel(emotion, amount)); }
     push() { return this.ask((character) => character.push()); }
     fit() { return this.ask((character) => character.fit()); }
+
+    // The picture at full resolution, as a file.
+    toBlob({ mimeType, quality } = {}) {
+        return this.ask((character) => {
+            character.sharp = true;
+            character.draw();
+            character.sharp = false;
+            return new Promise((resolve) => { character.canvas.toBlob(resolve, mimeType, quality); });
+        });
+    }
 
     // Speech: sentences and sounds (Speech.speak), the microphone, or fifteen weights of mouth shapes.
     speak(what, options) { return this.ask((character) => character.speech.speak(what, options)); }

@@ -186,6 +186,10 @@ export interface NohCharacterProperties {
     speed: number;
     emotion: string;
     alt: string;
+    /** Address of a picture that is shown until the first frame, unless there is a slot `poster`. */
+    poster: string;
+    /** `lazy`: loads when the visitor scrolls to it. */
+    loading: 'auto' | 'lazy' | 'eager';
     path: MorphPath;
     pixels: 'auto' | 'all';
     characters: number;
@@ -234,6 +238,8 @@ export class NohCharacter extends HTMLElement {
     feel(emotion: string | null, amount?: number): Promise<void>;
     push(): Promise<string>;
     fit(): Promise<void>;
+    /** The present picture; default: PNG. */
+    toBlob(options?: { mimeType?: string; quality?: number }): Promise<Blob | null>;
     /** Says it after what is said now. Resolves to whether all of it was said. */
     speak(what: SpeechSource, options?: SpeechOptions): Promise<boolean>;
     listen(): Promise<void>;
