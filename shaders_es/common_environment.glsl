@@ -3,18 +3,14 @@
  * noh_gl_variant_defines:
  *
  *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)
- *   NOH_SHADOW_TAPS  with it, 1 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
+ *   NOH_AT_VERTICES  defined in vertex shaders: only ambient light
+ *   NOH_SHADOW_TAPS  with NOH_LIT, 1 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
  *                    fetches */
 #if defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
 #ifndef NOH_SHADOW_TAPS
 #define NOH_SHADOW_TAPS 4
 #endif
 uniform vec4 noh_lighting[18];
-uniform mediump samplerCube noh_environment;
-uniform highp sampler2DShadow noh_shadow_map;
-
-#define noh_key_color noh_lighting[12].rgb /* the light reflected by a white matte surface that faces it */
-#define noh_key_gloss noh_lighting[12].w   /* share of it in highlights */
 
 /* The ambient light reflected by a white matte surface, by its normal: spherical harmonics of order 3 (Ramamoorthi,
  * Hanrahan: An efficient representation for irradiance environment maps, SIGGRAPH 2001). */
@@ -25,6 +21,13 @@ vec3 noh_ambient(vec3 n)
     c += noh_lighting[7].rgb * (n.x * n.z) + noh_lighting[8].rgb * (n.x * n.x - n.y * n.y);
     return max(c, vec3(0.0));
 }
+
+#ifndef NOH_AT_VERTICES
+uniform mediump samplerCube noh_environment;
+uniform highp sampler2DShadow noh_shadow_map;
+
+#define noh_key_color noh_lighting[12].rgb /* the light reflected by a white matte surface that faces it */
+#define noh_key_gloss noh_lighting[12].w   /* share of it in highlights */
 
 /* The light mirrored from a direction by a surface of this roughness. */
 vec3 noh_mirror(vec3 r, float roughness)
@@ -104,4 +107,5 @@ vec3 noh_expose(vec3 c)
     filmic = (filmic * (2.51 * filmic + 0.03)) / (filmic * (2.43 * filmic + 0.59) + 0.14);
     return noh_lighting[13].y > 0.5 ? filmic : c;
 }
+#endif
 #endif

@@ -2,7 +2,8 @@
  * follows common_fade.glsl in noh_gl_shader_prefix. Defines, written by noh_gl_variant_defines:
  *
  *   NOH_DEPTH_ONLY    defined: only depth is drawn; o_color is unused, discards apply
- *   NOH_ALPHA_CUT     defined with it if the material cuts by alpha; without, base colours are white
+ *   NOH_ALPHA_CUT     defined if the material cuts or blends by alpha. With NOH_DEPTH_ONLY and without it, base colours
+ *                     are white
  *   NOH_FADE          defined: draw only some of the pixels (noh_gl_lod)
  *   NOH_ENCODE_SRGB   defined: the target does not encode to sRGB
  *   NOH_DEBUG_VIEW    a noh_debug_view */
@@ -28,10 +29,12 @@ vec4 noh_base(vec2 uv, vec4 color)
 {
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     vec4 texel = texture(noh_base_color_texture, uv);
+#ifdef NOH_ALPHA_CUT
     if (fract(noh_material.w) > 0.125) texel.rgb /= max(texel.a, 0.002); /* transparent texels are black, so filtering
                                                                           * darkens edges by as much */
+#endif
     vec4 base = noh_base_color * color * texel;
-#ifndef NOH_ENCODE_SRGB
+#if defined(NOH_ALPHA_CUT) && !defined(NOH_ENCODE_SRGB)
     if (noh_material.w < -0.5) base.a = noh_strand_alpha(base);
 #endif
     return base;
@@ -43,7 +46,7 @@ vec4 noh_base(vec2 uv, vec4 color)
 /* Discard the pixels that an alpha-cut material does not draw. */
 void noh_cut(float alpha)
 {
-#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+#ifdef NOH_ALPHA_CUT
     if (alpha < noh_material.z) {
         discard;
     }

@@ -28,33 +28,56 @@ float noh_open()
  * SIGGRAPH 2016). Teeth stand among red walls: as if their albedo were at most 0.6. The deepest mouth is dark red. */
 vec3 noh_bounced(vec3 albedo, float open)
 {
+#ifdef NOH_PHONE
+    return mix(vec3(0.24, 0.08, 0.07), vec3(1.0), open);
+#else
     albedo = min(albedo, vec3(0.6));
     vec3 a = 2.0404 * albedo - 0.3324, b = 0.6417 - 4.7951 * albedo, c = 2.7552 * albedo + 0.6903;
     return max(max(vec3(open), ((open * a + b) * open + c) * open), vec3(0.24, 0.08, 0.07));
+#endif
 }
 #endif
+/* Schlick's reflectance at an angle, from what it is at normal incidence to what it is at grazing angles. */
+vec3 noh_fresnel(vec3 f0, float f90, float cosine)
+{
+    float away = clamp(1.0 - cosine, 0.0, 1.0), away2 = away * away;
+    return f0 + (f90 - f0) * (away2 * away2 * away);
+}
+
 #ifdef NOH_LIT
 /* The isotropic GGX distribution times Smith's visibility, correlated in height (Heitz: Understanding the
- * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv. */
+ * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv. In the phone tier the
+ * visibility is the fit of Hammon (PBR diffuse lighting for GGX+Smith microsurfaces, GDC 2017). */
 float noh_gloss(float nh, float nl, float nv, float roughness)
 {
-    float a2 = roughness * roughness * roughness * roughness;
+    float a = roughness * roughness, a2 = a * a;
     float d = nh * nh * (a2 - 1.0) + 1.0;
+#ifdef NOH_PHONE
+    float v = mix(2.0 * nl * nv, nl + nv, a);
+#else
     float v = nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2);
-    return a2 / (3.14159265 * d * d) * 0.5 / max(v, 1e-5);
+#endif
+    return a2 * (0.5 / 3.14159265) / (d * d * max(v, 1e-5));
 }
 
 /* The share of uniform ambient light that a GGX surface reflects. x: at a reflectance of 1 at normal incidence; y: what
  * is added at 0. Polynomials fitted to our own integral, for roughness from 0.08: errors at most 0.03, 0.011 on average
- * (tested by test_gl_light). */
+ * (tested by test_gl_light). In the phone tier at most 0.1, 0.02 on average. */
 vec2 noh_albedo_of(float roughness, float nv)
 {
+#ifdef NOH_PHONE
+    float r = roughness, away = 1.0 - nv, away2 = away * away, grazing = away2 * away2;
+    vec2 all_edge = vec2(grazing * r * (1.4894 * r - 0.7315) + r * (0.1437 - 0.8209 * r) + 1.0066,
+                         grazing * (r * (1.2122 * r - 2.2171) + 1.0498));
+    return clamp(all_edge, 0.0, 1.0);
+#else
     vec4 r = vec4(1.0, roughness, roughness * roughness, roughness * roughness * roughness);
     float y = 1.0 - nv, y2 = y * y, y5 = y2 * y2 * y, y10 = y5 * y5;
     vec4 p = vec4(1.0, y, y5, y10 * y10);
     vec4 all = vec4(dot(vec4(0.9284, 0.8216, -2.0490, 0.5797), r), dot(vec4(0.1452, -0.9647, 0.6314, 0.5740), r), dot(vec4(0.0256, -1.7157, 5.7461, -3.9288), r), dot(vec4(-0.2394, 2.2160, -4.1401, 2.3712), r));
     vec4 edge = vec4(dot(vec4(0.0413, -0.4453, 0.9476, -0.5651), r), dot(vec4(-0.1707, 1.9821, -3.9622, 2.1975), r), dot(vec4(1.4333, -4.4640, 4.4523, -1.3693), r), dot(vec4(-0.1007, -1.3338, 4.0245, -2.6212), r));
     return clamp(vec2(dot(all, p), dot(edge, p)), 0.0, 1.0);
+#endif
 }
 
 /* The share of mirrored light that occlusion lets through: the rougher the surface, the less, compared with matte
@@ -73,10 +96,35 @@ vec3 noh_key_matte(noh_surface s, float shadow)
 {
 #ifdef NOH_SKIN
     float facing = dot(s.geometric, noh_key);
-    vec3 through = pow(vec3(mix(1.0, shadow, smoothstep(-0.1, 0.1, facing))), vec3(0.6, 1.0, 1.2));
+    float part = mix(1.0, shadow, smoothstep(-0.1, 0.1, facing));
+#ifdef NOH_PHONE
+    float root = sqrt(part);
+    vec3 through = vec3(0.2 * part + 0.8 * root, part, part * (0.8 + 0.2 * part));
+#else
+    vec3 through = pow(vec3(part), vec3(0.6, 1.0, 1.2));
+#endif
     return noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric)) * through;
 #else
     return vec3(max(dot(s.normal, noh_key), 0.0) * shadow);
+#endif
+}
+
+#ifdef NOH_PHONE
+in vec3 noh_v_ambient; /* common_vertex.glsl */
+#endif
+
+/* The ambient light of a matte surface. In the phone tier it is filtered from the vertices; a normal map bends it by its
+ * linear terms. */
+vec3 noh_rest_ambient(noh_surface s)
+{
+#if !defined(NOH_PHONE)
+    return noh_ambient(s.normal);
+#elif defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
+    vec3 by = s.normal - s.geometric;
+    vec3 bent = noh_lighting[1].rgb * by.y + noh_lighting[2].rgb * by.z + noh_lighting[3].rgb * by.x;
+    return max(noh_v_ambient + bent, vec3(0.0));
+#else
+    return noh_v_ambient;
 #endif
 }
 
@@ -88,9 +136,13 @@ in vec4 noh_v_transfer; /* common_transfer.glsl */
 vec3 noh_rest_light(noh_surface s)
 {
     if (!gl_FrontFacing) {
-        return noh_ambient(s.normal) * s.occlusion; /* the transfer is for the other side */
+        return noh_rest_ambient(s) * s.occlusion; /* the transfer is for the other side */
     }
+#ifdef NOH_PHONE
+    vec3 bent = min(noh_rest_ambient(s) / max(noh_v_ambient, vec3(1e-3)), vec3(4.0));
+#else
     vec3 bent = min(noh_ambient(s.normal) / max(noh_ambient(s.geometric), vec3(1e-3)), vec3(4.0));
+#endif
     return max(noh_v_transfer.rgb, vec3(0.0)) * bent * min(1.0, s.occlusion / max(noh_v_transfer.a, 1e-3));
 }
 
@@ -102,7 +154,7 @@ float noh_rest_occlusion(noh_surface s)
 #else
 vec3 noh_rest_light(noh_surface s)
 {
-    return noh_ambient(s.normal) * s.occlusion;
+    return noh_rest_ambient(s) * s.occlusion;
 }
 
 float noh_rest_occlusion(noh_surface s)
@@ -162,7 +214,11 @@ vec3 noh_light(noh_surface s)
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
     vec3 gloss = f0 * (part.x - part.y) + f90 * part.y; /* uniform light, reflected once */
+#ifdef NOH_PHONE
+    float again = 1.0;
+#else
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and after further bounces between the facets */
+#endif
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
     vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
     float shadow = noh_key_shadow(s.position, s.geometric);
@@ -177,8 +233,7 @@ vec3 noh_light(noh_surface s)
 #endif
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
-        float away = clamp(1.0 - dot(h, s.view), 0.0, 1.0), away2 = away * away;
-        vec3 fresnel = f0 + (f90 - f0) * (away2 * away2 * away);
+        vec3 fresnel = noh_fresnel(f0, f90, dot(h, s.view));
         color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * shadow * noh_key_glossed(mirror, h, nv, roughness));
     }
     return noh_expose(color + s.emissive);
@@ -193,8 +248,7 @@ float noh_highlight(float nh, float nl, float nv, float roughness)
     float a = roughness * roughness, a2 = a * a;
     float d = nh * nh * (a2 - 1.0) + 1.0;
     float k = a * 0.5;
-    float visibility = 0.25 / ((nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
-    return a2 / (3.14159265 * d * d) * visibility;
+    return a2 * (0.25 / 3.14159265) / (d * d * (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
 }
 
 /* The highlight of the key light. normal: for reflections */
@@ -255,13 +309,19 @@ vec3 noh_light(noh_surface s)
     vec3 h = normalize(noh_key + s.view);
 #endif
     float nv = max(dot(mirror, s.view), 1e-3);
-    vec3 fresnel = f0 + (f90 - f0) * pow(1.0 - clamp(dot(h, s.view), 0.0, 1.0), 5.0);
+#ifdef NOH_PHONE
+    vec3 fresnel = f0;
+#else
+    vec3 fresnel = noh_fresnel(f0, f90, dot(h, s.view));
+#endif
     vec3 sky = s.occlusion * noh_sky(s.normal.y);
     vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
     color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;
     color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic);
+#ifndef NOH_PHONE
     float rim = max(1.0 - nv, 0.0); /* nv may exceed 1 by rounding */
     color += 0.10 * sky * rim * rim * rim * (1.0 - 0.6 * roughness);
+#endif
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     color *= noh_bounced(s.albedo, noh_open());
 #endif

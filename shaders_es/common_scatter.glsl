@@ -9,24 +9,34 @@ in float noh_v_depth; /* behind the lips: common_face.glsl */
  * is the integral of max(cos, 0) over a ring of this curvature, weighted by the diffusion profile of d'Eon and Luebke
  * (GPU Gems 3, chapter 14), which Penner tabulates (Pre-integrated skin shading, GPU Pro 2, 2011). A fit replaces his
  * texture: a line, and a hyperbola for |nl|, whose corner the curvature rounds. Its error is at most 0.006 (tested by
- * test_gl_surfaces). nl: a cosine for each channel; curvature: 1/mm; above 1 it counts as 1 */
+ * test_gl_surfaces); in the phone tier, a hyperbola alone, 0.03 up to a curvature of 0.5. nl: a cosine for each channel;
+ * curvature: 1/mm; above 1 it counts as 1 */
 vec3 noh_scatter(vec3 nl, float curvature)
 {
     float c = clamp(curvature, 0.0, 1.0);
-    vec3 line = 0.5 * (1.0 + vec3(-0.35725, -0.30816, -0.14391) * c) / (1.0 + vec3(-0.3, -0.29987, -0.13865) * c);
-    vec3 bend = 0.5 * (1.0 + vec3(-0.053656, -0.31499, 2.9368) * c) / (1.0 + vec3(0.047222, -0.3, 2.9189) * c);
-    vec3 corner = vec3(0.16491, 0.096204, 0.090923) * c / (1.0 + vec3(0.1474, -0.031291, -0.039367) * c);
-    vec3 level = vec3(0.040449, 0.0, -0.0051897) * c / (1.0 + vec3(1.3027, 0.0, -0.3) * c);
+#ifdef NOH_PHONE
+    return 0.5 * (nl + sqrt(nl * nl + vec3(0.0225, 0.0096, 0.0085) * (c * c)));
+#else
+    vec3 line = (vec3(-0.01368, -0.00198, -0.00044) * c + vec3(-0.02688, -0.00389, -0.0026)) * c + 0.5;
+    vec3 bend = (vec3(0.00224, -0.00358, -0.00333) * c + vec3(-0.0504, -0.00704, 0.00543)) * c + 0.5;
+    vec3 corner = (vec3(-0.02014, 0.00314, 0.00378) * c + vec3(0.16371, 0.09616, 0.09086)) * c;
+    vec3 level = (vec3(-0.01574, 0.0, -0.00248) * c + vec3(0.03268, 0.0, -0.00487)) * c;
     return max(level + line * nl + bend * sqrt(nl * nl + corner * corner), 0.0);
+#endif
 }
 
 /* The curvature of a surface, in 1/mm, from neighbouring pixels. Uses the larger distance of the two directions: at
- * grazing angles the other one is unreliable. */
+ * grazing angles the other one is unreliable. In the phone tier, along the rows of the picture alone. */
 float noh_curvature(vec3 position, vec3 geometric)
 {
+#ifdef NOH_PHONE
+    vec3 along = dFdx(geometric), step = dFdx(position);
+    return sqrt(dot(along, along) / max(dot(step, step), 1e-20)) / noh_surface_values.x;
+#else
     vec3 nx = dFdx(geometric), ny = dFdy(geometric), px = dFdx(position), py = dFdy(position);
     float turn = max(dot(nx, nx), dot(ny, ny)), way = max(dot(px, px), dot(py, py));
     return sqrt(turn / max(way, 1e-20)) / noh_surface_values.x;
+#endif
 }
 
 /* Light scatters farther than the finest bumps, red the farthest: each channel has a normal of its own, between the
@@ -40,9 +50,13 @@ vec3 noh_scatter_cosines(noh_surface s, vec3 key)
  * specular antialiasing, I3D 2019). */
 float noh_pore_roughness(float roughness, vec3 normal)
 {
+#if defined(NOH_PHONE) && !defined(NOH_NORMAL_MAP)
+    return roughness;
+#else
     vec3 x = dFdx(normal), y = dFdy(normal);
     float a = roughness * roughness, wider = min(0.5 * (dot(x, x) + dot(y, y)), 0.18);
     return sqrt(sqrt(min(a * a + wider, 1.0)));
+#endif
 }
 
 /* Skin has two specular lobes, of its oil and of the skin below, narrower and wider than the map's roughness. Their

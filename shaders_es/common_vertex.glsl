@@ -56,6 +56,10 @@ flat out highp ivec4 noh_v_regions; /* three regions of 8 bits in each component
 #endif
 #endif
 
+#if defined(NOH_PHONE) && defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
+out vec3 noh_v_ambient; /* of a white matte surface */
+#endif
+
 /* A surface drawn by two programs, one for depth and one for colour, has the same depth in both. */
 invariant gl_Position;
 
@@ -230,6 +234,9 @@ noh_vertex noh_fetch()
     v.normal = noh_world_normal(x, y, z, v.normal);
     v.tangent.xyz = vec3(dot(x.xyz, v.tangent.xyz), dot(y.xyz, v.tangent.xyz), dot(z.xyz, v.tangent.xyz));
     v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror inverts the frame */
+#endif
+#if defined(NOH_PHONE) && defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
+    noh_v_ambient = noh_ambient(normalize(v.normal));
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);

@@ -597,6 +597,8 @@ const char *noh_palette_mode_name(noh_palette_mode mode);
 #define NOH_FEATURE_WRINKLE_PIXEL 256u /* with wrinkles: pixels read a mask of regions instead of the weight maps */
 #define NOH_FEATURE_SPECULAR_MAP 512u
 #define NOH_FEATURE_SPECULAR_ROUGHNESS 1024u /* with a specular map: its alpha is roughness */
+#define NOH_FEATURE_ALPHA 2048u              /* cut or blended: pixels are discarded by alpha */
+#define NOH_FEATURE_PHONE 4096u /* the phone tier: approximations at pixels; set by the renderer, not by a material */
 
 #define NOH_GL_DEFINES_BYTES 768u
 
@@ -609,7 +611,7 @@ typedef struct noh_gl_variant {
         u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
 } noh_gl_variant;
 
-/* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have no features. */
+/* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have NOH_FEATURE_ALPHA at most. */
 uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
 
 /* The key of a mesh with given bindings; set `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features`
@@ -751,6 +753,7 @@ typedef struct noh_gl_renderer_desc {
     int fades;                 /* 1: LOD levels will fade (noh_gl_lod): also compiles variants that discard pixels */
     int encode_srgb;           /* 1: the shader encodes to sRGB, for framebuffers that do not, such as WebGL's canvas */
     int lit;                   /* 1: shaders use the light of noh_gl_renderer_light */
+    noh_shading shading;       /* as in noh_stage_desc */
     noh_gl_passes passes;
     const noh_gl_shader_desc *shaders; /* your own shaders instead of the library's; copied, except its texts. NULL:
                                         * none */
@@ -785,6 +788,7 @@ typedef struct noh_gl_renderer {
     int priority;                        /* of the next draws, or NOH_PRIORITY_ANY */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* of the next noh_gl_draw_mesh, as vectors of noh_wrinkle_regions */
     uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
+    uint8_t shading;                     /* noh_shading */
     const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
     noh_gl_raster raster;                /* state restored by noh_gl_draw_end */
     uint32_t variant_count;

@@ -202,6 +202,11 @@ typedef struct noh_kind_desc {
 struct noh_gl_light_desc;
 typedef struct noh_stage_gpu noh_stage_gpu; /* noh_gl.h has the only one */
 
+/* How much the library's shaders compute at each pixel. The phone tier approximates: ambient light comes from the
+ * vertices, the shadow map is read once, and reflectance, highlights and the light in skin are simpler fits. On GPUs of
+ * phones a lit pixel takes about 0.6 of the time. Shaders of your own that call noh_light get the same. */
+typedef enum noh_shading { NOH_SHADING_FULL, NOH_SHADING_PHONE } noh_shading;
+
 /* Zero is a good default for every field except kinds and kind_count. */
 typedef struct noh_stage_desc {
     const noh_kind_desc *kinds; /* [kind_count]; required */
@@ -219,14 +224,15 @@ typedef struct noh_stage_desc {
     uint32_t slot_moves;       /* most slots reassigned per frame; each is accumulated again. Waiting actors are drawn
                                 * coarser, or without targets until they have a slot. 1 counts as 2; default (0) no
                                 * bound. A frame with a cut has no bound */
-    int tangents;      /* 1: accumulators also hold tangents, for your own shaders that read morphed tangents; the
+    int tangents;    /* 1: accumulators also hold tangents, for your own shaders that read morphed tangents; the
                            * library's do not */
-    int halves;        /* 1: 16-bit accumulators; -1: always 32-bit; default (0) 32-bit unless a bound needs
+    int halves;      /* 1: 16-bit accumulators; -1: always 32-bit; default (0) 32-bit unless a bound needs
                            * 16-bit */
-    int encode_srgb;   /* 1: shaders encode to sRGB, for framebuffers that do not, such as WebGL's canvas */
-    int full_detail;   /* 1: shows each actor at its kind's finest level, or at noh_appearance.level, in full detail: no
+    int encode_srgb; /* 1: shaders encode to sRGB, for framebuffers that do not, such as WebGL's canvas */
+    int full_detail; /* 1: shows each actor at its kind's finest level, or at noh_appearance.level, in full detail: no
                            * LOD tables, no programs that fade or use fewer influences */
-    int without_depth; /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
+    noh_shading shading; /* default (0) NOH_SHADING_FULL */
+    int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
     int user_values; /* 1: your own shaders read noh_appearance.user: 16 bytes more on the CPU and the GPU for each mesh
                            * of a visible actor */
     int without_shader;   /* 1: every noh_stage_draw names a shader, and the library's programs are not compiled */

@@ -271,7 +271,7 @@ typedef struct noh_gl_variant_key {
     uint8_t depth;           /* 1: only depth (NOH_DRAW_DEPTH): positions, and the inputs of alpha if cut */
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
     uint16_t features;       /* NOH_FEATURE_* of the material; with depth 0 */
-    uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: all colour variants cut */
+    uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: NOH_FEATURE_ALPHA */
     uint8_t lit;             /* 1: lit by noh_gl.h; with depth 0 */
     uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
     uint8_t uv_targets;      /* 1: the mesh has NOH_MESH_UV_TARGETS; with depth only if cut */

@@ -15,6 +15,15 @@ for more in '--rotate 90' '--tonemap none' '--tonemap filmic' '--shadow off' '--
     expect 0 "render --light room $more"
     check "$more changes the picture" sh -c '! cmp -s "$1" "$2"' - "$work/room.png" "$work/more.png"
 done
+for light in room none; do
+    noh render "$pack" -o "$work/full.png" --light $light --size 128x128
+    noh render "$pack" -o "$work/phone.png" --light $light --size 128x128 --tier phone
+    expect 0 "render --tier phone, $light"
+    check "nearly the same picture, $light" "$build/tests/gl/picture_diff" "$work/full.png" "$work/phone.png" 1.5 0.05
+    check "of another program, $light" sh -c '! cmp -s "$1" "$2"' - "$work/full.png" "$work/phone.png"
+done
+noh render "$pack" -o "$work/phone.png" --tier low
+expect 2 'an unknown tier'
 noh render "$pack" -o "$work/more.png" --debug occlusion --size 64x64
 expect 0 'occlusion without a light'
 noh sheet "$pack" -o "$work/sheet.png" --light studio --target smile --tile 64

@@ -364,6 +364,7 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
     assert_int_equal(fetches_of(MAPS | NOH_FEATURE_SKIN, 1, 0), 8);
     assert_int_equal(fetches_of(0, 0, 0), 1);
     assert_int_equal(fetches_of(0, 1, 0), 6); /* base colour, environment, four of the shadow map */
+    assert_int_equal(fetches_of(NOH_FEATURE_PHONE, 1, 0), 3);
 }
 
 /* One more anywhere is a ninth. */

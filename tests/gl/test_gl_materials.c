@@ -356,6 +356,8 @@ static void features_follow_material_and_mesh(void **state)
     assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_TEETH);
     m.flags = NOH_MATERIAL_UNLIT;
     assert_int_equal(noh_gl_features_of(&mesh, &m), 0);
+    m.flags = NOH_MATERIAL_UNLIT | NOH_MATERIAL_MASK;
+    assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_ALPHA);
 }
 
 static const struct CMUnitTest tests[] = {

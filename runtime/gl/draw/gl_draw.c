@@ -427,7 +427,7 @@ static void draw_part_of(const draw_job *j, draw_part part, int priority)
         if (draws_nothing(j, s) || !is_in_part(m, part) || (part == PART_BLENDED && m->priority != priority)) {
             continue;
         }
-        if (!v || v->key.features != features) {
+        if (!v || (v->key.features & ~NOH_FEATURE_PHONE) != features) {
             v = variant_of(j, part, features);
             NOH_ASSERT(v); /* the renderer's desc asked for it */
             if (!v) break;

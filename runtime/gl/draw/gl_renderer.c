@@ -40,8 +40,9 @@ static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 /* ---- choosing variants ---- */
 
 /* Key fields set by the renderer, not by a mesh. Depth variants do not depend on colours. */
-static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int lit, int without_tangents)
+static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int lit, int without_tangents, int shading)
 {
+    if (shading == NOH_SHADING_PHONE && !key.depth) key.features |= NOH_FEATURE_PHONE;
     key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
     key.lit = (uint8_t)(lit && !key.depth);
     if (!key.lit) key.transfer = 0;
@@ -64,7 +65,7 @@ typedef struct wish {
 static noh_result want_one(const wish *w, noh_gl_variant_key key)
 {
     noh_gl_variant_list *list = w->list;
-    key = completed(key, w->desc->encode_srgb, w->desc->lit, w->desc->without_tangents);
+    key = completed(key, w->desc->encode_srgb, w->desc->lit, w->desc->without_tangents, (int)w->desc->shading);
     for (uint32_t i = 0; i < list->count; i++) {
         if (memcmp(&list->keys[i], &key, sizeof key) == 0) {
             return NOH_OK;
@@ -168,7 +169,7 @@ noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh
 const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *r, noh_gl_variant_key key)
 {
     NOH_ASSERT(r && r->variant_count <= NOH_GL_VARIANTS_MAX);
-    key = completed(key, r->encode_srgb, r->lit, r->without_tangents);
+    key = completed(key, r->encode_srgb, r->lit, r->without_tangents, r->shading);
     for (uint32_t i = 0; i < r->variant_count; i++) {
         if (memcmp(&r->variants[i].key, &key, sizeof key) == 0) {
             return &r->variants[i];
@@ -253,6 +254,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
     out->lit = desc->lit != 0;
+    out->shading = (uint8_t)desc->shading;
     out->view = view_of(desc);
     if (desc->shaders) {
         out->shaders = *desc->shaders;

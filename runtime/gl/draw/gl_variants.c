@@ -53,10 +53,10 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
 
 uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
 {
-    unsigned features = 0;
+    unsigned features = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
     NOH_ASSERT(mesh && mesh->header && m);
     if (m->flags & NOH_MATERIAL_UNLIT) {
-        return 0;
+        return (uint16_t)features;
     }
     if (mesh->header->flags & NOH_MESH_TANGENTS) {
         if (m->normal_texture != NOH_NONE) features |= NOH_FEATURE_NORMAL_MAP;
@@ -109,12 +109,13 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
-/* Shadow map fetches of a lit pixel: 4, or fewer if its other textures leave less of 8 fetches. */
+/* Shadow map fetches of a lit pixel: 1 in the phone tier, else 4, or fewer if its other textures leave less of 8 fetches. */
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
                                      NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
+    if (features & NOH_FEATURE_PHONE) return 1u;
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
     return left < 4u ? left : 4u;
 }
@@ -139,7 +140,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.fade, "#define NOH_FADE\n" },
                   { key.depth, "#define NOH_DEPTH_ONLY\n" },
                   { key.two_layers, "#define NOH_TWO_LAYERS\n" },
-                  { key.cut, "#define NOH_ALPHA_CUT\n" },
+                  { key.cut || key.features & NOH_FEATURE_ALPHA, "#define NOH_ALPHA_CUT\n" },
                   { key.lit, "#define NOH_LIT\n" },
                   { key.lit && key.transfer & NOH_TRANSFER_ON_NORMAL, "#define NOH_TRANSFER_ON_NORMAL\n" },
                   { key.features & NOH_FEATURE_NORMAL_MAP, "#define NOH_NORMAL_MAP\n" },
@@ -152,7 +153,8 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },
                   { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },
                   { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },
-                  { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" } };
+                  { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" },
+                  { key.features & NOH_FEATURE_PHONE, "#define NOH_PHONE\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
     at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
@@ -168,9 +170,12 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX])
 {
     static const char precision[] = "precision highp float;\nprecision highp int;\n", own[] = "#line 1 0\n";
+    static const char at_vertices[] = "#define NOH_AT_VERTICES\n";
     uint32_t count = 0;
     pieces[count++] = precision;
     if (stage == GL_VERTEX_SHADER) {
+        pieces[count++] = at_vertices;
+        pieces[count++] = noh_shader_common_environment_glsl;
         pieces[count++] = noh_shader_common_delta_glsl;
         pieces[count++] = noh_shader_common_walk_glsl;
         pieces[count++] = noh_shader_common_layers_glsl;

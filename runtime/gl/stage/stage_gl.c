@@ -185,6 +185,7 @@ static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_
     d.without_tangents = !desc->tangents;
     d.encode_srgb = desc->encode_srgb;
     d.lit = desc->light != NULL;
+    d.shading = desc->shading;
     d.passes = desc->without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         d.crowds |= desc->kinds[i].actor_count > 1u;

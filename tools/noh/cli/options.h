@@ -38,6 +38,13 @@
         .what = "whether the pack's springs swing (noh build --springs), in addition to the clips"          \
     }
 
+#define OPTION_TIER(T, m, ...)                                                                                 \
+    {                                                                                                          \
+        .name = "--tier", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "full|phone", .initial = "full", \
+        .what = "how much is computed at each pixel: phone approximates, for the GPUs of cheap phones",        \
+        .example = "phone", __VA_ARGS__                                                                        \
+    }
+
 #define OPTION_WEIGHT_RULES(T, m)                                                                          \
     {                                                                                                      \
         .name = "--weight-rules", .kind = OPTION_FLAG, .at = offsetof(T, m),                               \

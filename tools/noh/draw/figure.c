@@ -153,6 +153,13 @@ static int check_clips(const figure *f)
     return tool_fail(f->desc.clips->path, "for %s: %s", f->desc.file->path, error.what);
 }
 
+int figure_tier(const char *text, noh_shading *shading)
+{
+    const int phone = strcmp(text, "phone") == 0;
+    *shading = phone ? NOH_SHADING_PHONE : NOH_SHADING_FULL;
+    return phone || strcmp(text, "full") == 0 ? 0 : tool_usage("--tier must be full or phone, not '%s'", text);
+}
+
 int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
@@ -172,6 +179,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     d->halves = desc->accumulate == NOH_ACCUMULATE_F16 ? 1 : desc->accumulate == NOH_ACCUMULATE_F32 ? -1 : 0;
     d->morph_path = (uint32_t)desc->path;
     d->morph_sums = desc->sums;
+    d->shading = desc->shading;
     d->light = desc->light && caps ? &desc->light->desc : NULL;
     d->without_transfer = desc->light && desc->light->without_transfer;
     d->without_depth = !d->light || !d->light->shadow_px;

@@ -78,6 +78,7 @@ typedef struct figure_desc {
     int sums; /* 1: of the path cpu in a texture, which layers are shown from */
     noh_accumulate accumulate;
     noh_debug_view view;
+    noh_shading shading;
     figure_body *body; /* NULL: it looks ahead and stands as in its clips. Must outlive the figure, at one address */
     int lowers_arms;   /* 1: arms that the pose spreads hang down */
     int hair;          /* 1: with the pack's hair, if any */
@@ -123,6 +124,9 @@ typedef struct figure {
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_appearance look; /* of all actors */
 } figure;
+
+/* --tier: full or phone. Returns an exit code. */
+int figure_tier(const char *text, noh_shading *shading);
 
 /* desc, stage_desc and plan alone.
  * caps  NULL: nothing is drawn, and packs of skeletons or clips alone are taken, too */

@@ -14,7 +14,7 @@
 #include "convert/base/input_file.h"
 
 typedef struct render_args {
-    const char *pack, *output, *pose, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind,
+    const char *pack, *output, *pose, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind, *tier,
         *decal_kind;
     uint32_t size[2];
     double time_s, lod, turn, swing;
@@ -87,6 +87,7 @@ static int check_args(render_args *a)
     if (!status) status = parse_level(a->lod, &a->figure.level);
     if (!status) status = tool_switch("--face", a->face, &a->figure.alive);
     if (!status) status = tool_switch("--springs", a->springs, &springs);
+    if (!status) status = figure_tier(a->tier, &a->figure.shading);
     a->figure.without_springs = !springs;
     if (!status) status = check_body(a);
     if (!status) status = tool_switch("--hair", a->hair, &a->figure.hair);
@@ -276,6 +277,7 @@ static const option options[] = {
     OPTION_CAMERA(render_args, view.camera, "auto"),
     OPTION_LOD(render_args, lod, .excludes = "--bones"),
     OPTIONS_LIGHT(render_args, light, "auto", .excludes = "--bones"),
+    OPTION_TIER(render_args, tier, .excludes = "--bones"),
     { .name = "--bones",
       .kind = OPTION_FLAG,
       .at = offsetof(render_args, show_bones),

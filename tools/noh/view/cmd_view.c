@@ -8,7 +8,7 @@
 #include "cli/verbs.h"
 
 typedef struct view_args {
-    const char *path, *accumulate, *driver, *camera, *face, *springs, *play;
+    const char *path, *accumulate, *driver, *camera, *face, *springs, *play, *tier;
     double frames;
     uint32_t size[2];
     light_options light;
@@ -64,6 +64,7 @@ static int run(void *args)
         return EXIT_USAGE;
     }
     a->run.desc.without_springs = !springs;
+    if (figure_tier(a->tier, &a->run.desc.shading)) return EXIT_USAGE;
     a->run.fixed_camera = strcmp(a->camera, "fixed") == 0;
     a->run.native = a->driver[0] == 'n';
     a->run.desc.width = a->size[0];
@@ -84,6 +85,7 @@ static const option options[] = {
       .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
     OPTION_SPRINGS(view_args, springs),
     OPTION_WEIGHT_RULES(view_args, run.desc.weight_rules),
+    OPTION_TIER(view_args, tier, .needs = NULL),
     { .name = "--play",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, play),

@@ -52,11 +52,12 @@ typedef struct view_model_desc {
     noh_accumulate accumulate;
     noh_debug_view view;
     int show_bones;
-    int without_springs;    /* springs of the pack do not swing */
-    int weight_rules;       /* the pack's rules for weights are kept */
-    int alive;              /* faces blink, breathe and look at the pointer */
-    int root_motion;        /* clips move the figure over the ground */
-    lighting *light;        /* NULL: the plain renderer's own */
+    int without_springs; /* springs of the pack do not swing */
+    int weight_rules;    /* the pack's rules for weights are kept */
+    int alive;           /* faces blink, breathe and look at the pointer */
+    int root_motion;     /* clips move the figure over the ground */
+    lighting *light;     /* NULL: the plain renderer's own */
+    noh_shading shading;
     const char *part;       /* the layer "part" moves this joint of the first skeleton and all below; NULL, "": none */
     uint32_t width, height; /* of the canvas */
 } view_model_desc;
