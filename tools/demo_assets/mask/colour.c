@@ -12,8 +12,8 @@
 static const V3 gofun = { 0.84, 0.765, 0.635 }, ivory = { 0.80, 0.68, 0.49 }, blush = { 0.80, 0.52, 0.40 };
 static const V3 red = { 0.34, 0.024, 0.018 }, ink = { 0.010, 0.008, 0.007 };
 static const V3 bare_wood = { 0.30, 0.155, 0.065 }, dark_wood = { 0.115, 0.052, 0.022 };
-static const V3 flesh = { 0.36, 0.10, 0.065 };
-static const V3 white_of_eye = { 0.78, 0.72, 0.60 }, iris = { 0.030, 0.014, 0.008 };
+static const V3 flesh = { 0.50, 0.27, 0.19 };
+static const V3 white_of_eye = { 0.78, 0.72, 0.60 }, iris = { 0.052, 0.024, 0.012 };
 static const V3 tooth = { 0.82, 0.74, 0.58 }, gum = { 0.22, 0.05, 0.035 };
 static const V3 tongue = { 0.42, 0.11, 0.09 }, throat = { 0.17, 0.035, 0.028 };
 
