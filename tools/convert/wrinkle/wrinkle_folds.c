@@ -316,13 +316,14 @@ static void place_zone(fold_zone *z, const double shrink[BINS])
     }
 }
 
-int wrinkle_folds_place(const wrinkle_field *field, const wrinkle_raster *raster, wrinkle_folds *folds)
+int wrinkle_folds_place(const wrinkle_field *field, const wrinkle_raster *raster, double finest, wrinkle_folds *folds)
 {
     int any = 0;
     for (uint32_t i = 0; i < FOLD_ZONES; i++) {
         double shrink[BINS];
         measure_zone(field, raster, &folds->face, &folds->zones[i], shrink);
         place_zone(&folds->zones[i], shrink);
+        folds->zones[i].width = fmax(folds->zones[i].width, 0.5 * finest / folds->face.unit);
         any = any || folds->zones[i].count;
     }
     return any;

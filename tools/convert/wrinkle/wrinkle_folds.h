@@ -48,8 +48,9 @@ int wrinkle_folds_find(wrinkle_field *field, const recipe_text *recipe, wrinkle_
 /* From side to side of the finest fold, model units. */
 double wrinkle_folds_finest(const wrinkle_folds *folds);
 
-/* Choose where the folds of each zone lie. Returns 0 where targets compress none of the zones. */
-int wrinkle_folds_place(const wrinkle_field *field, const wrinkle_raster *raster, wrinkle_folds *folds);
+/* Choose where the folds of each zone lie, and widen those that are finer than what the texture shows (finest, model
+ * units). Returns 0 where targets compress none of the zones. */
+int wrinkle_folds_place(const wrinkle_field *field, const wrinkle_raster *raster, double finest, wrinkle_folds *folds);
 
 /* Their normal map, like wrinkle_creases_make. To be freed; NULL: out of memory. */
 uint8_t *wrinkle_folds_map(const wrinkle_field *field, const wrinkle_raster *raster, const wrinkle_folds *folds);

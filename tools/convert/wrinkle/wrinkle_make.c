@@ -415,7 +415,7 @@ static int lay_out(model *m, model_mesh *mesh, const wrinkle_settings *settings,
     }
     if (overlaps(r) && !(settings->map && settings->mask)) { /* painted ones are meant for it */
         *why = "its texture coordinates overlap (mirrored or tiled): unwrap it so that each texel belongs to one place";
-    } else if (*is_face && !wrinkle_folds_place(f, r, folds)) {
+    } else if (*is_face && !wrinkle_folds_place(f, r, WAVE_TEXELS * texel_edge(f, r), folds)) {
         *why = "its targets compress no fold of a face by 1 %";
     }
     return 0;
