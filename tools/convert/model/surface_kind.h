@@ -21,9 +21,9 @@ uint32_t surface_kind_of_name(const char *name);
  * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
 
-/* Shells that exporters put in front of eyes would hide them where they are opaque: occlusion shells ("Eye_Occlusion")
- * darken instead, and tear shells ("Tearline") are not drawn, since eyes gloss by themselves. A warning of the model names
- * each. Returns 0, or 1: out of memory. */
+/* Opaque shells in front of eyes would hide them. Occlusion shells ("Eye_Occlusion") become black with an alpha of 0.2
+ * and so darken; tear shells ("Tearline") are not drawn, because eyes gloss by themselves. Each adds a warning to the
+ * model. Returns 0, or 1: out of memory. */
 int surface_shells_set(model *m);
 
 /* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface.
