@@ -289,6 +289,9 @@ uint32_t noh_face_channel_find(const char *name);
 /* Get the recipe in a pack, used in place. It has no rows if the pack has none. */
 noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
 
+/* Read the rules over lids, eyes and speech in a pack's recipe (rows `override`, or VRM's); the others become 0. */
+void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules);
+
 /* Get the recipe in a pack (`noh build --recipe`) as a table. Skips rows of unknown channels.
  * shapes  rows[row_max]; they refer to the pack's strings
  * errors  NOT_FOUND the pack has none; MEMORY more rows than row_max (need: the count). *recipe is then unchanged */

@@ -119,6 +119,8 @@ range jaw 0 1
 range grin -1 2
 oppose jaw grin
 share jaw grin
+override joy-upper lids block
+override anger-upper speech blend
 END
 noh build "$work/both.gltf" -o "$work/both.noh" --recipe "$work/rules.recipe" --no-correctives
 expect 0 'rules for weights'
@@ -126,7 +128,10 @@ noh face "$work/both.noh"
 check 'a range' grep -q '^  range grin: -1 to 2$' "$work/out"
 check 'opposites' grep -q '^  opposed: jaw grin$' "$work/out"
 check 'a group' grep -q '^  share 1: jaw grin$' "$work/out"
+check 'an emotion over blinks' grep -q '^  override joy-upper lids block$' "$work/out"
+check 'and one over speech' grep -q '^  override anger-upper speech blend$' "$work/out"
 noh face "$work/both.noh" --json
+check 'overrides in JSON' sh -c 'tr -d " \n" <"$1" | grep -qF "{\"channel\":\"joy-upper\",\"over\":\"lids\",\"how\":\"block\"}"' - "$work/out"
 check 'in JSON' sh -c 'tr -d " \n" <"$1" | grep -q "{\"rule\":\"range\",\"target\":\"grin\",\"min\":-1,\"max\":2}"' - "$work/out"
 shown 4 --weight jaw=3
 shown 2 --weight jaw=3 --weight-rules
@@ -141,6 +146,9 @@ check 'which keep what it does not say' grep -q '^  range grin: 0 to 0.25$' "$wo
 refused 'range jaw 0' 'range TARGET MIN MAX'
 refused 'range jaw 0.5 1' 'needs MIN from -4 to 0'
 refused 'range jaw 0 1 2' 'one word too many'
+refused 'override joy lids block' 'such as `override joy-upper lids block`'
+refused 'override joy-upper lids' 'such as `override joy-upper lids block`'
+refused 'override joy-upper lids block now' 'one word too many'
 refused 'oppose jaw jaw' 'cannot exclude itself'
 refused 'oppose jaw' 'oppose TARGET TARGET'
 refused 'share jaw' 'share TARGET TARGET'

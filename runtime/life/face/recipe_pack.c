@@ -104,3 +104,24 @@ noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uin
     recipe->pack = NULL;
     return NOH_OK;
 }
+
+void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
+{
+    static const char *const overrides[3] = { "override-lids", "override-eyes", "override-speech" };
+    uint8_t *to[3];
+    NOH_ASSERT(pack && rules);
+    to[0] = rules->lids;
+    to[1] = rules->eyes;
+    to[2] = rules->speech;
+    memset(rules, 0, sizeof *rules);
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        const noh_recipe_row *row = &pack->recipe_rows[i];
+        const uint32_t emotion = noh_face_channel_find(noh_pack_string(pack, row->target)) - NOH_CHANNEL_UPPER;
+        for (int k = 0; k < 3 && emotion < NOH_EMOTION_COUNT; k++) {
+            if (!noh_names_equal(noh_pack_string(pack, row->channel), overrides[k])) continue;
+            to[k][emotion] = row->weight > 1.5f   ? NOH_OVERRIDE_BLEND
+                             : row->weight > 0.5f ? NOH_OVERRIDE_BLOCK
+                                                  : NOH_OVERRIDE_NONE;
+        }
+    }
+}

@@ -159,6 +159,13 @@ static const char *bad_rules(const noh_face_rules *r)
     return NULL;
 }
 
+static int has_overrides(const noh_face_rules *r)
+{
+    uint32_t any = 0;
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) any |= (uint32_t)r->lids[i] | r->eyes[i] | r->speech[i];
+    return any != 0;
+}
+
 /* 0: one that is named is not there. */
 static int open_joints(const noh_kind_desc *d, const noh_skeleton *skeleton, noh_stage_face_kind *f)
 {
@@ -191,6 +198,10 @@ static const char *open_shared(const noh_kind_desc *d, const noh_kind_face *from
     float square = 0.0f;
     f->desc = from->face;
     f->rules = from->rules;
+    if (!has_overrides(&f->rules)) {
+        noh_face_rules_of_pack(d->mesh, &f->rules);
+        memcpy(f->rules.mouth, from->rules.mouth, sizeof f->rules.mouth);
+    }
     f->flags = from->flags;
     if (!open_joints(d, skeleton, f)) return "face of a kind: the skeleton has no joint of a given name";
     drop_strays(skeleton, f);

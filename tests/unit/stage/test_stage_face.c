@@ -414,6 +414,51 @@ static void rules_for_weights_hold_on_request(void **state)
     }
 }
 
+/* An emotion's rule in the pack holds, unless the kind has rules of its own. */
+static void a_packs_rules_between_expressions_hold(void **state)
+{
+    static const char more[] = "override-speech\0joy-upper";
+    static const float left[] = { 0.0f, 0.4f, 0.8f }, weights[] = { 1.0f, 2.0f, 1.0f };
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        noh_kind_face face = alive();
+        float visemes[NOH_VISEME_COUNT] = { 0.0f };
+        noh_recipe_row row;
+        noh_pack own;
+        noh_actor actor;
+        char *strings;
+        cast c;
+        if (i == 2) face.rules.speech[NOH_EMOTION_ANGER] = NOH_OVERRIDE_BLOCK;
+        open_cast(&c, 1, &face, 1);
+        own = c.packs[PUPPETS];
+        strings = test_zeros(own.string_bytes + sizeof more);
+        memcpy(strings, own.strings, own.string_bytes);
+        memcpy(strings + own.string_bytes, more, sizeof more);
+        memset(&row, 0, sizeof row);
+        row.channel = own.string_bytes;
+        row.target = own.string_bytes + 16u;
+        row.weight = weights[i];
+        own.strings = strings;
+        own.string_bytes += (uint32_t)sizeof more;
+        own.recipe_rows = &row;
+        own.recipe_row_count = 1;
+        c.kinds[0].mesh = &own;
+        cast_make(&c, NULL);
+        actor = enter(&c, NULL, NULL);
+        visemes[NOH_VISEME_AA] = 0.8f;
+        assert_int_equal(noh_actor_set_visemes(c.stage, actor, visemes, NULL), NOH_OK);
+        run(&c, 60);
+        const float alone = float_named(&c, actor, "jawOpen");
+        assert_true(alone > 0.2f);
+        assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", 0.5f, 4800, 0, 0, NULL), NOH_OK);
+        run(&c, 60);
+        print_message("jawOpen %.3f of %.3f\n", (double)float_named(&c, actor, "jawOpen"), (double)alone);
+        assert_true(fabsf(float_named(&c, actor, "jawOpen") / alone - left[i] / 0.8f) < 0.02f);
+        close_cast(&c);
+        free(strings);
+    }
+}
+
 /* ---- people ---- */
 
 typedef struct person {
@@ -655,6 +700,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
         cmocka_unit_test(a_pack_brings_its_own_recipe_and_correctives),
         cmocka_unit_test(rules_for_weights_hold_on_request),
+        cmocka_unit_test(a_packs_rules_between_expressions_hold),
         cmocka_unit_test(an_actor_is_a_person),
         cmocka_unit_test(a_person_that_does_not_fit_is_refused),
         cmocka_unit_test(an_hour_unseen_is_skipped),

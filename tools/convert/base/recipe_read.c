@@ -1,5 +1,6 @@
 #include "recipe_read.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -239,6 +240,27 @@ static int read_shares(text_scan *s, recipe_text *recipe)
     return 0;
 }
 
+/* Behind the word `override`. */
+static int read_override(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "override EMOTION-upper lids|eyes|speech block|blend";
+    static const char *const users[] = { "lids", "eyes", "speech" };
+    const uint32_t line = s->line;
+    text_word emotion, user, how;
+    uint32_t channels[2] = { 0, 0 };
+    char channel[NOH_NAME_BYTES_MAX] = "";
+    if (take_target(s, line, form, &emotion) || text_take_on_line(s, &user) || text_take_on_line(s, &how)) return 1;
+    for (int i = 0; i < 3; i++) {
+        if (text_is(user, users[i])) (void)snprintf(channel, sizeof channel, "override-%s", users[i]);
+    }
+    if (find_channels(emotion, channels) != 1 || channels[0] - NOH_CHANNEL_UPPER >= NOH_EMOTION_COUNT || !channel[0] ||
+        !(text_is(how, "block") || text_is(how, "blend"))) {
+        return text_fail(s, line, "write the rule as `%s`, such as `override joy-upper lids block`", form);
+    }
+    return end_rule(s, form) || add_row(s, recipe, line, channel, emotion,
+                                        (float)(text_is(how, "block") ? NOH_OVERRIDE_BLOCK : NOH_OVERRIDE_BLEND));
+}
+
 /* ---- wrinkles ---- */
 
 static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_word word, uint32_t region, float weight)
@@ -299,6 +321,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "range")) return read_range(s, recipe);
     if (text_is(channel, "oppose")) return read_opposites(s, recipe);
     if (text_is(channel, "share")) return read_shares(s, recipe);
+    if (text_is(channel, "override")) return read_override(s, recipe);
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
     count = find_channels(channel, channels);
     joint = find_joint_channel(channel);

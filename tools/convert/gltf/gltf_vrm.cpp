@@ -6,7 +6,9 @@
 #include "gltf_internal.h"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <set>
 
 namespace gltf
@@ -165,21 +167,35 @@ static bool has_items(const value &object, const char *key)
     return found && found->ArrayLen() > 0;
 }
 
-/* Rules of an expression over others, which a pack has no place for, and where a game sets them. */
-static void warn_rules(file &f, const value &expression, const std::string &where)
+/* The mesh of an expression's first bind; 0 where it has none. */
+static uint32_t mesh_of_binds(const file &f, const value *binds)
+{
+    const size_t node = binds && binds->ArrayLen() ? index_member(binds->Get(0), "node", f.node_of.size()) : SIZE_MAX;
+    const uint32_t mesh = node < f.node_of.size() && f.node_of[node] != MODEL_NONE ? f.out->nodes[f.node_of[node]].mesh
+                                                                                   : MODEL_NONE;
+    return mesh == MODEL_NONE ? 0 : mesh;
+}
+
+/* Rules of an expression over others: an emotion's become lines of the recipe. */
+static void add_rules(file &f, const char *channel, const value &expression, const std::string &where, recipes &r)
 {
     static const char *const rules[][2] = { { "overrideBlink", "lids" },
                                             { "overrideLookAt", "eyes" },
                                             { "overrideMouth", "speech" } };
+    const bool is_emotion = channel && strstr(channel, "-upper");
     const value *binary = member(expression, "isBinary");
     if (binary && binary->IsBool() && binary->Get<bool>())
         leave_out(f, where, ": isBinary was left out: it shows by degrees");
     for (const auto &rule : rules) {
         const std::string how = text_member(expression, rule[0]);
-        if (!how.empty() && how != "none")
-            leave_out(f, where,
-                      text(": %s '%s' was left out: a game sets noh_face_rules.%s", rule[0], printable(how).c_str(),
-                           rule[1]));
+        if (how.empty() || how == "none") continue;
+        if (is_emotion && f.out->mesh_count && (how == "block" || how == "blend")) {
+            const std::string line = text("override %s %s %s\n", channel, rule[1], how.c_str());
+            if (r.lines.insert(line).second)
+                r.of_mesh[mesh_of_binds(f, array_member(expression, "morphTargetBinds"))] += line;
+        } else {
+            leave_out(f, where, text(": %s '%s' was left out", rule[0], printable(how).c_str()));
+        }
     }
 }
 
@@ -191,7 +207,7 @@ static void add_expression(file &f, const std::string &name, const char *channel
     if (has_items(expression, old ? "materialValues" : "materialColorBinds") ||
         has_items(expression, "textureTransformBinds"))
         leave_out(f, where, ": its changes to materials were left out");
-    warn_rules(f, expression, where);
+    add_rules(f, channel, expression, where, r);
     if (!channel && binds && binds->ArrayLen() > 0)
         leave_out(f, where, " was left out: the faces of packs have no such expression; its targets stay");
     for (size_t i = 0; channel && binds && i < binds->ArrayLen(); ++i)

@@ -152,6 +152,26 @@ static void print_rules(const face_report *r)
     if (r->rule_count) printf("\n");
 }
 
+static const char *const users[3] = { "lids", "eyes", "speech" }, *const hows[] = { "", "block", "blend" };
+
+/* How an emotion affects a user of the face. */
+static uint8_t override_of(const face_report *r, int emotion, int user)
+{
+    noh_face_rules rules;
+    noh_face_rules_of_pack(r->mesh.pack, &rules);
+    return user == 0 ? rules.lids[emotion] : user == 1 ? rules.eyes[emotion] : rules.speech[emotion];
+}
+
+static void print_overrides(const face_report *r)
+{
+    for (int i = 0; i < 3 * NOH_EMOTION_COUNT; i++) {
+        const uint8_t how = override_of(r, i / 3, i % 3);
+        if (!how) continue;
+        printf("  override %s %s %s\n", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i / 3u), users[i % 3],
+               hows[how]);
+    }
+}
+
 static void print_mesh(const face_report *r)
 {
     uint32_t unused = 0;
@@ -161,6 +181,7 @@ static void print_mesh(const face_report *r)
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) print_channel(r, c);
     print_correctives(r);
     print_rules(r);
+    print_overrides(r);
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) printf("%s%s", unused++ ? ", " : "  targets without a channel: ", r->names[t]);
     }
@@ -218,6 +239,21 @@ static void json_correctives(json *j, const face_report *r)
 
 static const char *const rule_names[] = { "range", "oppose", "share" };
 
+static void json_overrides(json *j, const face_report *r)
+{
+    json_open(j, "overrides", '[');
+    for (int i = 0; i < 3 * NOH_EMOTION_COUNT; i++) {
+        const uint8_t how = override_of(r, i / 3, i % 3);
+        if (!how) continue;
+        json_open(j, NULL, '{');
+        json_text(j, "channel", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i / 3u));
+        json_text(j, "over", users[i % 3]);
+        json_text(j, "how", hows[how]);
+        json_close(j, '}');
+    }
+    json_close(j, ']');
+}
+
 static void json_rules(json *j, const face_report *r)
 {
     json_open(j, "weight_rules", '[');
@@ -248,6 +284,7 @@ static void json_mesh(json *j, const face_report *r)
     json_close(j, ']');
     json_correctives(j, r);
     json_rules(j, r);
+    json_overrides(j, r);
     json_open(j, "unused", '[');
     for (uint32_t t = 0; t < r->mesh.header->target_count; t++) {
         if (!r->used[t]) json_text(j, NULL, r->names[t]);

@@ -95,6 +95,8 @@ const char *const help_formats_text[] = {
     "                                               surprise, fear, anger, disgust, contempt",
     "   sil PP FF TH DD kk CH SS nn RR aa E ih oh ou  mouth shapes of speech",
     "   breath                                      the chest",
+    "   override EMOTION-upper lids|eyes|speech block|blend   an emotion that shows removes blinks, looks or speech, or reduces",
+    "                                               them by as much as it shows (VRM's overrideBlink, overrideLookAt, overrideMouth)",
     "   joint-head JOINT                            a joint of the face; also joint-neck, joint-chest, joint-eye-left,",
     "                                               joint-eye-right",
     "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of its drivers' weights; a driver with",
