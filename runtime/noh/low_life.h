@@ -742,6 +742,7 @@ void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skelet
 /* ======== retargeting ========
  * Clips of one humanoid on another: a map from a source skeleton to a target one, and poses through it.
  *
+ *   noh_retarget_rig_make   find the bones of a pack's skeleton
  *   noh_retarget_init   make the map from both reference poses
  *   noh_retarget_pose   a pose of the source as a pose of the target
  *   noh_retarget_play   the source's clips as a set for the target's controllers
@@ -788,6 +789,11 @@ typedef struct noh_retarget_rig {
     const noh_transform *reference;
     uint16_t bones[NOH_BONES]; /* the joint of each, or NOH_JOINT_ROOT: none. Hips are needed */
 } noh_retarget_rig;
+
+/* Find bones by the names that noh_ragdoll_find_rows knows, in packs with or without meshes: root, hips, spine, upper
+ * chest, head (or the neck below it), arms, legs and toes. Left is at +x.
+ * errors   NOT_FOUND there are no two thighs: fill in `bones` by hand */
+noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error);
 
 #define NOH_RETARGET_FEET 1u  /* solve the legs */
 #define NOH_RETARGET_HANDS 2u /* solve the arms */

@@ -189,3 +189,18 @@ expect 2 'a blend and a transition is one'
 noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --transition jump
 expect 2 'so is an unknown transition'
 finish
+
+# Clips of one humanoid on another: by names, by a file, and what a file gets wrong.
+if [ -d "${NOH_ASSETS:-}/clips" ]; then
+    clips=$NOH_ASSETS/clips
+    noh build "$clips/Knight__Idle.rcl" "$clips/RobotExpressive__Walking.rcl" --retarget auto -o "$work/two.noh"
+    expect 0 'a walk of a robot on a knight'
+    check 'says how it came over' grep -q "^retargeted 'RobotExpressive__Walking': 1[0-9] bones, sizes x 0.2" "$work/out"
+    check 'no foot slides' grep -q 'feet slide 0.0[0-9] %' "$work/out"
+    noh info "$work/two.noh"
+    check 'both clips move the knight' test "$(grep -c '^clip ' "$work/out")" -eq 2
+    printf 'hips Hips hips\nleftArm a b\n' >"$work/bones.txt"
+    noh build "$clips/Knight__Idle.rcl" "$clips/RobotExpressive__Walking.rcl" --retarget "$work/bones.txt" -o "$work/x.noh"
+    expect 1 'a file of bones with a word that is no bone'
+    check 'names line and word' grep -q "line 2: 'leftArm' is no bone" "$work/err"
+fi

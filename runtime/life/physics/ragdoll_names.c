@@ -230,3 +230,14 @@ noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_r
     }
     return NOH_OK;
 }
+
+uint32_t noh_ragdoll_row_above(const noh_ragdoll_source *source, const noh_ragdoll_row *rows, uint32_t count,
+                               uint32_t joint)
+{
+    for (uint32_t up = source->joints.parents[joint]; up != NOH_JOINT_ROOT; up = source->joints.parents[up]) {
+        for (uint32_t i = 0; i < count; i++) {
+            if (rows[i].joint == up) return i;
+        }
+    }
+    return NOH_NONE;
+}

@@ -12,6 +12,10 @@ extern "C" {
 /* Get a joint's transform in the bind pose, in the skeleton's unit. */
 void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float position[3], float rotation[4]);
 
+/* The row of the nearest joint above one, or NOH_NONE. */
+uint32_t noh_ragdoll_row_above(const noh_ragdoll_source *source, const noh_ragdoll_row *rows, uint32_t count,
+                               uint32_t joint);
+
 #ifdef __cplusplus
 }
 #endif

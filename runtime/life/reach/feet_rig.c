@@ -12,24 +12,14 @@
 
 /* ---- legs ---- */
 
-static uint32_t row_above(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t joint)
-{
-    for (uint32_t up = s->joints.parents[joint]; up != NOH_JOINT_ROOT; up = s->joints.parents[up]) {
-        for (uint32_t i = 0; i < count; i++) {
-            if (rows[i].joint == up) return i;
-        }
-    }
-    return NOH_NONE;
-}
-
 /* Find a leg from the row of a foot, the only kind that bends upwards, with a shin and a thigh above it. */
 static int leg_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t foot,
                   noh_feet_leg *leg)
 {
     if (rows[foot].toward != NOH_RAGDOLL_UPWARD) return 0;
-    const uint32_t shin = row_above(s, rows, count, rows[foot].joint);
+    const uint32_t shin = noh_ragdoll_row_above(s, rows, count, rows[foot].joint);
     if (shin == NOH_NONE || !rows[shin].hinge || rows[shin].toward != NOH_RAGDOLL_BACKWARD) return 0;
-    const uint32_t thigh = row_above(s, rows, count, rows[shin].joint);
+    const uint32_t thigh = noh_ragdoll_row_above(s, rows, count, rows[shin].joint);
     if (thigh == NOH_NONE || thigh == 0) return 0; /* the first row is the pelvis */
     leg->foot = rows[foot].joint;
     leg->shin = rows[shin].joint;

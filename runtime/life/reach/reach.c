@@ -19,23 +19,13 @@
 
 /* ---- the rig ---- */
 
-static uint32_t row_above(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t joint)
-{
-    for (uint32_t up = s->joints.parents[joint]; up != NOH_JOINT_ROOT; up = s->joints.parents[up]) {
-        for (uint32_t i = 0; i < count; i++) {
-            if (rows[i].joint == up) return i;
-        }
-    }
-    return NOH_NONE;
-}
-
 /* Find an arm: forearms are the only hinges that bend forwards, and a row below one is a hand. */
 static int arm_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t count, uint32_t hand,
                   noh_reach_arm *arm)
 {
-    const uint32_t fore = row_above(s, rows, count, rows[hand].joint);
+    const uint32_t fore = noh_ragdoll_row_above(s, rows, count, rows[hand].joint);
     if (fore == NOH_NONE || !rows[fore].hinge || rows[fore].toward != NOH_RAGDOLL_FORWARD) return 0;
-    const uint32_t upper = row_above(s, rows, count, rows[fore].joint);
+    const uint32_t upper = noh_ragdoll_row_above(s, rows, count, rows[fore].joint);
     if (upper == NOH_NONE || upper == 0) return 0;
     memset(arm, 0, sizeof *arm);
     arm->hand = rows[hand].joint;

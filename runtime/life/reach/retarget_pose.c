@@ -2,6 +2,18 @@
 #include "core/base/assert_internal.h"
 #include "life/reach/retarget_internal.h"
 
+/* noh_quat_mul, in line: it is most of the work. Sums only, as there. */
+static inline void product(const float a[4], const float b[4], float out[4])
+{
+    const float x = b[0], y = b[1], z = b[2], w = b[3], nx = -x, ny = -y, nz = -z;
+    const float r0 = a[3] * x + a[0] * w + a[1] * z + a[2] * ny, r1 = a[3] * y + a[0] * nz + a[1] * w + a[2] * x;
+    const float r2 = a[3] * z + a[0] * y + a[1] * nx + a[2] * w, r3 = a[3] * w + a[0] * nx + a[1] * ny + a[2] * nz;
+    out[0] = r0;
+    out[1] = r1;
+    out[2] = r2;
+    out[3] = r3;
+}
+
 /* ---- places ---- */
 
 static void place_local(const noh_transform *local, noh_retarget_place *out)
@@ -21,7 +33,7 @@ void noh_retarget_place_of(const noh_skeleton *skeleton, const noh_transform *po
         for (int i = 0; i < 3; i++) out->position[i] *= p->scale[i];
         noh_quat_rotate(p->rotation, out->position, out->position);
         noh_madd3(out->position, 1.0f, p->translation, out->position);
-        noh_quat_mul(p->rotation, out->rotation, out->rotation);
+        product(p->rotation, out->rotation, out->rotation);
         out->scale *= p->scale[0];
     }
 }
@@ -32,7 +44,7 @@ void noh_retarget_place_below(const noh_skeleton *skeleton, const noh_transform 
     noh_retarget_place_of(skeleton, pose, joint, ancestor, out);
     noh_quat_rotate(at->rotation, out->position, out->position);
     noh_madd3(at->position, at->scale, out->position, out->position);
-    noh_quat_mul(at->rotation, out->rotation, out->rotation);
+    product(at->rotation, out->rotation, out->rotation);
     out->scale *= at->scale;
 }
 
@@ -70,18 +82,18 @@ static void turn_joint(const noh_retarget *r, const noh_transform *from, uint32_
     uint32_t at = m->source;
     float q[4], part[4];
     unpack(m->after, part);
-    noh_quat_mul(from[at].rotation, part, q);
+    product(from[at].rotation, part, q);
     for (uint32_t above = m->above & ~NOH_RETARGET_WHOLE; above; above--) {
         at = r->source->parents[at];
-        noh_quat_mul(from[at].rotation, q, q);
+        product(from[at].rotation, q, q);
     }
     unpack(m->before, part);
-    noh_quat_mul(part, q, q);
+    product(part, q, q);
     if ((m->above & NOH_RETARGET_WHOLE) && r->target->parents[joint] != NOH_JOINT_ROOT) {
         noh_retarget_place up;
         noh_retarget_place_of(r->target, to, r->target->parents[joint], NOH_JOINT_ROOT, &up);
         noh_quat_conjugate(up.rotation, part);
-        noh_quat_mul(part, q, q);
+        product(part, q, q);
     }
     make_unit(q);
     memcpy(to[joint].rotation, q, sizeof q);
@@ -115,9 +127,9 @@ void noh_retarget_pose(const noh_retarget *r, const noh_transform *from, const f
     memcpy(to, r->rest, joint_count * sizeof *to);
     for (uint32_t j = 0; j < joint_count; j++) {
         if (r->joints[j].source != NOH_JOINT_ROOT) turn_joint(r, from, j, to);
-        for (uint32_t i = 0; i < 2; i++) {
-            if (r->moved[i][1] == j) move_joint(r, from, i, to);
-        }
+    }
+    for (uint32_t i = 0; i < 2; i++) {
+        if (r->moved[i][1] < joint_count) move_joint(r, from, i, to);
     }
     noh_retarget_bend(r, from, feet, joint_count, to);
 }

@@ -3,7 +3,10 @@
 #include "support/support.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
+
+#include "convert/convert.h"
 
 #include "support/humanoid_fixture.h"
 
@@ -329,6 +332,64 @@ static void clips_play_through_a_map(void **state)
     }
 }
 
+/* ---- packs ---- */
+
+/* A pack of a recording's skeleton alone. */
+static byte_buffer skeleton_pack(const char *name, noh_pack *pack, noh_ragdoll_source *from)
+{
+    char path[64];
+    const char *input;
+    convert_options options;
+    convert_failure failure;
+    byte_buffer bytes = { NULL, 0, 0, 0 };
+    (void)snprintf(path, sizeof path, "clips/%s.rcl", name);
+    input = test_asset(path);
+    memset(&options, 0, sizeof options);
+    options.only = CONVERT_MESH;
+    if (convert_files(&input, 1, &options, &bytes, &failure)) fail_msg("%s", failure.error.what);
+    assert_int_equal(noh_pack_open(bytes.bytes, bytes.count, pack, NULL), NOH_OK);
+    memset(from, 0, sizeof *from);
+    from->pack = pack;
+    assert_int_equal(noh_pack_skeleton_at(pack, 0, &from->joints, NULL, NULL), NOH_OK);
+    return bytes;
+}
+
+static void bones_of_packs_are_found_by_names(void **state)
+{
+    static const char *const names[2] = { "cmu_01_03", "Knight__Idle" };
+    static const struct {
+        uint32_t bone;
+        const char *joints[2];
+    } expected[] = { { NOH_BONE_HIPS, { "Hips", "hips" } },
+                     { NOH_BONE_HEAD, { "Neck", "head" } },
+                     { NOH_BONE_UPPER_ARM, { "LeftArm", "upperarm.l" } },
+                     { NOH_BONE_HAND + NOH_BONE_RIGHT, { "RightHand", "wrist.r" } },
+                     { NOH_BONE_LOWER_LEG, { "LeftLeg", "lowerleg.l" } },
+                     { NOH_BONE_TOES + NOH_BONE_RIGHT, { "RightToeBase", "toes.r" } } };
+    noh_pack packs[2];
+    noh_ragdoll_source sources[2];
+    noh_retarget_rig rigs[2];
+    noh_retarget map;
+    noh_retarget_joint joints[64];
+    noh_error error = { NOH_OK, "", 0, 0 };
+    byte_buffer bytes[2];
+    (void)state;
+    for (uint32_t i = 0; i < 2; i++) {
+        bytes[i] = skeleton_pack(names[i], &packs[i], &sources[i]);
+        if (noh_retarget_rig_make(&sources[i], &rigs[i], &error)) fail_msg("%s: %s", names[i], error.what);
+        for (uint32_t k = 0; k < TEST_COUNT(expected); k++) {
+            const uint32_t joint = rigs[i].bones[expected[k].bone];
+            if (joint == NOH_JOINT_ROOT) fail_msg("%s: no bone %u", names[i], expected[k].bone);
+            assert_string_equal(noh_pack_joint_name(&packs[i], 0, joint), expected[k].joints[i]);
+        }
+    }
+    assert_true(sources[1].joints.joint_count <= 64);
+    if (noh_retarget_init(&map, &rigs[0], &rigs[1], BOTH, joints, &error)) fail_msg("%s", error.what);
+    assert_true(map.bone_count >= 17);
+    for (uint32_t i = 0; i < 4; i++) assert_int_equal(map.limbs[i].exists, 1);
+    for (uint32_t i = 0; i < 2; i++) buffer_free(&bytes[i]);
+}
+
 static const struct CMUnitTest tests[] = { cmocka_unit_test(one_person_keeps_its_pose),
                                            cmocka_unit_test(limbs_point_as_the_source_does),
                                            cmocka_unit_test(feet_stay_where_the_source_stands),
@@ -337,6 +398,7 @@ static const struct CMUnitTest tests[] = { cmocka_unit_test(one_person_keeps_its
                                            cmocka_unit_test(roots_and_spines_may_differ),
                                            cmocka_unit_test(a_lower_level_has_the_first_joints_alone),
                                            cmocka_unit_test(what_cannot_be_mapped_is_refused),
-                                           cmocka_unit_test(clips_play_through_a_map) };
+                                           cmocka_unit_test(clips_play_through_a_map),
+                                           cmocka_unit_test(bones_of_packs_are_found_by_names) };
 
 TEST_MAIN(tests, NULL, NULL)

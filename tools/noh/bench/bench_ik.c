@@ -1,7 +1,7 @@
 /* bench_ik.c: rows sim/two-bone: a leg by the closed form of body.h against the book's, which takes arc cosines and
- * makes rotations of axes and angles; and sim/feet: both feet of the first pack's figure on a slope, in two-bone
- * solves.
- */
+ * makes rotations of axes and angles; sim/feet: both feet of the first pack's figure on a slope, in two-bone
+ * solves; and sim/retarget: a pose of that figure on itself, by joint against the model matrices of as many, and its legs
+ * and arms. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,10 +13,12 @@
 #include "noh/clip.h"
 #include "noh/format.h"
 #include "noh/low_life.h"
+#include "noh/low_motion.h"
 #include "noh/pack.h"
 
 #define SOLVES BENCH_TWO_BONE_SOLVES
 #define SAMPLE_NS 5e6
+#define RETARGETS 100u
 
 /* ---- the book's way ---- */
 
@@ -167,6 +169,87 @@ static void stand(void *self, uint32_t frame)
     noh_feet_step(&w->feet, &w->rig, &w->skeleton, w->pose, &place, &w->ground, 1.0f / 60.0f, 0);
 }
 
+/* ---- retargeting ---- */
+
+typedef struct retarget_work {
+    noh_ragdoll_source source;
+    noh_retarget map;
+    noh_retarget_joint *joints;
+    noh_transform *pose;
+    float *model;
+} retarget_work;
+
+/* 0: the pack has no person, or there is no memory. */
+static int open_retarget(retarget_work *w, const noh_pack *pack)
+{
+    noh_retarget_rig rig;
+    memset(w, 0, sizeof *w);
+    w->source.pack = pack;
+    if (noh_pack_skeleton_at(pack, 0, &w->source.joints, NULL, NULL) || noh_retarget_rig_make(&w->source, &rig, NULL)) {
+        return 0;
+    }
+    w->joints = malloc(w->source.joints.joint_count * sizeof *w->joints);
+    w->pose = malloc(w->source.joints.joint_count * sizeof *w->pose);
+    w->model = malloc(w->source.joints.joint_count * 12u * sizeof *w->model);
+    return w->joints && w->pose && w->model && !noh_retarget_init(&w->map, &rig, &rig, 0, w->joints, NULL);
+}
+
+static void retarget(retarget_work *w, uint32_t flags)
+{
+    w->map.flags = flags;
+    for (uint32_t i = 0; i < RETARGETS; i++) {
+        noh_retarget_pose(&w->map, w->source.joints.bind_pose, NULL, w->source.joints.joint_count, w->pose);
+    }
+}
+
+static void retarget_joints(void *self, uint32_t frame)
+{
+    (void)frame;
+    retarget(self, 0);
+}
+
+static void retarget_limbs(void *self, uint32_t frame)
+{
+    (void)frame;
+    retarget(self, NOH_RETARGET_FEET | NOH_RETARGET_HANDS);
+}
+
+static void model_matrices(void *self, uint32_t frame)
+{
+    const retarget_work *w = self;
+    (void)frame;
+    for (uint32_t i = 0; i < RETARGETS; i++) {
+        noh_local_to_model(&w->source.joints, w->source.joints.bind_pose, w->source.joints.joint_count, w->model);
+    }
+}
+
+static int bench_retarget(bench_job *job)
+{
+    retarget_work work;
+    bench_cells cells;
+    int status = 0;
+    memset(&cells, 0, sizeof cells);
+    if (open_retarget(&work, &job->files[0].pack)) {
+        const double joints = work.source.joints.joint_count;
+        bench_add_cell(&cells, model_matrices, &work);
+        bench_add_cell(&cells, retarget_joints, &work);
+        bench_add_cell(&cells, retarget_limbs, &work);
+        status = bench_run_cells(&cells, &job->cpu_clock, job->rounds, SAMPLE_NS, "sim/retarget");
+        if (!status) {
+            const double model = bench_median(&cells, 0) / RETARGETS, ours = bench_median(&cells, 1) / RETARGETS;
+            bench_add_row(&job->rows, "sim/retarget", "model-matrices", model / joints, ours / joints, "ns/joint",
+                          cells.rounds);
+            bench_add_row(&job->rows, "sim/retarget_limbs", "model-matrices", model,
+                          bench_median(&cells, 2) / RETARGETS - ours, "ns/legs and arms", cells.rounds);
+        }
+    }
+    bench_free_cells(&cells);
+    free(work.joints);
+    free(work.pose);
+    free(work.model);
+    return status;
+}
+
 int bench_ik(bench_job *job)
 {
     feet_work work;
@@ -188,5 +271,5 @@ int bench_ik(bench_job *job)
     }
     bench_free_cells(&cells);
     free(work.pose);
-    return status;
+    return status ? status : bench_retarget(job);
 }

@@ -22,7 +22,7 @@
  *   bench_skin_cpu.c    rows skin/cpu
  *   bench_sim.c         rows sim/ragdoll: dolls that fall, by lanes
  *   bench_springs.c     rows sim/spring: characters whose joints swing
- *   bench_ik.c          rows sim/two-bone, sim/feet: a leg, and both feet on a slope
+ *   bench_ik.c          rows sim/two-bone, sim/feet, sim/retarget: a leg, both feet on a slope, a pose on another figure
  *   bench_hair.c        rows sim/hair, sim/hair_points: control hairs of a head that shakes
  *   bench_agents.c      rows crowd/agents: a crowd's steps against ORCA's
  *   bench_people.c      rows crowd/people: the share of agents and walkers in a frame of a thousand bodies

@@ -116,6 +116,13 @@ const char *const help_formats_text[] = {
     "   aa jaw 0.8",
     "   aa \"lips wide\" 0.2",
     "   joy-mouth grin 0.9",
+    "# bones (noh build --retarget FILE)",
+    "Which joints of a clip's file and of the model are the same bone, one per line; names find the bones that no line gives. BONE: by VRM's "
+    "name, such as leftUpperArm, or root. 'reference' gives the frame of the file's first clip in which the figure stands upright on flat "
+    "feet, where the bind pose does not:",
+    "   BONE THEIRS OURS",
+    "   reference FRAME",
+    "   leftHand Bone.013 hand_l",
     "# names (noh build --names FILE)",
     "What other programs call targets, joints and materials. noh knows the names of ARKit, Oculus (viseme_*), VRoid, Character Creator, Daz, "
     "MPFB, Mixamo, Unreal and Unity; lines of a file come before them. One per line, words separated by blanks, names with blanks in double "
