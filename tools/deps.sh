@@ -74,6 +74,10 @@ packages_lint='clang-tidy:static analysis
 cppcheck:static analysis'
 packages_long='?valgrind:memcheck
 ?afl++:fuzzing noh build
+?gcc-aarch64-linux-gnu:compilers of phones
+?libc6-dev-arm64-cross:compilers of phones
+?qemu-user-static:running them
+?libdrm-dev:their shims
 ?frama-c-base:proofs of the checkers
 ?firefox-esr:the page in a second browser
 ?debhelper:Debian packages

@@ -34,6 +34,16 @@ if [ -n "$json" ]; then
     check 'as JSON, too' sh -c '[ -s "$1" ]' - "$work/out"
     check 'with every cost' $json 'j.why.costs.mrt > 0 && j.why.costs.gather > 0 && j.why.costs.direct > 0 && j.why.draws == 1 && j.why.costs.per_layer > 0 && j.why.costs.cpu > 0 && j.why.update_bytes > 0' <"$work/out"
 fi
+for tier in full phone; do
+    noh budget "$build/mask.noh" --nominal --gpu g52 --size 1280x720 --tier $tier
+    expect 0 "the share of a frame on a phone's GPU, $tier"
+    check "of the material with maps, $tier" grep -q 'paint .* of a frame .* 1280x720: plain-maps-lit' "$work/out"
+done
+noh budget "$build/mask.noh" --nominal --gpu v3d --json
+expect 0 'the same as JSON'
+check 'JSON has it' grep -q '"program": "plain-maps-lit"' "$work/out"
+noh budget "$build/mask.noh" --nominal --gpu g99
+expect 2 'an unknown GPU'
 noh budget "$puppet" --actors 20 --why
 expect 2 'of a stage it is refused'
 noh budget "$puppet" --actors 20 --nominal

@@ -80,6 +80,18 @@ budgets-update:
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUDGET_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/budgets.sh update
 
+# The shaders by the compilers of phones' GPUs, against tools/phones/table.txt. Minutes at first; what has not changed
+# is kept in build/phones.
+$(BUILD)/phones/texts.bin: tools/phones/texts.c $(BUILD)/libnoh.a
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) $(ALL_CFLAGS) $(INCLUDES) $(ALL_LDFLAGS) $^ -o $@
+
+phones phones-update:
+	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build long
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/phones/texts.bin
+	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tools/phones/phones.sh $(@:phones%=$(if $(filter %-update,$@),update))
+
 cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
 

@@ -177,3 +177,9 @@ $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRI
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
 endif
+
+# Figures of shaders on phones, for `noh budget --gpu`.
+$(BUILD)/tools/noh/budget/budget_phone.o: $(BUILD)/gen/phones.gen.h
+$(BUILD)/gen/phones.gen.h: tools/phones/table.txt tools/phones/header.awk
+	@mkdir -p $(@D)
+	$(Q)awk -f tools/phones/header.awk tools/phones/table.txt >$@

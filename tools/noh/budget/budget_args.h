@@ -3,6 +3,7 @@
 #define NOH_NOH_BUDGET_BUDGET_ARGS_H
 
 #include "cli/args.h"
+#include "budget_phone.h"
 #include "draw/figure.h"
 #include "noh/gl_device.h"
 
@@ -14,6 +15,8 @@ typedef struct budget_args {
     double instances, lod;
     int as_json, nominal, why, strict;
     figure_desc figure;
+    const char *gpu, *tier; /* gpu: NULL, no phone */
+    budget_phone phone;
     /* of a stage */
     const char *desc, *place, *ground;
     const char *texts[COUNT_OPTIONS]; /* NULL: not given */

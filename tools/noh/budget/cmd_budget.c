@@ -68,7 +68,7 @@ static void print_parts(const pack_budget *b)
     printf("  %-30s %12u %12s  at most, for any call\n", "stack", NOH_STACK_BYTES, "");
 }
 
-static void print_budget(const pack_budget *b, const char *device, int why)
+static void print_budget(const pack_budget *b, const char *device, int why, const budget_phone *phone)
 {
     const uint32_t instances = b->planned.kinds[0].actor_count;
     print_parts(b);
@@ -86,9 +86,10 @@ static void print_budget(const pack_budget *b, const char *device, int why)
     print_levels(b);
     if (b->planned.kinds[0].mesh) info_print_costs(b->planned.kinds[0].mesh);
     if (b->planned.kinds[0].mesh) info_print_textures(b->planned.kinds[0].mesh);
+    if (b->planned.kinds[0].mesh && phone->gpu) budget_phone_print(phone, b->planned.kinds[0].mesh);
 }
 
-static int json_budget(const pack_budget *b, const char *device, int why)
+static int json_budget(const pack_budget *b, const char *device, int why, const budget_phone *phone)
 {
     const noh_stage_plan *plan = &b->planned.plan;
     json j = json_begin();
@@ -119,6 +120,7 @@ static int json_budget(const pack_budget *b, const char *device, int why)
     json_levels(&j, b);
     if (b->planned.kinds[0].mesh) info_json_costs(&j, b->planned.kinds[0].mesh);
     if (b->planned.kinds[0].mesh) info_json_textures(&j, b->planned.kinds[0].mesh);
+    if (b->planned.kinds[0].mesh && phone->gpu) budget_phone_json(&j, phone, b->planned.kinds[0].mesh);
     return json_end(&j);
 }
 
@@ -160,9 +162,9 @@ static int budget_of(const budget_args *a, const figure_desc *desc)
     if (!status) status = pack_budget_make(&b, desc, draws ? &caps : NULL);
     if (!status) {
         if (a->as_json) {
-            status = json_budget(&b, caps.renderer, a->why);
+            status = json_budget(&b, caps.renderer, a->why, &a->phone);
         } else {
-            print_budget(&b, caps.renderer, a->why);
+            print_budget(&b, caps.renderer, a->why, &a->phone);
         }
         pack_budget_free(&b);
     }
@@ -194,6 +196,8 @@ static int check_args(budget_args *a)
     if (!status) status = parse_accumulate(a->accumulate, &a->figure.accumulate);
     if (!status) status = parse_instances(a->instances, &a->figure.actor_count);
     if (!status) status = parse_level(a->lod, &a->figure.level);
+    if (!status) status = figure_tier(a->tier, &a->phone.shading);
+    if (!status && a->gpu) status = budget_phone_choose(a->gpu, &a->phone);
     return status ? status : stage_args_check(a);
 }
 
@@ -235,6 +239,22 @@ static const option options[] = {
       .at = offsetof(budget_args, why),
       .what = "also list the terms by which the morph path is chosen",
       .excludes = OF_STAGE },
+    { .name = "--gpu",
+      .kind = OPTION_TEXT,
+      .at = offsetof(budget_args, gpu),
+      .value = "g52|g57|g610|a630|v3d",
+      .what = "also the share of a frame that the shaders take on this GPU, by a model: the figures of make phones",
+      .example = "g52",
+      .excludes = OF_STAGE },
+    { .name = "--size",
+      .kind = OPTION_SIZE,
+      .at = offsetof(budget_args, phone.size),
+      .value = "WxH",
+      .initial = "1920x1080",
+      .what = "size of the picture on that GPU, pixels",
+      .example = "1280x720",
+      .needs = "--gpu" },
+    OPTION_TIER(budget_args, tier, .needs = "--gpu"),
     COUNT_OPTION("--actors", ACTORS, "N", .example = "20", .excludes = "--desc",
                  .what = "plan a stage with this many characters of the pack at one time, 1 to 65535"),
     COUNT_OPTION("--near", NEAR, "N", .needs = "--actors", .example = "4",
