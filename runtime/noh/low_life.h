@@ -757,7 +757,7 @@ void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skelet
  *          retargeting, 2000
  * Threads: a map is constant; any number of threads. */
 
-/* Bones of a person, by VRM's names; those of a side follow in the same order for left and right. */
+/* Bones of a person, by VRM's names; bones of one side follow in the same order for left and right. */
 typedef enum noh_bone {
     NOH_BONE_ROOT = 0, /* what is above the hips, such as a root on the ground */
     NOH_BONE_HIPS,
@@ -800,7 +800,7 @@ noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_
 
 /* Of one joint of the target: 20 bytes. */
 typedef struct noh_retarget_joint {
-    int16_t before[4], after[4]; /* quaternions in 1/32,767: local rotation = before * those of the source * after */
+    int16_t before[4], after[4]; /* quaternions in 1/32,767: local rotation = before * the source's * after */
     uint16_t source;             /* joint of the source, or NOH_JOINT_ROOT: keeps the reference pose */
     uint16_t above;              /* joints above `source` whose rotations come first */
 } noh_retarget_joint;

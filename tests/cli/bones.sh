@@ -201,6 +201,6 @@ if [ -d "${NOH_ASSETS:-}/clips" ]; then
     check 'both clips move the knight' test "$(grep -c '^clip ' "$work/out")" -eq 2
     printf 'hips Hips hips\nleftArm a b\n' >"$work/bones.txt"
     noh build "$clips/Knight__Idle.rcl" "$clips/RobotExpressive__Walking.rcl" --retarget "$work/bones.txt" -o "$work/x.noh"
-    expect 1 'a file of bones with a word that is no bone'
+    expect 1 'a file of bones that names an unknown bone'
     check 'names line and word' grep -q "line 2: 'leftArm' is no bone" "$work/err"
 fi

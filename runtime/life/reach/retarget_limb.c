@@ -7,7 +7,7 @@
 #define LIFTED_HIGH 0.4f /* ... above the second the hips do not go down for it */
 #define TOGETHER \
     0.35f          /* distances of hands, in lengths of the arm: below the first they meet as the source's do, ... */
-#define APART 0.7f /* ... above the second each goes by its own shoulder */
+#define APART 0.7f /* ... above the second each follows its own shoulder */
 #define UNDER_LOW 0.35f /* depths of a foot, in lengths of the leg: above the first it is put on the ground, ... */
 #define UNDER_HIGH 0.6f /* ... below the second there is no ground */
 #define SIDE 0.01f      /* say of the usual side of the bend, in lengths of the limb: of straight limbs */

@@ -151,7 +151,7 @@ static void bend_leg(const humanoid *h, const noh_ik_limb *leg, const float goal
     noh_quat_mul(foot, pitch, foot);
 }
 
-/* Where a foot of the source stays, flat or on its toes, so does the target's; elsewhere it goes by the ratio of legs. */
+/* Where a foot of the source stays, flat or on its toes, so does the target's; elsewhere it moves by the ratio of legs. */
 static void feet_stay_where_the_source_stands(void **state)
 {
     static const humanoid_form other = {

@@ -107,7 +107,7 @@ static int is_in_contact(const retarget_pair *p, uint32_t side, uint32_t frame)
     return 0;
 }
 
-/* What of a foot is held: its toes, or itself where one has none. */
+/* The bone of a foot that is held: the toes, or the foot where one figure has no toes. */
 static uint32_t held(const retarget_pair *p, uint32_t side)
 {
     const uint32_t toes = NOH_BONE_TOES + side * NOH_BONE_RIGHT;
