@@ -140,23 +140,34 @@ static int places_make(const retarget_pair *p, places *x)
     return 0;
 }
 
+/* Heights of feet over where they rest, in all frames or in those in which they stand. Returns their count. */
+static uint32_t heights_of_feet(const retarget_pair *pair, const places *x, int standing, double *heights)
+{
+    uint32_t count = 0;
+    for (uint32_t side = 0; side < 2; side++) {
+        const uint32_t bone = held(pair, side);
+        for (uint32_t f = 0; f < x->frames && is_common(pair, bone); f++) {
+            if (standing && !x->down[side][f]) continue;
+            heights[count++] = place(x, SOURCE, f, bone)[1] - x->rest[SOURCE][3u * bone + 1u];
+        }
+    }
+    return count;
+}
+
 int feet_ground(const retarget_pair *pair, double *ground)
 {
     places x;
     double *heights;
-    uint32_t count = 0;
+    uint32_t count;
     *ground = 0.0;
-    if (!pair->stands) return 0;
     if (places_make(pair, &x)) return 1;
     heights = malloc(2u * (size_t)x.frames * sizeof *heights);
-    for (uint32_t side = 0; heights && side < 2; side++) {
-        const uint32_t bone = held(pair, side);
-        for (uint32_t f = 0; f < x.frames; f++) {
-            if (!x.down[side][f]) continue;
-            heights[count++] = place(&x, SOURCE, f, bone)[1] - x.rest[SOURCE][3u * bone + 1u];
-        }
+    count = heights ? heights_of_feet(pair, &x, 1, heights) : 0;
+    if (count) {
+        *ground = mocap_rank(heights, count, count / 2u);
+    } else if (heights && (count = heights_of_feet(pair, &x, 0, heights))) { /* in the air, but not below the ground */
+        *ground = fmin(0.0, mocap_rank(heights, count, count / 20u));
     }
-    if (count) *ground = mocap_rank(heights, count, count / 2u);
     places_free(&x);
     free(heights);
     return !heights;

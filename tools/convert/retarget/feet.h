@@ -15,7 +15,8 @@ typedef struct retarget_pair {
     const contacts *stands; /* of the source's clip; NULL: not known */
 } retarget_pair;
 
-/* How much higher the clip's ground is than the one that the source stands on at rest, in its unit. 1: out of memory. */
+/* How much higher the clip's ground is than the one that the source stands on at rest, in its unit: by where feet stand,
+ * or, where none does, by the lowest foot below the ground. 1: out of memory. */
 int feet_ground(const retarget_pair *pair, double *ground);
 
 /* Add to out what both feet of the target need in each frame to stay where they stand: [frames][2][3], horizontal, in its
