@@ -10,7 +10,8 @@
 #define APART 0.7f /* ... above the second each follows its own shoulder */
 #define UNDER_LOW 0.35f /* depths of a foot, in lengths of the leg: above the first it is put on the ground, ... */
 #define UNDER_HIGH 0.6f /* ... below the second there is no ground */
-#define SIDE 0.01f      /* say of the usual side of the bend, in lengths of the limb: of straight limbs */
+#define SIDE 0.05f      /* say of the usual side over a straight limb's bend, in lengths of the limb, ... */
+#define BENT 0.04f      /* ... and how far out of line the middle is of one that has its own side */
 
 typedef struct bent {
     noh_retarget_place start, middle, end; /* of the target */
@@ -52,15 +53,18 @@ static void bend_limb(const noh_retarget *r, const noh_retarget_limb *limb, cons
 {
     noh_ik_limb ik;
     noh_ik_bend turns;
-    float pole[3], side[3], both[4], at[4];
+    float pole[3], side[3], along[3], both[4], at[4];
     memset(&ik, 0, sizeof ik);
     memcpy(ik.start, b->start.position, sizeof ik.start);
     memcpy(ik.middle, b->middle.position, sizeof ik.middle);
     memcpy(ik.end, b->end.position, sizeof ik.end);
     ik.soft = SOFT;
     noh_quat_rotate(b->start.rotation, limb->bend, side);
-    for (int i = 0; i < 3; i++) pole[i] = ik.middle[i] - 0.5f * (ik.start[i] + ik.end[i]);
-    noh_madd3(pole, SIDE * limb->length, side, pole);
+    noh_sub3(ik.end, ik.start, along);
+    noh_normalize3(along, side);
+    noh_sub3(ik.middle, ik.start, pole);
+    noh_reject3(pole, along, pole);
+    noh_madd3(pole, SIDE * limb->length * (1.0f - between(0.0f, BENT, noh_length3(pole) / limb->length)), side, pole);
     noh_ik_two_bone(&ik, b->goal, pole, 1.0f, &turns);
     turn_local(b->start.rotation, turns.start, &pose[limb->target[0]]);
     noh_quat_mul(turns.start, b->middle.rotation, at);

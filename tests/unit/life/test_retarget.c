@@ -35,7 +35,9 @@ static void move(const humanoid *h, uint32_t frame, noh_transform *pose)
         for (uint32_t side = 0; side < 2; side++) {
             const uint32_t j = h->rig.bones[turns[i].bone + side * NOH_BONE_RIGHT];
             const float at = sinf(t + turns[i].phase + (side ? 3.14f : 0.0f));
-            float q[4], wave = turns[i].bone == NOH_BONE_LOWER_LEG ? 0.6f + 0.4f * at : at;
+            float q[4], wave = turns[i].bone == NOH_BONE_LOWER_LEG || turns[i].bone == NOH_BONE_LOWER_ARM
+                                   ? 0.6f + 0.4f * at
+                                   : at;
             humanoid_axis(turns[i].x, turns[i].y, turns[i].z, 0.9f * wave, q);
             noh_quat_mul(pose[j].rotation, q, pose[j].rotation);
         }

@@ -164,7 +164,7 @@ int feet_ground(const retarget_pair *pair, double *ground)
     heights = malloc(2u * (size_t)x.frames * sizeof *heights);
     count = heights ? heights_of_feet(pair, &x, 1, heights) : 0;
     if (count) {
-        *ground = mocap_rank(heights, count, count / 2u);
+        *ground = mocap_rank(heights, count, count / 5u);                    /* rather low: heels go up */
     } else if (heights && (count = heights_of_feet(pair, &x, 0, heights))) { /* in the air, but not below the ground */
         *ground = fmin(0.0, mocap_rank(heights, count, count / 20u));
     }
