@@ -5,6 +5,7 @@
  * demo_assets --festival OUT: a festival's square, as OUT.obj and OUT.mtl. */
 #include "festival/festival.h"
 #include "mask/gltf_write.h"
+#include "mask/mask.h"
 #include "shared/grab.h"
 #include "arm/arm_write.h"
 #include "puppet/puppet_write.h"
@@ -35,11 +36,9 @@ static int save(const char *path, const Buffer *file)
     return good;
 }
 
-static int make_mask(const char *path)
+static int make_figure(const char *path, Figure mask)
 {
-    Mask mask;
     Buffer file = { 0 };
-    mask_build(&mask);
     Census census = gltf_write(&file, &mask);
     int good = save(path, &file);
     if (good) {
@@ -47,7 +46,7 @@ static int make_mask(const char *path)
                census.triangles, census.targets, census.animations, file.count);
     }
     buffer_free(&file);
-    mask_free(&mask);
+    figure_free(&mask);
     return good;
 }
 
@@ -114,7 +113,7 @@ static int make_festival(const char *path)
 int main(int argc, char **argv)
 {
     if (argc == 2 && argv[1][0] != '-') {
-        return make_mask(argv[1]) ? 0 : 1;
+        return make_figure(argv[1], mask_build()) ? 0 : 1;
     }
     if (argc == 3 && !strcmp(argv[1], "--puppet")) {
         return make_puppet(argv[2]) ? 0 : 1;

@@ -7,23 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The weight of one target at one key. Targets that are not named are 0. Weights add up: those of targets that shut the
- * same lips or lids may sum to at most 1. */
-typedef struct {
-    int key;
-    const char *target;
-    double weight;
-} Cue;
-
-typedef struct {
-    const char *name, *interpolation;
-    int key_count;
-    double times[16];
-    Cue cues[48]; /* ends with a NULL target */
-} Script;
-
 /* clang-format off */
-static const Script scripts[] = {
+static const WeightScript scripts[] = {
     { "blink",
       "LINEAR",
       6,
@@ -82,14 +67,15 @@ static double *weight_at(Animation *animation, int key, int target)
 {
     int cubic = !strcmp(animation->interpolation, "CUBICSPLINE");
     int row = cubic ? 3 * key + 1 : key;
-    return &animation->values[row * target_count() + target];
+    return &animation->values[row * animation->target_count + target];
 }
 
-static Animation animation_blank(const char *name, const char *interpolation, int key_count)
+static Animation animation_blank(const char *name, const char *interpolation, int key_count, int target_count)
 {
     Animation animation = { .name = name, .interpolation = interpolation, .key_count = key_count };
+    animation.target_count = target_count;
     int rows = strcmp(interpolation, "CUBICSPLINE") ? key_count : 3 * key_count;
-    animation.value_count = rows * target_count();
+    animation.value_count = rows * target_count;
     animation.times = grab(NULL, key_count, (int)sizeof(double));
     animation.values = grab(NULL, animation.value_count, (int)sizeof(double));
     for (int i = 0; i < animation.value_count; i++) {
@@ -101,7 +87,7 @@ static Animation animation_blank(const char *name, const char *interpolation, in
 /* Slopes through the neighbouring keys, but flat at every extreme, so that no weight overshoots its keys. */
 static void ease(Animation *animation)
 {
-    int targets = target_count();
+    int targets = animation->target_count;
     for (int key = 1; key + 1 < animation->key_count; key++) {
         for (int target = 0; target < targets; target++) {
             double last = *weight_at(animation, key - 1, target), now = *weight_at(animation, key, target);
@@ -116,13 +102,13 @@ static void ease(Animation *animation)
     }
 }
 
-static Animation play_script(const Script *script)
+Animation animation_of(const WeightScript *script, int target_count)
 {
-    Animation animation = animation_blank(script->name, script->interpolation, script->key_count);
+    Animation animation = animation_blank(script->name, script->interpolation, script->key_count, target_count);
     for (int i = 0; i < script->key_count; i++) {
         animation.times[i] = script->times[i];
     }
-    for (const Cue *cue = script->cues; cue->target; cue++) {
+    for (const WeightCue *cue = script->cues; cue->target; cue++) {
         int target = target_find(cue->target);
         if (target >= 0) {
             *weight_at(&animation, cue->key, target) = cue->weight;
@@ -137,8 +123,8 @@ static Animation play_script(const Script *script)
 /* Each target in turn: up, held for a moment, and down again. */
 static Animation play_tour(void)
 {
-    int targets = target_count();
-    Animation animation = animation_blank("tour", "LINEAR", 3 * targets + 1);
+    int targets = MASK_TARGETS;
+    Animation animation = animation_blank("tour", "LINEAR", 3 * targets + 1, targets);
     for (int target = 0; target < targets; target++) {
         animation.times[3 * target] = target;
         animation.times[3 * target + 1] = target + 0.3;
@@ -152,7 +138,7 @@ static Animation play_tour(void)
 
 Animation animation_make(int number)
 {
-    return number < ANIMATION_COUNT - 1 ? play_script(&scripts[number]) : play_tour();
+    return number < ANIMATION_COUNT - 1 ? animation_of(&scripts[number], MASK_TARGETS) : play_tour();
 }
 
 void animation_free(Animation *animation)

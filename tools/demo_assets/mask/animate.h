@@ -4,11 +4,29 @@
 
 typedef struct {
     const char *name, *interpolation; /* as glTF spells it */
-    int key_count;
+    int key_count, target_count;
     double *times;
     double *values; /* per key: all weights; for CUBICSPLINE in-slopes, weights, out-slopes */
     int value_count;
 } Animation;
+
+/* The weight of one target at one key. Targets that are not named are 0. Weights add up: those of targets that shut the
+ * same lips or lids may sum to at most 1. */
+typedef struct {
+    int key;
+    const char *target;
+    double weight;
+} WeightCue;
+
+typedef struct {
+    const char *name, *interpolation;
+    int key_count;
+    double times[16];
+    WeightCue cues[48]; /* ends with a NULL target */
+} WeightScript;
+
+/* The animation that the script describes, of the first `target_count` targets. */
+Animation animation_of(const WeightScript *script, int target_count);
 
 enum { ANIMATION_COUNT = 6 };
 

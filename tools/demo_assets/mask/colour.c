@@ -176,7 +176,7 @@ static V3 colour_of(const Seed *seed, V3 at, double open)
     return gofun;
 }
 
-void colour_bake(Model *model, const Frame *frames, double *const open[PART_COUNT])
+void colour_bake(Model *model, const Frame *frames, double *const open[PARTS_MAX])
 {
     for (int p = 0; p < PART_COUNT; p++) {
         Part *part = &model->parts[p];

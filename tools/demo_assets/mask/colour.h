@@ -5,6 +5,6 @@
 #include "mesh.h"
 
 /* `frames` is the model at rest; `open` is from occlusion_bake. */
-void colour_bake(Model *model, const Frame *frames, double *const open[PART_COUNT]);
+void colour_bake(Model *model, const Frame *frames, double *const open[PARTS_MAX]);
 
 #endif

@@ -4,6 +4,7 @@
 #include "hair.h"
 #include "jaw.h"
 #include "relief.h"
+#include "stroke.h"
 
 #include <math.h>
 
@@ -105,56 +106,47 @@ static double lip_shift(FacePoint point, const Pose *pose)
     return -lower * open * bump(from_line / 0.020);
 }
 
-/* A stroke drags the plane around one point; the drag falls to zero at the ellipse's edge. Written for the left side (x
- * outwards); the right side is its mirror image. */
-typedef struct {
-    double x, y, rx, ry; /* centre and radii of the ellipse */
-    double dx, dy, dz;   /* by how much it drags */
-} Stroke;
-
-static void drag(V3 *shift, FacePoint point, int side, double pull, Stroke stroke)
-{
-    if (pull == 0) {
-        return;
-    }
-    double sign = side_sign(side);
-    double k = pull * bump2(sign * point.s - stroke.x, point.t - stroke.y, stroke.rx, stroke.ry);
-    *shift = v3_add(*shift, v3(k * sign * stroke.dx, k * stroke.dy, k * stroke.dz));
-}
-
 /* Brows hardly move the scalp. */
 static void drag_brows(V3 *all, FacePoint point, int side, const Pose *pose)
 {
     V3 own = v3(0, 0, 0), *shift = &own;
-    drag(shift, point, side, pose->brow_inner_up, (Stroke){ 0.014, 0.053, 0.027, 0.040, -0.001, 0.0105, 0.0006 });
-    drag(shift, point, side, pose->brow_outer_up[side], (Stroke){ 0.038, 0.053, 0.027, 0.040, 0, 0.0115, 0 });
-    drag(shift, point, side, pose->brow_down[side], (Stroke){ 0.017, 0.047, 0.034, 0.040, -0.0035, -0.0090, 0.0016 });
+    drag(shift, point.s, point.t, side, pose->brow_inner_up,
+         (Stroke){ 0.014, 0.053, 0.027, 0.040, -0.001, 0.0105, 0.0006 });
+    drag(shift, point.s, point.t, side, pose->brow_outer_up[side],
+         (Stroke){ 0.038, 0.053, 0.027, 0.040, 0, 0.0115, 0 });
+    drag(shift, point.s, point.t, side, pose->brow_down[side],
+         (Stroke){ 0.017, 0.047, 0.034, 0.040, -0.0035, -0.0090, 0.0016 });
     double held = smooth(-0.022, 0.002, hair_past(point.s, point.t));
     *all = v3_add(*all, v3_scale(own, 1 - 0.8 * held));
 }
 
 static void drag_cheeks(V3 *shift, FacePoint point, int side, const Pose *pose)
 {
-    drag(shift, point, side, pose->cheek_squint[side], (Stroke){ 0.036, -0.014, 0.028, 0.022, 0, 0.0062, 0.0046 });
-    drag(shift, point, side, pose->squint[side], (Stroke){ 0.034, -0.006, 0.026, 0.016, 0, 0.0020, 0.0012 });
-    drag(shift, point, side, pose->smile[side], (Stroke){ 0.038, -0.022, 0.025, 0.025, 0.001, 0.0020, 0.0036 });
-    drag(shift, point, side, pose->cheek_puff, (Stroke){ 0.038, -0.046, 0.027, 0.038, 0.0085, 0, 0.0120 });
-    drag(shift, point, side, pose->sneer[side], (Stroke){ 0.014, -0.022, 0.018, 0.020, 0.0020, 0.0064, 0.0008 });
-    drag(shift, point, side, pose->sneer[side], (Stroke){ 0.009, 0.004, 0.010, 0.016, 0, 0.0015, 0.0018 });
+    drag(shift, point.s, point.t, side, pose->cheek_squint[side],
+         (Stroke){ 0.036, -0.014, 0.028, 0.022, 0, 0.0062, 0.0046 });
+    drag(shift, point.s, point.t, side, pose->squint[side], (Stroke){ 0.034, -0.006, 0.026, 0.016, 0, 0.0020, 0.0012 });
+    drag(shift, point.s, point.t, side, pose->smile[side],
+         (Stroke){ 0.038, -0.022, 0.025, 0.025, 0.001, 0.0020, 0.0036 });
+    drag(shift, point.s, point.t, side, pose->cheek_puff, (Stroke){ 0.038, -0.046, 0.027, 0.038, 0.0085, 0, 0.0120 });
+    drag(shift, point.s, point.t, side, pose->sneer[side],
+         (Stroke){ 0.014, -0.022, 0.018, 0.020, 0.0020, 0.0064, 0.0008 });
+    drag(shift, point.s, point.t, side, pose->sneer[side], (Stroke){ 0.009, 0.004, 0.010, 0.016, 0, 0.0015, 0.0018 });
 }
 
 static void drag_mouth(V3 *shift, FacePoint point, int side, const Pose *pose)
 {
     const double x = MOUTH_HALF, y = MOUTH_Y;
-    drag(shift, point, side, pose->smile[side],
+    drag(shift, point.s, point.t, side, pose->smile[side],
          (Stroke){ x + 0.010, y + 0.002, 0.034, 0.036, 0.0070, 0.0110, -0.0022 });
-    drag(shift, point, side, pose->frown[side], (Stroke){ x + 0.008, y, 0.033, 0.032, -0.0005, -0.0110, -0.0005 });
-    drag(shift, point, side, pose->dimple[side],
+    drag(shift, point.s, point.t, side, pose->frown[side],
+         (Stroke){ x + 0.008, y, 0.033, 0.032, -0.0005, -0.0110, -0.0005 });
+    drag(shift, point.s, point.t, side, pose->dimple[side],
          (Stroke){ x + 0.002, y + 0.001, 0.018, 0.016, 0.0035, 0.001, -0.0035 });
-    drag(shift, point, side, pose->stretch[side], (Stroke){ x, y, 0.032, 0.026, 0.0085, -0.0020, -0.0025 });
-    drag(shift, point, side, pose->press[side], (Stroke){ x, y, 0.026, 0.016, 0.0015, 0.0020, -0.0020 });
-    drag(shift, point, side, pose->upper_up[side], (Stroke){ 0.014, -0.043, 0.017, 0.015, 0.0005, 0.0022, 0.0008 });
-    drag(shift, point, side, 0.5 * (pose->frown[side] + pose->shrug_lower),
+    drag(shift, point.s, point.t, side, pose->stretch[side], (Stroke){ x, y, 0.032, 0.026, 0.0085, -0.0020, -0.0025 });
+    drag(shift, point.s, point.t, side, pose->press[side], (Stroke){ x, y, 0.026, 0.016, 0.0015, 0.0020, -0.0020 });
+    drag(shift, point.s, point.t, side, pose->upper_up[side],
+         (Stroke){ 0.014, -0.043, 0.017, 0.015, 0.0005, 0.0022, 0.0008 });
+    drag(shift, point.s, point.t, side, 0.5 * (pose->frown[side] + pose->shrug_lower),
          (Stroke){ 0.004, -0.082, 0.024, 0.020, 0, 0.0020, 0.0020 });
 }
 

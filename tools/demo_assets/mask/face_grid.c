@@ -1,22 +1,16 @@
 #include "face_grid.h"
 
+#include "axis.h"
 #include "face.h"
 #include "relief.h"
 #include "hair.h"
+#include "mask.h"
 
 #include <math.h>
 
-enum { MAX_LINES = 128, COLUMN_ANCHORS = 6, ROW_ANCHORS = 2, MAX_ANCHORS = 8 };
+enum { COLUMN_ANCHORS = 6, ROW_ANCHORS = 2 };
 enum { EYE_RIGHT_OUTER, MOUTH_RIGHT, EYE_RIGHT_INNER, EYE_LEFT_INNER, MOUTH_LEFT, EYE_LEFT_OUTER };
 enum { MOUTH_ROW, EYE_ROW };
-
-/* Grid lines across one direction. Anchors are positions at which a line must lie exactly: slits begin and end there.
- */
-typedef struct {
-    int count;
-    double at[MAX_LINES];
-    int anchor[MAX_ANCHORS];
-} Axis;
 
 typedef struct {
     Axis column, row;
@@ -36,55 +30,6 @@ static double row_spacing(double y)
     double fine = bump((y - MOUTH_Y) / 0.030) + bump((y - EYE_Y) / 0.030) + 0.42 * bump((y - 0.061) / 0.024) +
                   0.7 * bump((y + 0.028) / 0.016);
     return 1.7 - 1.1 * clamp(fine, 0, 1) - 0.8 * smooth(0.8, 1, edge);
-}
-
-/* Lines from -half to half, spaced in proportion to `spacing`. */
-static void axis_spread(Axis *axis, int count, double half, double (*spacing)(double))
-{
-    enum { STEPS = 4000 };
-    double total = 0, sum = 0, width = 2 * half / STEPS;
-    for (int i = 0; i < STEPS; i++) {
-        total += width / spacing(-half + (i + 0.5) * width);
-    }
-    int line = 0;
-    axis->count = count;
-    for (int i = 0; i < STEPS; i++) {
-        double x = -half + i * width, step = width / spacing(x + width / 2);
-        while (line < count && sum + step >= total * line / (count - 1)) {
-            axis->at[line] = x + width * (total * line / (count - 1) - sum) / step;
-            line++;
-        }
-        sum += step;
-    }
-    axis->at[0] = -half;
-    for (; line < count; line++) {
-        axis->at[line] = half;
-    }
-    axis->at[count - 1] = half;
-}
-
-/* Moves the nearest line onto each anchor, and the lines between in step. */
-static void axis_snap(Axis *axis, const double *anchors, int anchor_count)
-{
-    Axis raw = *axis;
-    int from = 0, last = axis->count - 1;
-    for (int a = 0; a <= anchor_count; a++) {
-        int to = last;
-        if (a < anchor_count) {
-            for (int i = 0; i < last; i++) {
-                if (fabs(raw.at[i] - anchors[a]) < fabs(raw.at[to] - anchors[a])) {
-                    to = i;
-                }
-            }
-            axis->anchor[a] = to;
-            axis->at[to] = anchors[a];
-        }
-        for (int i = from + 1; i < to; i++) {
-            double k = (raw.at[i] - raw.at[from]) / (raw.at[to] - raw.at[from]);
-            axis->at[i] = mix(axis->at[from], axis->at[to], k);
-        }
-        from = to;
-    }
 }
 
 static Axis make_columns(void)
@@ -169,7 +114,7 @@ static int on_mouth_slit(const Grid *grid, int i, int j)
 static void seed_texture(Seed *seed)
 {
     static const Pose rest;
-    V3 at = model_place(seed, &rest);
+    V3 at = mask_place(seed, &rest);
     seed->u = 0.5 + at.x / 0.24;
     seed->v = 0.5 - at.y / 0.24;
 }

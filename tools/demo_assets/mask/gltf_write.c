@@ -6,11 +6,11 @@
 
 #include <stddef.h>
 
-static void write_animations(Writer *w, Buffer *json)
+static void write_animations(Writer *w, Buffer *json, const Figure *figure)
 {
     buffer_print(json, "\"animations\":[\n");
-    for (int i = 0; i < ANIMATION_COUNT; i++) {
-        Animation animation = animation_make(i);
+    for (int i = 0; i < figure->animation_count; i++) {
+        Animation animation = figure->animation(i);
         int times = write_scalars(w, animation.times, animation.key_count, 1);
         int values = write_scalars(w, animation.values, animation.value_count, 0);
         buffer_print(json,
@@ -23,23 +23,27 @@ static void write_animations(Writer *w, Buffer *json)
     buffer_print(json, "],\n");
 }
 
-Census gltf_write(Buffer *file, const Mask *mask)
+Census gltf_write(Buffer *file, const Figure *mask)
 {
     Writer w = { 0 };
     Buffer json = { 0 };
-    buffer_print(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"noh demo_assets\"},\n"
-                        "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\n"
-                        "\"nodes\":[{\"name\":\"mask\",\"mesh\":0}],\n"
-                        "\"materials\":[");
-    mask_materials_write(&json);
+    buffer_print(&json,
+                 "{\"asset\":{\"version\":\"2.0\",\"generator\":\"noh demo_assets\"},\n"
+                 "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\n"
+                 "\"nodes\":[{\"name\":\"%s\",\"mesh\":0}],\n"
+                 "\"materials\":[",
+                 mask->name);
+    materials_write(&json, mask->materials, mask->model.part_count);
     buffer_print(&json, "],\n\"meshes\":[");
     mask_mesh_write(&w, &json, mask, NULL);
     buffer_print(&json, "],\n");
-    write_animations(&w, &json);
+    if (mask->animation_count) {
+        write_animations(&w, &json, mask);
+    }
     writer_finish(&w, &json, file);
     buffer_free(&json);
-    Census census = { .targets = target_count(), .animations = ANIMATION_COUNT };
-    for (int i = 0; i < PART_COUNT; i++) {
+    Census census = { .targets = mask->target_count, .animations = mask->animation_count };
+    for (int i = 0; i < mask->model.part_count; i++) {
         census.vertices += mask->model.parts[i].seed_count;
         census.triangles += mask->model.parts[i].index_count / 3;
     }

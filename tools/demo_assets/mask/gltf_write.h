@@ -3,7 +3,7 @@
 #define MASK_GLTF_WRITE_H
 
 #include "shared/buffer.h"
-#include "mask.h"
+#include "figure.h"
 
 /* What went into the file, for the summary. */
 typedef struct {
@@ -11,6 +11,6 @@ typedef struct {
 } Census;
 
 /* The buffer receives the file. */
-Census gltf_write(Buffer *file, const Mask *mask);
+Census gltf_write(Buffer *file, const Figure *mask);
 
 #endif

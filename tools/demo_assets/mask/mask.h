@@ -2,15 +2,11 @@
 #ifndef MASK_MASK_H
 #define MASK_MASK_H
 
-#include "mesh.h"
+#include "figure.h"
 
-typedef struct {
-    Model model;
-    Frame frames[PART_COUNT];
-    int *weld[PART_COUNT]; /* from mesh_weld */
-} Mask;
+Figure mask_build(void);
 
-void mask_build(Mask *mask);
-void mask_free(Mask *mask);
+/* Where a seed of the mask's lies in a pose. */
+V3 mask_place(const Seed *seed, const Pose *pose);
 
 #endif

@@ -98,19 +98,34 @@ static void write_deltas(Writer *w, Buffer *json, const Deltas *d, int vertices,
     buffer_print(json, "{\"POSITION\":%d,\"NORMAL\":%d,\"TANGENT\":%d}", position, normal, tangent);
 }
 
-static void write_targets(Writer *w, Buffer *json, const Part *part, const Frame *rest, const int *weld)
+/* What a target's pose is measured from: mouthClose shuts lips that an open jaw has parted (closed at rest, they cannot
+ * come closer). */
+static Pose target_base(const Figure *figure, Pose *pose)
 {
+    Pose base = { 0 };
+    if (figure->lips_meet && pose->mouth_close > 0) {
+        base.jaw_open = pose->jaw_open = 1;
+    }
+    return base;
+}
+
+static void write_targets(Writer *w, Buffer *json, const Figure *figure, int number)
+{
+    const Part *part = &figure->model.parts[number];
+    const Frame *rest = &figure->frames[number];
     int zeros = write_zeros(w, rest->count);
-    for (int target = 0; target < target_count(); target++) {
-        Pose pose = target_pose(target);
-        Frame now = mesh_frame(part, weld, &pose);
-        Deltas deltas = find_deltas(rest, &now);
+    for (int target = 0; target < figure->target_count; target++) {
+        Pose pose = target_pose(target), base = target_base(figure, &pose);
+        Frame from = mesh_frame(part, figure->weld[number], &base);
+        Frame now = mesh_frame(part, figure->weld[number], &pose);
+        Deltas deltas = find_deltas(&from, &now);
         buffer_print(json, target ? ",\n" : "");
         write_deltas(w, json, &deltas, rest->count, zeros);
         free(deltas.vertex);
         free(deltas.position);
         free(deltas.normal);
         free(deltas.tangent);
+        mesh_free(&from);
         mesh_free(&now);
     }
 }
@@ -177,7 +192,7 @@ static void write_holds(Writer *w, Buffer *json, const Part *part, const MaskWea
     free(weights);
 }
 
-static void write_primitive(Writer *w, Buffer *json, const Mask *mask, int number, const MaskWearer *wearer)
+static void write_primitive(Writer *w, Buffer *json, const Figure *mask, int number, const MaskWearer *wearer)
 {
     const Part *part = &mask->model.parts[number];
     const Frame *rest = &mask->frames[number];
@@ -195,37 +210,30 @@ static void write_primitive(Writer *w, Buffer *json, const Mask *mask, int numbe
         write_holds(w, json, part, wearer);
     }
     buffer_print(json, "},\"indices\":%d,\"material\":%d,\n\"targets\":[", indices, number);
-    write_targets(w, json, part, rest, mask->weld[number]);
+    write_targets(w, json, mask, number);
     buffer_print(json, "]}");
 }
 
-void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer *wearer)
+void mask_mesh_write(Writer *w, Buffer *json, const Figure *mask, const MaskWearer *wearer)
 {
-    buffer_print(json, "{\"name\":\"mask\",\"primitives\":[\n");
-    for (int i = 0; i < PART_COUNT; i++) {
+    buffer_print(json, "{\"name\":\"%s\",\"primitives\":[\n", mask->name);
+    for (int i = 0; i < mask->model.part_count; i++) {
         write_primitive(w, json, mask, i, wearer);
     }
     buffer_print(json, "],\n\"weights\":[");
-    for (int i = 0; i < target_count(); i++) {
+    for (int i = 0; i < mask->target_count; i++) {
         buffer_print(json, i ? ",0" : "0");
     }
     buffer_print(json, "],\n\"extras\":{\"targetNames\":[");
-    for (int i = 0; i < target_count(); i++) {
+    for (int i = 0; i < mask->target_count; i++) {
         buffer_print(json, "%s\"%s\"", i ? "," : "", target_name(i));
     }
-    /* Its lips are carved a little apart: at p, b and m they meet. */
-    buffer_print(json, "],\"recipe\":[\"PP mouthClose\",\"PP mouthPressLeft 0.2\",\"PP mouthPressRight 0.2\"]}}");
+    buffer_print(json, "]%s}}", mask->extras);
 }
 
-void mask_materials_write(Buffer *json)
+void materials_write(Buffer *json, const FigureMaterial *materials, int count)
 {
-    static const struct {
-        const char *name;
-        double roughness;
-    } materials[PART_COUNT] = {
-        { "paint", 0.55 }, { "wood", 0.30 }, { "eyes", 0.12 }, { "teeth", 0.25 }, { "mouth", 0.60 }
-    };
-    for (int i = 0; i < PART_COUNT; i++) {
+    for (int i = 0; i < count; i++) {
         material_write(json, i == 0, materials[i].name, materials[i].roughness, 0);
     }
 }

@@ -2,7 +2,7 @@
 #ifndef MASK_MASK_WRITE_H
 #define MASK_MASK_WRITE_H
 
-#include "mask.h"
+#include "figure.h"
 #include "shared/writer.h"
 
 /* How the mask is worn: its origin is at `origin`, and two joints of a skin move it. */
@@ -13,9 +13,9 @@ typedef struct {
 
 /* Prints a mesh object with all targets. Its primitives use the materials 0 to PART_COUNT - 1.
  * wearer: NULL for a mask alone, without a skin. */
-void mask_mesh_write(Writer *w, Buffer *json, const Mask *mask, const MaskWearer *wearer);
+void mask_mesh_write(Writer *w, Buffer *json, const Figure *mask, const MaskWearer *wearer);
 
-/* Prints PART_COUNT material objects, with commas between them. */
-void mask_materials_write(Buffer *json);
+/* Prints material objects, with commas between them. */
+void materials_write(Buffer *json, const FigureMaterial *materials, int count);
 
 #endif

@@ -40,7 +40,7 @@ int *mesh_weld(const Part *part)
     Placed *placed = grab(NULL, count, (int)sizeof *placed);
     int *first = grab(NULL, count, (int)sizeof *first);
     for (int i = 0; i < count; i++) {
-        placed[i].at = model_place(&part->seeds[i], &rest);
+        placed[i].at = part->place(&part->seeds[i], &rest);
         placed[i].vertex = i;
     }
     qsort(placed, (size_t)count, sizeof *placed, placed_order);
@@ -117,7 +117,7 @@ Frame mesh_frame(const Part *part, const int *first, const Pose *pose)
     frame.handedness = grab(NULL, count, (int)sizeof(double));
     Sums sums = { grab(NULL, count, vector), grab(NULL, count, vector), grab(NULL, count, vector) };
     for (int i = 0; i < count; i++) {
-        frame.position[i] = model_place(&part->seeds[i], pose);
+        frame.position[i] = part->place(&part->seeds[i], pose);
         sums.normal[i] = sums.along_u[i] = sums.along_v[i] = v3(0, 0, 0);
     }
     for (int i = 0; i < part->index_count; i += 3) {

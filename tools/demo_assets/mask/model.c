@@ -1,14 +1,6 @@
 #include "model.h"
 
-#include "ear.h"
-#include "eye.h"
-#include "face.h"
-#include "face_grid.h"
-#include "folds.h"
 #include "shared/grab.h"
-#include "hair.h"
-#include "mouth.h"
-#include "wood.h"
 
 #include <stdlib.h>
 
@@ -44,40 +36,18 @@ void model_quad(Model *model, int part, uint32_t a, uint32_t b, uint32_t c, uint
     model_triangle(model, part, a, c, d);
 }
 
-V3 model_place(const Seed *seed, const Pose *pose)
+Model model_begin(int part_count, V3 (*place)(const Seed *seed, const Pose *pose))
 {
-    switch (seed->region) {
-    case ON_SKIN: {
-        FacePoint point = { seed->s, seed->t, seed->eye, seed->mouth };
-        return face_place(point, pose);
+    Model model = { .part_count = part_count };
+    for (int i = 0; i < part_count; i++) {
+        model.parts[i].place = place;
     }
-    case ON_LIP_FOLD: return lip_fold_place(seed, pose);
-    case ON_LID_FOLD: return lid_fold_place(seed, pose);
-    case ON_EAR: return ear_place(seed);
-    case ON_STROKE: return stroke_place(seed, pose);
-    case ON_RIM: return rim_place(seed, pose);
-    case ON_BACK: return back_place(seed, pose);
-    case ON_BALL: return ball_place(seed, pose);
-    case ON_TEETH: return teeth_place(seed, pose);
-    case ON_TONGUE: return tongue_place(seed, pose);
-    case ON_BAG: return bag_place(seed, pose);
-    }
-    return v3(0, 0, 0);
-}
-
-void model_build(Model *model)
-{
-    face_grid_build(model);
-    hair_build(model);
-    ears_build(model);
-    wood_build(model);
-    eyes_build(model);
-    mouth_build(model);
+    return model;
 }
 
 void model_free(Model *model)
 {
-    for (int i = 0; i < PART_COUNT; i++) {
+    for (int i = 0; i < model->part_count; i++) {
         free(model->parts[i].seeds);
         free(model->parts[i].indices);
         free(model->parts[i].colours);

@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 /* One part becomes one glTF primitive with its own material. */
-enum { PART_PAINT, PART_WOOD, PART_EYES, PART_TEETH, PART_MOUTH, PART_COUNT };
+enum { PART_PAINT, PART_WOOD, PART_EYES, PART_TEETH, PART_MOUTH, PART_COUNT, PARTS_MAX = 6 };
 
 /* What a vertex is part of: chooses the function that places it in a pose. */
 typedef enum {
@@ -22,13 +22,14 @@ typedef enum {
     ON_BALL,
     ON_TEETH,
     ON_TONGUE,
-    ON_BAG
+    ON_BAG,
+    REGION_COUNT /* nell/ has more */
 } Region;
 
 /* What a vertex grows from. A pose turns a seed into a position, and every pose uses the same seeds, so all targets
  * have the same vertices. */
 typedef struct {
-    Region region;
+    int region;  /* a Region, or one of nell/ */
     double s, t; /* place in the closed face plane, or the region's own grid */
     double k;    /* depth along a fold, a ring number, ... */
     int eye;     /* above (+1) or below (-1) the eye slits; for a ball: its side */
@@ -37,6 +38,7 @@ typedef struct {
 } Seed;
 
 typedef struct {
+    V3 (*place)(const Seed *seed, const Pose *pose); /* where a seed's vertex lies in a pose */
     int seed_count, seed_space;
     Seed *seeds;
     int index_count, index_space;
@@ -45,14 +47,15 @@ typedef struct {
 } Part;
 
 typedef struct {
-    Part parts[PART_COUNT];
+    int part_count;
+    Part parts[PARTS_MAX];
 } Model;
 
-void model_build(Model *model);
+/* An empty model, whose vertices `place` puts. */
+Model model_begin(int part_count, V3 (*place)(const Seed *seed, const Pose *pose));
 void model_free(Model *model);
 uint32_t model_seed(Model *model, int part, const Seed *seed);
 void model_triangle(Model *model, int part, uint32_t a, uint32_t b, uint32_t c);
 void model_quad(Model *model, int part, uint32_t a, uint32_t b, uint32_t c, uint32_t d);
-V3 model_place(const Seed *seed, const Pose *pose);
 
 #endif

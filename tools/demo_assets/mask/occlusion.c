@@ -121,17 +121,17 @@ static void soften(const Part *part, double *values)
     free(weight);
 }
 
-void occlusion_bake(const Model *model, const Frame *frames, double *open[PART_COUNT])
+void occlusion_bake(const Model *model, const Frame *frames, double *open[PARTS_MAX])
 {
     for (int row = 0; row < HIGH; row++) {
         for (int column = 0; column < WIDE; column++) {
             map[row][column] = nothing;
         }
     }
-    for (int part = 0; part < PART_COUNT; part++) {
+    for (int part = 0; part < model->part_count; part++) {
         draw_part(&model->parts[part], &frames[part]);
     }
-    for (int part = 0; part < PART_COUNT; part++) {
+    for (int part = 0; part < model->part_count; part++) {
         const Frame *frame = &frames[part];
         open[part] = grab(NULL, frame->count, (int)sizeof(double));
         for (int i = 0; i < frame->count; i++) {

@@ -5,6 +5,6 @@
 #include "mesh.h"
 
 /* One value per vertex of each part: 1 in the open, towards 0 in a crease. */
-void occlusion_bake(const Model *model, const Frame *frames, double *open[PART_COUNT]);
+void occlusion_bake(const Model *model, const Frame *frames, double *open[PARTS_MAX]);
 
 #endif

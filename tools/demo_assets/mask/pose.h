@@ -15,6 +15,8 @@ typedef struct {
     double upper_up[SIDES], lower_down[SIDES];
     double pucker, funnel, roll_upper, roll_lower, shrug_upper, shrug_lower;
     double mouth_side, mouth_close, tongue_out;
+    double tongue_up; /* its tip to the upper teeth; the mask has no such target */
+    double nothing;
 } Pose;
 
 #endif

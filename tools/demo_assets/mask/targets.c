@@ -23,7 +23,7 @@ typedef struct {
 #define BOTH(member, amount) JUST(member[LEFT], amount), JUST(member[RIGHT], amount)
 /* clang-format on */
 
-static const Target targets[] = {
+static const Target targets[ALL_TARGETS] = {
     /* What a user types first. */
     { "smile", { BOTH(smile, 1), BOTH(cheek_squint, 0.5), BOTH(upper_up, 0.22) } },
     { "frown", { BOTH(frown, 1), JUST(brow_inner_up, 0.8), JUST(shrug_lower, 0.35) } },
@@ -68,12 +68,24 @@ static const Target targets[] = {
     PAIR("mouthUpperUp", upper_up),
     PAIR("noseSneer", sneer),
     ONE("tongueOut", tongue_out),
+    /* Sounds. */
+    ONE("viseme_sil", nothing),
+    { "viseme_PP", { BOTH(press, 0.8), JUST(roll_upper, 0.3), JUST(roll_lower, 0.35), JUST(pucker, 0.1) } },
+    { "viseme_FF", { JUST(roll_lower, 0.8), BOTH(upper_up, 0.55), JUST(jaw_open, 0.10) } },
+    { "viseme_TH", { JUST(jaw_open, 0.20), BOTH(upper_up, 0.3), BOTH(lower_down, 0.3), JUST(tongue_up, 0.7) } },
+    { "viseme_DD", { JUST(jaw_open, 0.18), BOTH(upper_up, 0.3), BOTH(lower_down, 0.4), JUST(tongue_up, 1) } },
+    { "viseme_kk", { JUST(jaw_open, 0.24), BOTH(upper_up, 0.3), BOTH(lower_down, 0.35), BOTH(stretch, 0.2) } },
+    { "viseme_CH", { JUST(jaw_open, 0.12), JUST(funnel, 0.75), JUST(pucker, 0.2) } },
+    { "viseme_SS", { JUST(jaw_open, 0.06), BOTH(stretch, 0.5), BOTH(upper_up, 0.45), BOTH(lower_down, 0.5) } },
+    { "viseme_nn", { JUST(jaw_open, 0.16), BOTH(upper_up, 0.25), BOTH(lower_down, 0.3), JUST(tongue_up, 1) } },
+    { "viseme_RR", { JUST(jaw_open, 0.14), JUST(funnel, 0.45), JUST(pucker, 0.25), JUST(tongue_up, 0.5) } },
+    { "viseme_aa", { JUST(jaw_open, 0.70), BOTH(upper_up, 0.25), BOTH(stretch, 0.1) } },
+    { "viseme_E", { JUST(jaw_open, 0.34), BOTH(stretch, 0.4), BOTH(upper_up, 0.3), BOTH(lower_down, 0.3) } },
+    { "viseme_I",
+      { JUST(jaw_open, 0.16), BOTH(stretch, 0.5), BOTH(smile, 0.25), BOTH(upper_up, 0.3), BOTH(lower_down, 0.3) } },
+    { "viseme_O", { JUST(jaw_open, 0.42), JUST(funnel, 0.55), JUST(pucker, 0.35) } },
+    { "viseme_U", { JUST(jaw_open, 0.14), JUST(funnel, 0.25), JUST(pucker, 0.85) } },
 };
-
-int target_count(void)
-{
-    return (int)(sizeof targets / sizeof *targets);
-}
 
 const char *target_name(int target)
 {
@@ -93,7 +105,7 @@ Pose target_pose(int target)
 
 int target_find(const char *name)
 {
-    for (int i = 0; i < target_count(); i++) {
+    for (int i = 0; i < ALL_TARGETS; i++) {
         if (!strcmp(targets[i].name, name)) {
             return i;
         }

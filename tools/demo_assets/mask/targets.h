@@ -4,7 +4,9 @@
 
 #include "pose.h"
 
-int target_count(void);
+/* The mask has the first ones; the visemes follow. */
+enum { MASK_TARGETS = 57, ALL_TARGETS = MASK_TARGETS + 15 };
+
 const char *target_name(int target);
 Pose target_pose(int target);
 int target_find(const char *name); /* -1 if there is none */

@@ -2,6 +2,7 @@
 
 #include "face.h"
 #include "face_grid.h"
+#include "mask.h"
 
 #include <math.h>
 
@@ -58,7 +59,7 @@ static uint32_t wood_seed(Model *model, Region region, int k, int segment)
     static const Pose rest;
     seed.region = region;
     seed.k = k;
-    V3 at = model_place(&seed, &rest);
+    V3 at = mask_place(&seed, &rest);
     seed.u = region == ON_RIM ? 4.0 * segment / SEGMENTS : 0.5 + at.x / 0.24;
     seed.v = region == ON_RIM ? 0.02 * k : 0.5 - at.y / 0.24;
     return model_seed(model, PART_WOOD, &seed);

@@ -59,7 +59,7 @@ static void add_places(Animation *animation, const Posed *frames, int joint)
 /* As with the joints, the last frame is the first one. */
 static void add_face(Animation *animation, const Clip *clip, int node)
 {
-    int targets = target_count();
+    int targets = MASK_TARGETS;
     double *values = grab(NULL, targets * animation->frames, (int)sizeof *values);
     for (int i = 0; i < targets * animation->frames; i++) {
         values[i] = 0;

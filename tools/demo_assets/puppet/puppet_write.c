@@ -3,6 +3,7 @@
 #include "body.h"
 #include "clip_write.h"
 #include "shared/grab.h"
+#include "mask/mask.h"
 #include "mask/mask_write.h"
 #include "mask/targets.h"
 
@@ -55,10 +56,10 @@ static void write_skin(Writer *w, Buffer *json)
     buffer_print(json, "]}],\n");
 }
 
-static void write_materials(Buffer *json)
+static void write_materials(Buffer *json, const Figure *mask)
 {
     buffer_print(json, "\"materials\":[");
-    mask_materials_write(json);
+    materials_write(json, mask->materials, mask->model.part_count);
     material_write(json, 0, "cloth", 0.85, 1);
     material_write(json, 0, "skin", 0.55, 0);
     material_write(json, 0, "hair", 0.45, 0);
@@ -98,7 +99,7 @@ static void write_body(Writer *w, Buffer *json, const Body *body)
     buffer_print(json, "]}");
 }
 
-static PuppetCensus take_census(const Body *body, const Mask *mask)
+static PuppetCensus take_census(const Body *body, const Figure *mask)
 {
     PuppetCensus census = { .joints = JOINT_COUNT, .animations = CLIP_COUNT };
     for (int i = 0; i < MATERIAL_COUNT; i++) {
@@ -140,13 +141,12 @@ PuppetCensus puppet_write(Buffer *file)
     const MaskWearer wearer = { mask_origin(), HEAD, JAW };
     Writer w = { 0 };
     Buffer json = { 0 };
-    Mask mask;
     Body body = body_build();
-    mask_build(&mask);
+    Figure mask = mask_build();
     buffer_print(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"noh demo_assets\"},\n");
     write_nodes(&json);
     write_skin(&w, &json);
-    write_materials(&json);
+    write_materials(&json, &mask);
     buffer_print(&json, "\"meshes\":[");
     write_body(&w, &json, &body);
     buffer_print(&json, ",\n");
@@ -161,6 +161,6 @@ PuppetCensus puppet_write(Buffer *file)
     PuppetCensus census = take_census(&body, &mask);
     buffer_free(&json);
     body_free(&body);
-    mask_free(&mask);
+    figure_free(&mask);
     return census;
 }
