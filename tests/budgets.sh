@@ -41,6 +41,7 @@ cast() {
 all() {
     for path in cpu mrt layered per-layer gather direct streams; do rows mask.noh "alone, $path, f32" --path $path --accumulate f32; done
     rows mask.noh 'alone, mrt, f16' --path mrt --accumulate f16
+    rows demo/nell.noh 'alone, mrt, f16' --path mrt --accumulate f16
     rows wig.noh 'with hair' --path cpu --accumulate f32
     rows demo/puppet.noh 'with springs' --path cpu --accumulate f32
     rows demo/puppet_levels.noh 'twenty actors' --actors 20

@@ -6,6 +6,8 @@ check 'the puppet is made' "$build/demo_assets" --puppet "$work/puppet.glb"
 check 'the same bytes every time' cmp "$work/puppet.glb" "$build/demo/puppet.glb"
 check 'the mask is made' "$build/demo_assets" "$work/mask.glb"
 check 'and has the same bytes too' cmp "$work/mask.glb" "$build/mask.glb"
+check 'the head is made' "$build/demo_assets" --nell "$work/nell.glb"
+check 'with the same bytes as well' cmp "$work/nell.glb" "$build/demo/nell.glb"
 
 noh build "$work/puppet.glb" -o "$work/puppet.noh"
 expect 0 'the converter takes the puppet'
@@ -13,7 +15,7 @@ check 'without a warning' sh -c '! grep -q warning "$1"' sh "$work/err"
 noh info "$work/puppet.noh"
 check 'two meshes, five clips' grep -q '2 meshes, 49 nodes, 1 skeleton, 5 clips' "$work/out"
 
-for arguments in '' '--puppet' '--arm' '--other x.glb' 'a.glb b.glb'; do
+for arguments in '' '--puppet' '--nell' '--arm' '--other x.glb' 'a.glb b.glb'; do
     # shellcheck disable=SC2086
     "$build/demo_assets" $arguments >"$work/out" 2>"$work/err"
     code=$?

@@ -1,5 +1,5 @@
 #!/bin/sh
-# The mask, the puppet and the arm are valid glTF: npm's gltf-validator finds no errors and no warnings.
+# The mask, the puppet, the arm and the head are valid glTF: npm's gltf-validator finds no errors and no warnings.
 . "$(dirname "$0")/lib.sh"
 
 name='what demo_assets writes is valid glTF'
@@ -31,4 +31,5 @@ validate() {
 validate "$build/mask.glb" 'the mask is valid glTF'
 validate "$build/demo/puppet.glb" 'the puppet is valid glTF'
 validate "$build/demo/arm.glb" 'the arm is valid glTF'
+validate "$build/demo/nell.glb" 'the head is valid glTF'
 finish

@@ -1,4 +1,5 @@
 /* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
+ * demo_assets --nell OUT.glb: a head and shoulders like a figure of an animated film.
  * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
  * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
  * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning.
@@ -6,6 +7,7 @@
 #include "festival/festival.h"
 #include "mask/gltf_write.h"
 #include "mask/mask.h"
+#include "nell/nell.h"
 #include "shared/grab.h"
 #include "arm/arm_write.h"
 #include "puppet/puppet_write.h"
@@ -115,6 +117,9 @@ int main(int argc, char **argv)
     if (argc == 2 && argv[1][0] != '-') {
         return make_figure(argv[1], mask_build()) ? 0 : 1;
     }
+    if (argc == 3 && !strcmp(argv[1], "--nell")) {
+        return make_figure(argv[2], nell_build()) ? 0 : 1;
+    }
     if (argc == 3 && !strcmp(argv[1], "--puppet")) {
         return make_puppet(argv[2]) ? 0 : 1;
     }
@@ -127,6 +132,6 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--festival")) {
         return make_festival(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr, "usage: demo_assets [--puppet|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
+    fprintf(stderr, "usage: demo_assets [--nell|--puppet|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
     return 2;
 }

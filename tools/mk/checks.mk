@@ -37,7 +37,7 @@ view: deps-view
 	@$(BUILD)/noh view $(FILE)
 
 # What tests read of the demo.
-TEST_PACKS := $(addprefix $(BUILD)/,mask.noh wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/arm.glb)
+TEST_PACKS := $(addprefix $(BUILD)/,mask.noh wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/arm.glb demo/nell.noh)
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
 	@$(MAKE) --no-print-directory -j$(JOBS) WERROR="$(CHECK_WERROR)" all tests $(TEST_PACKS)
@@ -70,7 +70,7 @@ golden-update:
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh update
 
 # What characters take, to the byte, as in tests/golden/budgets.txt.
-BUDGET_PACKS := $(BUILD)/mask.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh
+BUDGET_PACKS := $(BUILD)/mask.noh $(BUILD)/demo/nell.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh
 budgets: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUDGET_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/budgets.sh

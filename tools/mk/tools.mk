@@ -132,6 +132,12 @@ $(BUILD)/lod_compare: $(LOD_COMPARE_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libno
 $(BUILD)/mask.glb: $(BUILD)/demo_assets
 	$(BUILD)/demo_assets $@
 
+$(BUILD)/demo/nell.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --nell $@
+$(BUILD)/demo/nell.noh: $(BUILD)/demo/nell.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --quiet
+
 $(BUILD)/demo/puppet.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --puppet $@
