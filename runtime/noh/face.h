@@ -188,6 +188,7 @@ void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
  *   noh_face_channels       a pose and speech as one number per channel
  *   noh_face_recipe_bind    bind a recipe's rows to a mesh's targets by name; noh_face_recipe_bind_by: by a function
  *   noh_face_recipe_in_pack an artist's recipe in a pack; noh_face_recipe_of_pack: the same as a table
+ *   noh_face_rules_of_pack  a pack's rules between an emotion and blinks, looks and speech
  *   noh_face_apply          channels to weights
  *
  * A recipe is a table of rows (channel, target, weight). Three are built in: for ARKit's 52 names, for VRM's presets,
@@ -254,6 +255,7 @@ typedef struct noh_face_rules {
     uint8_t lids[NOH_EMOTION_COUNT];   /* noh_override: the emotion over blinks and lids */
     uint8_t eyes[NOH_EMOTION_COUNT];   /* the emotion over the eyes' targets */
     uint8_t speech[NOH_EMOTION_COUNT]; /* the emotion over the mouth shapes of speech */
+    uint8_t binary; /* bit i: emotion i shows whole above 0.5, else not at all, like VRM's isBinary */
 } noh_face_rules;
 
 /* Compute channels from a pose and mouth shapes.
@@ -289,7 +291,7 @@ uint32_t noh_face_channel_find(const char *name);
 /* Get the recipe in a pack, used in place. It has no rows if the pack has none. */
 noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
 
-/* Read the rules over lids, eyes and speech in a pack's recipe (rows `override`, or VRM's); the others become 0. */
+/* Read the rules in a pack's recipe (rows `override` and `binary`, or VRM's); those over the mouth become 0. */
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules);
 
 /* Get the recipe in a pack (`noh build --recipe`) as a table. Skips rows of unknown channels.

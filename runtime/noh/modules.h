@@ -443,7 +443,7 @@ typedef struct noh_kind_face {
      * Without a head joint a kind that is a head turns as a whole; with head "", and in any other, only the eyes turn */
     const char *head, *neck, *chest, *eyes[2];
     uint32_t flags;       /* NOH_FACE_* of new actors */
-    noh_face_rules rules; /* lids, eyes and speech all 0: those in the pack's recipe */
+    noh_face_rules rules; /* all but `mouth` 0: those in the pack's recipe */
 } noh_kind_face;
 
 /* For noh_kind_desc.face.

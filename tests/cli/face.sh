@@ -121,6 +121,7 @@ oppose jaw grin
 share jaw grin
 override joy-upper lids block
 override anger-upper speech blend
+binary fear-upper
 END
 noh build "$work/both.gltf" -o "$work/both.noh" --recipe "$work/rules.recipe" --no-correctives
 expect 0 'rules for weights'
@@ -129,6 +130,7 @@ check 'a range' grep -q '^  range grin: -1 to 2$' "$work/out"
 check 'opposites' grep -q '^  opposed: jaw grin$' "$work/out"
 check 'a group' grep -q '^  share 1: jaw grin$' "$work/out"
 check 'an emotion over blinks' grep -q '^  override joy-upper lids block$' "$work/out"
+check 'and one that shows whole' grep -q '^  binary fear-upper$' "$work/out"
 check 'and one over speech' grep -q '^  override anger-upper speech blend$' "$work/out"
 noh face "$work/both.noh" --json
 check 'overrides in JSON' sh -c 'tr -d " \n" <"$1" | grep -qF "{\"channel\":\"joy-upper\",\"over\":\"lids\",\"how\":\"block\"}"' - "$work/out"
@@ -146,6 +148,7 @@ check 'which keep what it does not say' grep -q '^  range grin: 0 to 0.25$' "$wo
 refused 'range jaw 0' 'range TARGET MIN MAX'
 refused 'range jaw 0.5 1' 'needs MIN from -4 to 0'
 refused 'range jaw 0 1 2' 'one word too many'
+refused 'binary joy' 'such as `binary joy-upper`'
 refused 'override joy lids block' 'such as `override joy-upper lids block`'
 refused 'override joy-upper lids' 'such as `override joy-upper lids block`'
 refused 'override joy-upper lids block now' 'one word too many'

@@ -109,6 +109,10 @@ void noh_face_share(const noh_face_rules *rules, float moves, float shut, float 
     const float closed = unit(visemes[NOH_VISEME_PP] + visemes[NOH_VISEME_FF]);
     float spoken = 0.0f;
     NOH_ASSERT(rules && channels);
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        float *whole = channels + NOH_CHANNEL_UPPER + i;
+        if (rules->binary >> i & 1u) *whole = *whole > 0.5f ? 1.0f : 0.0f;
+    }
     scale(channels, NOH_CHANNEL_BLINK_LEFT, 2, left_by(rules->lids, shows));
     scale(channels, NOH_CHANNEL_LIDS_UP, 2, left_by(rules->lids, shows));
     scale(channels, NOH_CHANNEL_EYES, 8, left_by(rules->eyes, shows));

@@ -117,6 +117,9 @@ void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
     for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
         const noh_recipe_row *row = &pack->recipe_rows[i];
         const uint32_t emotion = noh_face_channel_find(noh_pack_string(pack, row->target)) - NOH_CHANNEL_UPPER;
+        if (emotion < NOH_EMOTION_COUNT && noh_names_equal(noh_pack_string(pack, row->channel), "binary")) {
+            rules->binary = (uint8_t)(rules->binary | 1u << emotion);
+        }
         for (int k = 0; k < 3 && emotion < NOH_EMOTION_COUNT; k++) {
             if (!noh_names_equal(noh_pack_string(pack, row->channel), overrides[k])) continue;
             to[k][emotion] = row->weight > 1.5f   ? NOH_OVERRIDE_BLEND

@@ -156,12 +156,12 @@ static const char *bad_rules(const noh_face_rules *r)
             r->speech[i] > NOH_OVERRIDE_BLEND)
             return "rules of a kind's face: a value is not in its enumeration";
     }
-    return NULL;
+    return r->binary >> NOH_EMOTION_COUNT ? "rules of a kind's face: `binary` has a bit of no emotion" : NULL;
 }
 
 static int has_overrides(const noh_face_rules *r)
 {
-    uint32_t any = 0;
+    uint32_t any = r->binary;
     for (int i = 0; i < NOH_EMOTION_COUNT; i++) any |= (uint32_t)r->lids[i] | r->eyes[i] | r->speech[i];
     return any != 0;
 }

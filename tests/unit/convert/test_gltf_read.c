@@ -1306,14 +1306,15 @@ static void vrm_rules_are_told(void **state)
     model *m = load(vrm_scene(
         "\"VRMC_vrm\":{\"expressions\":{\"preset\":{\"happy\":{\"isBinary\":true,\"overrideBlink\":\"block\","
         "\"overrideLookAt\":\"blend\",\"overrideMouth\":\"block\"},\"aa\":{\"isBinary\":false,\"overrideBlink\":\"none\"},"
-        "\"blink\":{\"overrideMouth\":\"block\"},\"sad\":{\"overrideBlink\":\"often\"}},"
+        "\"blink\":{\"isBinary\":true,\"overrideMouth\":\"block\"},\"sad\":{\"overrideBlink\":\"often\"}},"
         "\"custom\":{\"wink\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,\"weight\":0.5}]},\"empty\":{}}}}"));
     assert_int_equal(m->warning_count, 4);
-    assert_true(has_warning(m, "VRM expression 'happy': isBinary was left out: it shows by degrees"));
+    assert_true(has_warning(m, "VRM expression 'blink': isBinary was left out: it shows by degrees"));
     assert_true(has_warning(m, "VRM expression 'blink': overrideMouth 'block' was left out"));
     assert_true(has_warning(m, "VRM expression 'sad': overrideBlink 'often' was left out"));
-    assert_string_equal(m->meshes[0].recipe, "override joy-upper lids block\noverride joy-upper eyes blend\n"
-                                             "override joy-upper speech block\n");
+    assert_string_equal(m->meshes[0].recipe,
+                        "binary joy-upper\noverride joy-upper lids block\noverride joy-upper eyes blend\n"
+                        "override joy-upper speech block\n");
     assert_true(has_warning(m, "VRM expression 'wink' was left out: the faces of packs have no such expression"));
     model_free(m);
     m = load(vrm_scene("\"VRM\":{\"blendShapeMaster\":{\"blendShapeGroups\":[{\"name\":\"wink\",\"presetName\":"

@@ -417,13 +417,13 @@ static void rules_for_weights_hold_on_request(void **state)
 /* An emotion's rule in the pack holds, unless the kind has rules of its own. */
 static void a_packs_rules_between_expressions_hold(void **state)
 {
-    static const char more[] = "override-speech\0joy-upper";
-    static const float left[] = { 0.0f, 0.4f, 0.8f }, weights[] = { 1.0f, 2.0f, 1.0f };
+    static const char more[] = "override-speech\0joy-upper\0binary";
+    static const float left[] = { 0.0f, 0.4f, 0.8f, 0.0f }, weights[] = { 1.0f, 2.0f, 1.0f, 2.0f };
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         noh_kind_face face = alive();
         float visemes[NOH_VISEME_COUNT] = { 0.0f };
-        noh_recipe_row row;
+        noh_recipe_row rows[2];
         noh_pack own;
         noh_actor actor;
         char *strings;
@@ -434,14 +434,16 @@ static void a_packs_rules_between_expressions_hold(void **state)
         strings = test_zeros(own.string_bytes + sizeof more);
         memcpy(strings, own.strings, own.string_bytes);
         memcpy(strings + own.string_bytes, more, sizeof more);
-        memset(&row, 0, sizeof row);
-        row.channel = own.string_bytes;
-        row.target = own.string_bytes + 16u;
-        row.weight = weights[i];
+        memset(rows, 0, sizeof rows);
+        rows[0].channel = own.string_bytes;
+        rows[1].channel = own.string_bytes + 26u;
+        rows[0].target = rows[1].target = own.string_bytes + 16u;
+        rows[0].weight = weights[i];
+        rows[1].weight = 1.0f;
         own.strings = strings;
         own.string_bytes += (uint32_t)sizeof more;
-        own.recipe_rows = &row;
-        own.recipe_row_count = 1;
+        own.recipe_rows = rows;
+        own.recipe_row_count = i == 3 ? 2 : 1; /* 3: half of a blend is all of it */
         c.kinds[0].mesh = &own;
         cast_make(&c, NULL);
         actor = enter(&c, NULL, NULL);
@@ -450,7 +452,7 @@ static void a_packs_rules_between_expressions_hold(void **state)
         run(&c, 60);
         const float alone = float_named(&c, actor, "jawOpen");
         assert_true(alone > 0.2f);
-        assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", 0.5f, 4800, 0, 0, NULL), NOH_OK);
+        assert_int_equal(noh_actor_set_emotion(c.stage, actor, "joy", i == 3 ? 0.6f : 0.5f, 4800, 0, 0, NULL), NOH_OK);
         run(&c, 60);
         print_message("jawOpen %.3f of %.3f\n", (double)float_named(&c, actor, "jawOpen"), (double)alone);
         assert_true(fabsf(float_named(&c, actor, "jawOpen") / alone - left[i] / 0.8f) < 0.02f);

@@ -261,6 +261,20 @@ static int read_override(text_scan *s, recipe_text *recipe)
                                         (float)(text_is(how, "block") ? NOH_OVERRIDE_BLOCK : NOH_OVERRIDE_BLEND));
 }
 
+/* Behind the word `binary`. */
+static int read_binary(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "binary EMOTION-upper";
+    const uint32_t line = s->line;
+    text_word emotion;
+    uint32_t channels[2] = { 0, 0 };
+    if (take_target(s, line, form, &emotion)) return 1;
+    if (find_channels(emotion, channels) != 1 || channels[0] - NOH_CHANNEL_UPPER >= NOH_EMOTION_COUNT) {
+        return text_fail(s, line, "write the rule as `%s`, such as `binary joy-upper`", form);
+    }
+    return end_rule(s, form) || add_row(s, recipe, line, "binary", emotion, 1.0f);
+}
+
 /* ---- wrinkles ---- */
 
 static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_word word, uint32_t region, float weight)
@@ -322,6 +336,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "oppose")) return read_opposites(s, recipe);
     if (text_is(channel, "share")) return read_shares(s, recipe);
     if (text_is(channel, "override")) return read_override(s, recipe);
+    if (text_is(channel, "binary")) return read_binary(s, recipe);
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
     count = find_channels(channel, channels);
     joint = find_joint_channel(channel);

@@ -176,27 +176,32 @@ static uint32_t mesh_of_binds(const file &f, const value *binds)
     return mesh == MODEL_NONE ? 0 : mesh;
 }
 
-/* Rules of an expression over others: an emotion's become lines of the recipe. */
+/* Rules of an expression: an emotion's become lines of the recipe. */
 static void add_rules(file &f, const char *channel, const value &expression, const std::string &where, recipes &r)
 {
     static const char *const rules[][2] = { { "overrideBlink", "lids" },
                                             { "overrideLookAt", "eyes" },
                                             { "overrideMouth", "speech" } };
-    const bool is_emotion = channel && strstr(channel, "-upper");
+    const bool is_emotion = channel && strstr(channel, "-upper") && f.out->mesh_count;
     const value *binary = member(expression, "isBinary");
-    if (binary && binary->IsBool() && binary->Get<bool>())
-        leave_out(f, where, ": isBinary was left out: it shows by degrees");
+    std::vector<std::string> lines;
+    if (binary && binary->IsBool() && binary->Get<bool>()) {
+        if (is_emotion)
+            lines.push_back(text("binary %s\n", channel));
+        else
+            leave_out(f, where, ": isBinary was left out: it shows by degrees");
+    }
     for (const auto &rule : rules) {
         const std::string how = text_member(expression, rule[0]);
         if (how.empty() || how == "none") continue;
-        if (is_emotion && f.out->mesh_count && (how == "block" || how == "blend")) {
-            const std::string line = text("override %s %s %s\n", channel, rule[1], how.c_str());
-            if (r.lines.insert(line).second)
-                r.of_mesh[mesh_of_binds(f, array_member(expression, "morphTargetBinds"))] += line;
-        } else {
+        if (is_emotion && (how == "block" || how == "blend"))
+            lines.push_back(text("override %s %s %s\n", channel, rule[1], how.c_str()));
+        else
             leave_out(f, where, text(": %s '%s' was left out", rule[0], printable(how).c_str()));
-        }
     }
+    for (const std::string &line : lines)
+        if (r.lines.insert(line).second)
+            r.of_mesh[mesh_of_binds(f, array_member(expression, "morphTargetBinds"))] += line;
 }
 
 static void add_expression(file &f, const std::string &name, const char *channel, const value &expression, bool old,

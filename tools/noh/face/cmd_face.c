@@ -162,8 +162,18 @@ static uint8_t override_of(const face_report *r, int emotion, int user)
     return user == 0 ? rules.lids[emotion] : user == 1 ? rules.eyes[emotion] : rules.speech[emotion];
 }
 
+static int is_binary(const face_report *r, int emotion)
+{
+    noh_face_rules rules;
+    noh_face_rules_of_pack(r->mesh.pack, &rules);
+    return rules.binary >> emotion & 1;
+}
+
 static void print_overrides(const face_report *r)
 {
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        if (is_binary(r, i)) printf("  binary %s\n", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i));
+    }
     for (int i = 0; i < 3 * NOH_EMOTION_COUNT; i++) {
         const uint8_t how = override_of(r, i / 3, i % 3);
         if (!how) continue;
@@ -241,6 +251,11 @@ static const char *const rule_names[] = { "range", "oppose", "share" };
 
 static void json_overrides(json *j, const face_report *r)
 {
+    json_open(j, "binary", '[');
+    for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
+        if (is_binary(r, i)) json_text(j, NULL, noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i));
+    }
+    json_close(j, ']');
     json_open(j, "overrides", '[');
     for (int i = 0; i < 3 * NOH_EMOTION_COUNT; i++) {
         const uint8_t how = override_of(r, i / 3, i % 3);

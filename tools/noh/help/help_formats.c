@@ -97,6 +97,7 @@ const char *const help_formats_text[] = {
     "   breath                                      the chest",
     "   override EMOTION-upper lids|eyes|speech block|blend   an emotion that shows removes blinks, looks or speech, or reduces",
     "                                               them by as much as it shows (VRM's overrideBlink, overrideLookAt, overrideMouth)",
+    "   binary EMOTION-upper                        it shows whole above 0.5, else not at all (VRM's isBinary)",
     "   joint-head JOINT                            a joint of the face; also joint-neck, joint-chest, joint-eye-left,",
     "                                               joint-eye-right",
     "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of its drivers' weights; a driver with",
