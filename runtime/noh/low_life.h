@@ -743,9 +743,9 @@ void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skelet
  * Clips of one humanoid on another: a map from a source skeleton to a target one, and poses through it.
  *
  *   noh_retarget_rig_make   find the bones of a pack's skeleton
- *   noh_retarget_init   make the map from both reference poses
- *   noh_retarget_pose   a pose of the source as a pose of the target
- *   noh_retarget_play   the source's clips as a set for the target's controllers
+ *   noh_retarget_init       make the map from both reference poses
+ *   noh_retarget_pose       a pose of the source as a pose of the target
+ *   noh_retarget_play       the source's clips as a set for the target's controllers
  *
  * A joint turns as its counterpart does, from a target's reference pose whose arms and legs point along the source's. So
  * limbs have the source's directions, whatever the two bind poses are. Hands take the source's twist by their knuckles,
