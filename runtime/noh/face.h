@@ -248,8 +248,8 @@ typedef enum noh_override {
 } noh_override;
 
 /* Conflict rules for mouth, lids and eyes. Zeros: speech reduces an emotion's mouth by half as much as it moves the
- * mouth, and an emotion leaves blinks, looks and speech unchanged. Whatever the rules, lips closed by p, b, m, f or v stay
- * closed. */
+ * mouth, and an emotion leaves blinks, looks and speech unchanged. Whatever the rules, lips closed by p, b, m, f or v
+ * stay closed. */
 typedef struct noh_face_rules {
     uint8_t mouth[NOH_EMOTION_COUNT];  /* noh_mouth_rule: speech over the emotion's mouth */
     uint8_t lids[NOH_EMOTION_COUNT];   /* noh_override: the emotion over blinks and lids */

@@ -440,7 +440,8 @@ typedef struct noh_kind_face {
                                             * any, then the three built-in recipes */
     uint32_t recipe_count;
     /* Joint names; default (NULL): those in the pack's recipe (rows joint-head and so on), else common names; "": none.
-     * Without a head joint a kind that is a head turns as a whole; with head "", and in any other, only the eyes turn */
+     * Without a head joint a kind that is a head turns as a whole; with head "", and in all other kinds, only the
+     * eyes turn */
     const char *head, *neck, *chest, *eyes[2];
     uint32_t flags;       /* NOH_FACE_* of new actors */
     noh_face_rules rules; /* all but `mouth` 0: those in the pack's recipe */

@@ -148,7 +148,7 @@ static void every_line_is_read(void **state)
         if (strcmp(kind, "target") != 0) continue;
         channels += noh_face_channel_find(first) != NOH_NONE;
     }
-    assert_int_equal(channels, 19); /* fifteen mouth shapes and four of VRoid */
+    assert_int_equal(channels, 20); /* fifteen mouth shapes and five of VRoid */
     for (uint32_t i = 0; i < noh_face_recipe_arkit.row_count; i++) {
         assert_true(names_find(NAME_TARGET, noh_face_recipe_arkit.rows[i].target, means, NULL));
         assert_string_equal(means, noh_face_recipe_arkit.rows[i].target);

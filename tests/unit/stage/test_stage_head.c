@@ -138,8 +138,7 @@ static void a_blink_is_posed_in_every_frame(void **state)
     close_heads(&c);
 }
 
-/* Where a clip blinks, the face does not, then or for five seconds after; what a clip leaves open is shut by a blink that is asked
- * for. Without the clip it blinks in that time. */
+/* Where a clip blinks, the face does not, then or for five seconds after. Without the clip it blinks in that time. */
 static void lids_have_one_owner(void **state)
 {
     uint32_t own[2] = { 0, 0 };

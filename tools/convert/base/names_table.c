@@ -26,6 +26,7 @@ const char *const names_table[] = {
     "target anger-upper Fcl_ALL_Angry",
     "target sadness-upper Fcl_ALL_Sorrow",
     "target surprise-upper Fcl_ALL_Surprised",
+    "target brows Fcl_BRW_Surprised",
     "target eyeBlink* Eye_Blink_* Fcl_EYE_Close_* EyesClosed*",
     "target eyeLookDown* Eye_*_Look_Down EyesDown*",
     "target eyeLookIn* Eye_*_Look_In",

@@ -95,6 +95,7 @@ const char *const help_formats_text[] = {
     "                                               surprise, fear, anger, disgust, contempt",
     "   sil PP FF TH DD kk CH SS nn RR aa E ih oh ou  mouth shapes of speech",
     "   breath                                      the chest",
+    "   brows                                       brows up, at rest and with speech",
     "   override EMOTION-upper lids|eyes|speech block|blend   an emotion that shows removes blinks, looks or speech, or reduces",
     "                                               them by as much as it shows (VRM's overrideBlink, overrideLookAt, overrideMouth)",
     "   binary EMOTION-upper                        it shows whole above 0.5, else not at all (VRM's isBinary)",
