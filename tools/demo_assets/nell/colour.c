@@ -9,12 +9,12 @@
 #include <math.h>
 #include <stddef.h>
 
-static const V3 fair = { 0.80, 0.445, 0.315 }, rose = { 0.78, 0.235, 0.165 }, lip = { 0.56, 0.135, 0.115 };
-static const V3 brown = { 0.150, 0.052, 0.020 }, copper = { 0.34, 0.125, 0.042 }, dark = { 0.022, 0.010, 0.006 };
-static const V3 white = { 0.86, 0.85, 0.82 }, teal = { 0.040, 0.235, 0.255 };
+static const V3 fair = { 0.850, 0.565, 0.430 }, rose = { 0.820, 0.320, 0.250 }, lip = { 0.620, 0.205, 0.180 };
+static const V3 brown = { 0.190, 0.064, 0.026 }, copper = { 0.500, 0.175, 0.060 }, dark = { 0.022, 0.010, 0.006 };
+static const V3 white = { 0.86, 0.85, 0.82 }, teal = { 0.050, 0.290, 0.320 };
 static const V3 tooth = { 0.93, 0.90, 0.83 }, gum = { 0.50, 0.16, 0.14 };
 static const V3 tongue = { 0.55, 0.17, 0.16 }, throat = { 0.120, 0.020, 0.018 };
-static const V3 wool = { 0.045, 0.185, 0.215 };
+static const V3 wool = { 0.070, 0.270, 0.320 };
 
 /* In creases colours darken, towards red. */
 static V3 shade(V3 colour, double open)

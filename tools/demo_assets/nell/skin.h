@@ -35,7 +35,7 @@ double red_edge(double s, int side);
 V3 eyeball(int side);
 double eyeball_shell(int side, double x, double y, double lift);
 
-/* How far a point follows the jaw: 0 to 1. `parted`: whether the lips part where the jaw opens. */
+/* Turns a point that follows the jaw by `weight`, 0 to 1, about its hinge. */
 V3 jaw_turn(V3 at, double weight, const Pose *pose);
 
 #endif
