@@ -58,9 +58,10 @@ build_shims() {
         set -- -std=gnu11 -O1 -fPIC -fvisibility=hidden -w -D_GNU_SOURCE -D_FILE_OFFSET_BITS=64 -DHAVE_PTHREAD \
             -DHAVE_STRUCT_TIMESPEC -DHAVE_TIMESPEC_GET -DUTIL_ARCH_LITTLE_ENDIAN=1 -DUTIL_ARCH_BIG_ENDIAN=0 \
             -DHAVE___BUILTIN_FFS -DHAVE___BUILTIN_FFSLL -DHAVE___BUILTIN_CLZ -DHAVE___BUILTIN_CLZLL \
-            -DHAVE___BUILTIN_POPCOUNT -DHAVE___BUILTIN_EXPECT -DHAVE___BUILTIN_UNREACHABLE -DHAVE_FUNC_ATTRIBUTE_PACKED \
-            -DHAVE_DLADDR -DHAVE_DL_ITERATE_PHDR -DHAVE_FLOCK -DHAVE_LINUX_FUTEX_H -DHAVE_ENDIAN_H -DHAVE_SECURE_GETENV \
-            -DHAVE_MEMFD_CREATE -DHAVE_RANDOM_R -DHAVE_PROGRAM_INVOCATION_NAME -DHAVE_DIRENT_D_TYPE -DHAVE_OPEN_MEMSTREAM \
+            -DHAVE___BUILTIN_POPCOUNT -DHAVE___BUILTIN_EXPECT -DHAVE___BUILTIN_UNREACHABLE \
+            -DHAVE_FUNC_ATTRIBUTE_PACKED -DHAVE_DLADDR -DHAVE_DL_ITERATE_PHDR -DHAVE_FLOCK -DHAVE_LINUX_FUTEX_H \
+            -DHAVE_ENDIAN_H -DHAVE_SECURE_GETENV -DHAVE_MEMFD_CREATE -DHAVE_RANDOM_R -DHAVE_PROGRAM_INVOCATION_NAME \
+            -DHAVE_DIRENT_D_TYPE -DHAVE_OPEN_MEMSTREAM \
             -Iinclude -Iinclude/drm-uapi -Isrc -Isrc/util -Isrc/drm-shim -Isrc/c11/impl -Isrc/gallium/include \
             -Isrc/panfrost -I/usr/include/libdrm
         shared=
@@ -98,13 +99,16 @@ done <"$folder/names" >"$folder/hashes"
 # compile GPU DRIVER VARIABLES: a file of figures for each program without one.
 compile() {
     mkdir -p "$folder/cache/$1"
-    while read -r name hash; do [ -f "$folder/cache/$1/$hash" ] || echo "$name"; done <"$folder/hashes" >"$folder/$1.names"
+    while read -r name hash; do
+        [ -f "$folder/cache/$1/$hash" ] || echo "$name"
+    done <"$folder/hashes" >"$folder/$1.names"
     [ -s "$folder/$1.names" ] || return 0
-    timeout 3600 qemu-aarch64-static -L "$system" -E LD_LIBRARY_PATH="$libraries" -E LIBGL_DRIVERS_PATH="$libraries/dri" \
+    timeout 3600 qemu-aarch64-static -L "$system" \
+        -E LD_LIBRARY_PATH="$libraries" -E LIBGL_DRIVERS_PATH="$libraries/dri" \
         -E LD_PRELOAD="$folder/shim/lib$2_noop.so" -E MESA_SHADER_CACHE_DISABLE=true -E "$3" \
         -E __EGL_VENDOR_LIBRARY_FILENAMES="$system/usr/share/glvnd/egl_vendor.d/50_mesa.json" \
-        "$folder/link" "$folder/texts" <"$folder/$1.names" 2>"$folder/$1.log" |
-        awk -f tools/phones/figures.awk -v hashes="$folder/hashes" -v folder="$folder/cache/$1"
+        "$folder/link" "$folder/texts" <"$folder/$1.names" >"$folder/$1.out" 2>"$folder/$1.log"
+    awk -f tools/phones/figures.awk -v hashes="$folder/hashes" -v folder="$folder/cache/$1" "$folder/$1.out"
 }
 # JOBS at once.
 wanted=${GPUS:-$(echo "$gpus" | cut -d' ' -f1)} running=0
@@ -129,7 +133,10 @@ for gpu in $wanted; do
     done <"$folder/hashes"
 done >"$folder/figures"
 if [ "${1:-}" = update ]; then
-    awk -f tools/phones/table.awk -v update=1 $table "$folder/figures" >"$folder/table.txt" && mv "$folder/table.txt" $table
+    awk -f tools/phones/table.awk -v update=1 $table "$folder/figures" >"$folder/table.txt"
+    code=$?
+    mv "$folder/table.txt" $table
+    exit $code
 else
     awk -f tools/phones/table.awk $table "$folder/figures"
 fi

@@ -142,7 +142,10 @@ static void put_corners(void)
                     { "x-eye-direct-crowd", NOH_FEATURE_EYE, NOH_LAYERS_DIRECT, 1 } };
     for (size_t i = 0; i < COUNT(corners); i++) {
         const uint8_t crowd = corners[i].crowd;
-        const uint16_t wrinkles = (uint16_t)(NOH_FEATURE_WRINKLES | (crowd ? 0 : NOH_FEATURE_WRINKLE_PIXEL));
+        /* As many maps as a material may have. */
+        const uint16_t more = crowd ? NOH_FEATURE_SPECULAR_MAP : NOH_FEATURE_WRINKLE_PIXEL;
+        const uint16_t features = (uint16_t)(corners[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_EMISSIVE |
+                                             NOH_FEATURE_ALPHA | NOH_FEATURE_WRINKLES | more);
         const noh_gl_variant_key key = { .influences = 8,
                                          .drawn = 8,
                                          .dual_quaternion = crowd,
@@ -155,7 +158,7 @@ static void put_corners(void)
                                          .encode_srgb = 1,
                                          .lit = 1,
                                          .transfer = 6,
-                                         .features = (uint16_t)(corners[i].surface | ALL_MAPS | wrinkles) };
+                                         .features = features };
         put_mesh(corners[i].name, key);
     }
 }
