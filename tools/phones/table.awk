@@ -13,7 +13,8 @@ FNR == NR {
     if (!seen[$1, $2]++) rows[++row_count] = $1 " " $2
     next
 }
-$3 == "missing" || $3 == "failed" { print $1 ": " $2 " does not compile" >"/dev/stderr"; failed++; next }
+$3 == "failed" { print $1 ": " $2 " does not compile" >"/dev/stderr"; failed++; next }
+$3 == "missing" { print $1 ": " $2 " has no figure: the compiler stopped before it" >"/dev/stderr"; failed++; next }
 $3 == "skipped" { skipped++; next }
 {
     new[$2, $3, $1] = $4 "/" $5 "/" $6 ($7 == "0:0" ? "" : ":" $7)
