@@ -1,5 +1,6 @@
 /* webp_browser.c: WebP pictures in a page. A browser decodes pictures only asynchronously, so worker.js decodes the
- * pictures of all files first, and writes them to files named by length and FNV-1a hash: width, height, [height][width][4]. */
+ * pictures of all files first, and writes them to files named by length and FNV-1a hash: width, height,
+ * [height][width][4]. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
