@@ -102,7 +102,7 @@ static int replace_in(int folder, const char *name, mode_t mode, const void *dat
     if (code) return code;
     code = write_all(descriptor, data, bytes);
     if (code == 0 && mode && fchmod(descriptor, mode) != 0) code = errno;
-    /* The bytes are on the disk before the name is: after a power cut the name has the old file or the whole new one. */
+    /* First the bytes are on the disk, then the name: after a power cut it has the old file or the whole new one. */
     if (code == 0 && fsync(descriptor) != 0 && errno != EINVAL) code = errno;
     if (close(descriptor) != 0 && code == 0) code = errno;
     if (code == 0 && renameat(folder, temporary, folder, name) != 0) code = errno;
