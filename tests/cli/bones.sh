@@ -147,7 +147,7 @@ for ending in c3d trc; do
     : >"$work/markers.$ending"
     noh build "$work/markers.$ending" -o "$work/x.noh"
     expect 1 "markers: .$ending"
-    says 'export .bvh'
+    says "this is not a .$ending file"
 done
 for refused in '--facing left' '--facing 361' '--rest last' '--clean gap' '--clean gaps,'; do
     # shellcheck disable=SC2086

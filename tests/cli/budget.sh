@@ -19,7 +19,7 @@ sum_of() { # COLUMN FILE
 
 noh budget "$build/mask.noh" --nominal
 expect 0 'a mask'
-check 'what a material has and costs' grep -q "^material 'paint': plain, 4 textures of 152940 bytes, a pixel makes 2 fetches, 7 under a light with a shadow" "$work/out"
+check 'what a material has and costs' grep -q "^material 'paint': plain, 4 textures of 223952 bytes, a pixel makes 2 fetches, 7 under a light with a shadow" "$work/out"
 noh budget "$build/mask.noh" --nominal --why
 expect 0 'why this path'
 # The nominal device is no software rasteriser: the cheapest of mrt, gather and direct is used.

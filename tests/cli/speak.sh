@@ -27,7 +27,7 @@ fi
 noh speak 'Palm' --labels "$work/line.phones" --face "$build/mask.noh" -o "$work/palm.noh"
 expect 0 'they make a clip'
 noh info "$work/palm.noh"
-check 'of 59 floats' grep -q "clip 'speech': 1.200 s, 0 joints, 59 floats" "$work/out"
+check 'of 63 floats' grep -q "clip 'speech': 1.200 s, 0 joints, 63 floats" "$work/out"
 noh speak 'Palm' --labels "$work/line.phones" --wav "$work/palm.wav"
 expect 2 'which have no sound'
 printf '0.5 0.6 P\n0.1 0.2 P\n' >"$work/back.phones"
