@@ -303,13 +303,14 @@ export class Speech {
         }
     }
 
-    // Frames of a whole sound. It is heard twice, so that the ear knows the voice from its beginning.
+    // Frames of a whole sound. It is heard twice, so that the ear knows the voice from its beginning, then silence, after
+    // which the last frames are known.
     framesOf(buffer) {
-        const samples = mixed(buffer);
+        const samples = mixed(buffer), silence = new Float32Array(Math.ceil(buffer.sampleRate * fileLatency / 1000));
         this.openEar(buffer.sampleRate, fileLatency);
         this.hear(samples);
         this.program._web_ear_restart();
-        return this.hear(samples);
+        return [...this.hear(samples), ...this.hear(silence)];
     }
 
     async playBuffer(context, buffer, name, { visemes, words }) {
