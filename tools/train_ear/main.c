@@ -182,7 +182,8 @@ static void judge(int count)
     double right = 0, lips = 0, all = 0;
     for (int i = 0; i < count; i++) {
         for (int f = spans[i][0] + EAR_AFTER; f < spans[i][1] - EAR_AFTER; f++) {
-            const int best = likeliest(past, f), is = shapes[f];
+            const int best = likeliest(past, f);
+            const int8_t is = shapes[f];
             if (is < 0 || f < spans[i][0] + EAR_BEFORE + EAR_AFTER) continue;
             right += best == is;
             lips += lips_of(best) == lips_of(is);

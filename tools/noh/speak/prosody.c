@@ -129,8 +129,9 @@ static void find_stresses(prosody *p, const voice_frame *v)
     for (uint32_t i = 0; i < p->count; i++) strongest = fmaxf(strongest, v[i].stress);
     for (uint32_t i = 0; i < p->count; i++) {
         int highest = v[i].stress >= STRESS_MIN;
-        for (uint32_t k = i > APART ? i - APART : 0; k < i + APART && k < p->count && highest; k++) {
-            highest = v[k].stress < v[i].stress || k == i || (v[k].stress <= v[i].stress && k > i);
+        const uint32_t end = i + APART < p->count ? i + APART : p->count;
+        for (uint32_t k = i > APART ? i - APART : 0; k < end && highest; k++) {
+            highest = k == i || v[k].stress < v[i].stress || (k > i && v[k].stress <= v[i].stress);
         }
         if (highest) add_stress(p, v, i, strongest);
     }
