@@ -9,6 +9,7 @@
 
 enum { SOURCE, TARGET };
 
+#define STRIDE_LEAST 0.25 /* of a leg's length: slides are shares of strides that are at least so long */
 #define GOES_SHARE 0.15 /* of a leg's length: a foot that goes so far while in contact does not stand */
 #define LET_GO_S 0.2    /* that a foot takes from where it stood to where it swings */
 #define BENT 0.26       /* sine of a bend that has a side */
@@ -175,8 +176,8 @@ int feet_ground(const retarget_pair *pair, double *ground)
 
 /* ---- locks ---- */
 
-/* Of one foot: offsets of frames [first, end), in which it stands. At an end of the clip it stands where it stands there:
- * a loop goes on. */
+/* Offsets of one foot in frames [first, end), in which it stands. At an end of the clip it stays where it is there, so
+ * that a loop goes on. */
 static void hold(const places *x, uint32_t bone, uint32_t side, uint32_t first, uint32_t end, float (*out)[2][3])
 {
     double anchor[3] = { 0.0, 0.0, 0.0 };
@@ -249,7 +250,10 @@ static double measure_slide(const retarget_pair *p, const places *x)
             runs++;
         }
     }
-    return strides && stride > 0.0 ? slide / (double)runs / (stride / (double)strides) : 0.0;
+    if (!strides) return 0.0;
+    /* A foot that shifts its weight in place has next to no stride. */
+    stride = fmax(stride / (double)strides, STRIDE_LEAST * rest_length(x, TARGET, NOH_BONE_UPPER_LEG));
+    return slide / (double)runs / stride;
 }
 
 static double measure_penetration(const retarget_pair *p, const places *x, int which, double ground, double *scratch)

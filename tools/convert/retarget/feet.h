@@ -1,4 +1,4 @@
-/* feet.h: feet that stand, of a retargeted clip, and how well it came over. Clips and skeletons as raw_clip.h has them. */
+/* feet.h: feet of a retargeted clip that stand, and figures of how well it fits. Clips and skeletons: raw_clip.h. */
 #ifndef NOH_CONVERT_RETARGET_FEET_H
 #define NOH_CONVERT_RETARGET_FEET_H
 
@@ -15,23 +15,24 @@ typedef struct retarget_pair {
     const contacts *stands; /* of the source's clip; NULL: not known */
 } retarget_pair;
 
-/* How much higher the clip's ground is than the one that the source stands on at rest, in its unit: by where feet stand,
- * or, where none does, by the lowest foot below the ground. 1: out of memory. */
+/* How much higher the clip's ground is than the ground of the source at rest, in its unit: by where feet stand, or, where
+ * none does, by the lowest foot below the ground. 1: out of memory. */
 int feet_ground(const retarget_pair *pair, double *ground);
 
-/* Add to out what both feet of the target need in each frame to stay where they stand: [frames][2][3], horizontal, in its
+/* Add to out[frames][2][3] what both feet of the target need in each frame to stay where they stand, horizontal, in its
  * unit. Nothing changes at both ends of the clip. 1: out of memory. */
 int feet_lock(const retarget_pair *pair, float (*out)[2][3]);
 
 typedef struct retarget_figures {
-    double slide;                 /* of a foot while it stands, as a share of a stride; 0 where no foot steps */
+    /* of a foot while it stands, as a share of a stride, which counts as a quarter of a leg or more; 0: no steps */
+    double slide;
     double penetration_cm;        /* of feet and toes, at the 95th percentile of frames */
     double source_penetration_cm; /* the source's own */
     double reach_cm;              /* between a hand and where the source's is, by the length of the arm; mean */
     double against;               /* share of frames with a knee or an elbow bent against the source's, by 5 degrees */
 } retarget_figures;
 
-/* facing: cosine and sine of the turn about +y that the target makes of the source. ground: feet_ground. 1: out of memory. */
+/* facing: cosine and sine of the turn about +y from the source to the target. ground: feet_ground. 1: out of memory. */
 int feet_measure(const retarget_pair *pair, const double facing[2], double ground, retarget_figures *out);
 
 #endif
