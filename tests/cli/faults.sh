@@ -1,13 +1,13 @@
 #!/bin/sh
 # A process that is killed at any change of a file, a disk that is full from any on, and memory that is refused once at
 # any allocation: an output is the old file or the whole new one, every failure has a message and an exit code, and
-# nothing crashes. tests/support/faults.c is preloaded. NOH_LONG=1: every allocation; otherwise one of a few.
+# nothing crashes. tests/cli/faults.c is preloaded. NOH_LONG=1: every allocation; otherwise one of a few.
 . "$(dirname "$0")/lib.sh"
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'faults' 'a preloaded library does not go with sanitizers'
     finish
 fi
-if ! ${CC:-gcc} -shared -fPIC -O1 -w tests/support/faults.c -o "$work/faults.so" -ldl 2>"$work/err"; then
+if ! ${CC:-gcc} -shared -fPIC -O1 -w tests/cli/faults.c -o "$work/faults.so" -ldl 2>"$work/err"; then
     skip 'faults' 'no shared library with malloc of its own here'
     finish
 fi
