@@ -160,3 +160,24 @@ int text_take_on_line(text_scan *s, text_word *out)
     s->at = close + 1;
     return out->size > 0 ? 0 : text_fail(s, out->line, "a name is empty");
 }
+
+int text_field(text_scan *s, char separator, const char *blanks, text_word *out)
+{
+    if (s->at == s->end || *s->at == '\n') return 0;
+    if (*s->at == separator && out->text) s->at++;
+    out->text = s->at;
+    out->line = s->line;
+    while (s->at < s->end && *s->at != '\n' && *s->at != separator) s->at++;
+    out->size = (size_t)(s->at - out->text);
+    while (out->size && strchr(blanks, out->text[out->size - 1])) out->size--;
+    while (out->size && strchr(blanks, *out->text)) out->text++, out->size--;
+    return 1;
+}
+
+int text_to_number(text_word word, double *out)
+{
+    model_error unused;
+    text_scan scan;
+    text_start(&scan, word.text, word.size, &unused);
+    return text_number(&scan, word, out);
+}

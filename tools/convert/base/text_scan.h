@@ -37,6 +37,10 @@ text_word text_rest_of_line(text_scan *s);
 /* Go from the end of this line to the first word of a later one. 0 at the end of the text. */
 int text_next_line(text_scan *s);
 
+/* The next field of this line, up to a separator, without the characters of `blanks` around it. `out` is the field
+ * before; its text is NULL for the first of a line. 0 at the end of the line. */
+int text_field(text_scan *s, char separator, const char *blanks, text_word *out);
+
 /* Compare without regard to case. */
 int text_is(text_word word, const char *keyword);
 
@@ -55,6 +59,9 @@ int text_fail(text_scan *s, uint32_t line, const char *format, ...);
 
 /* A finite decimal number, or 1 and an error. */
 int text_number(text_scan *s, text_word word, double *out);
+
+/* The same without an error: 0, or 1. */
+int text_to_number(text_word word, double *out);
 
 /* A whole number without sign, up to limit, or 1 and an error. */
 int text_count(text_scan *s, text_word word, uint32_t limit, uint32_t *out);

@@ -113,8 +113,8 @@ static void read_parameter(const c3d_file *c, size_t at, parameter *out)
     *out = p;
 }
 
-/* Records of a name and an offset to the next, of groups (below 0) and parameters; once for the group's number, and once
- * for its parameters, which may stand before it. */
+/* Records of a name and an offset to the next, of groups (below 0) and parameters; once for the group's number, and
+ * once for its parameters, which may stand before it. */
 static int read_group(c3d_file *c, size_t first, int group)
 {
     size_t at = first;

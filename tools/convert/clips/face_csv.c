@@ -42,31 +42,10 @@ static int out_of_memory(face_csv *f)
 
 /* ---- a line ---- */
 
-/* The text up to the next separator, without blanks and quotes around it. 0 at the end of the line. */
+/* The next field, without blanks and quotes around it. 0 at the end of the line. */
 static int take_field(face_csv *f, text_word *out)
 {
-    text_scan *s = &f->text;
-    if (s->at == s->end || *s->at == '\n') return 0;
-    if (*s->at == f->separator) s->at++;
-    out->text = s->at;
-    out->line = s->line;
-    while (s->at < s->end && *s->at != '\n' && *s->at != f->separator) s->at++;
-    out->size = (size_t)(s->at - out->text);
-    while (out->size && strchr(" \t\r\"", out->text[out->size - 1])) out->size--;
-    while (out->size && strchr(" \t\r\"", *out->text)) out->text++, out->size--;
-    return 1;
-}
-
-/* A separator before the first field makes all fields of a line alike. */
-static int begin_line(face_csv *f, text_word *first)
-{
-    text_scan *s = &f->text;
-    const char *at = s->at;
-    if (at < s->end && *at == f->separator) { /* an empty first field */
-        *first = (text_word){ at, 0, s->line };
-        return 1;
-    }
-    return take_field(f, first);
+    return text_field(&f->text, f->separator, " \t\r\"", out);
 }
 
 /* ---- the first line ---- */
@@ -110,12 +89,12 @@ static int add_column(face_csv *f, text_word field)
 
 static int read_columns(face_csv *f)
 {
-    text_word field;
+    text_word field = { NULL, 0, 0 };
     const char *end;
     (void)text_next_line(&f->text);
     end = memchr(f->text.at, '\n', (size_t)(f->text.end - f->text.at));
     f->separator = memchr(f->text.at, ',', (size_t)((end ? end : f->text.end) - f->text.at)) ? ',' : ';';
-    for (int more = begin_line(f, &field); more; more = take_field(f, &field)) {
+    while (take_field(f, &field)) {
         if (add_column(f, field)) return 1;
     }
     if (!f->shape_count) {
@@ -130,14 +109,6 @@ static int read_columns(face_csv *f)
 
 /* ---- rows ---- */
 
-static int to_number(text_word word, double *out)
-{
-    model_error unused;
-    text_scan scan;
-    text_start(&scan, word.text, word.size, &unused);
-    return text_number(&scan, word, out);
-}
-
 /* HOURS:MINUTES:SECONDS:FRAME, the frame with a fraction; ';' or '.' may stand before it. */
 static int to_timecode(text_word word, row_time *out)
 {
@@ -145,7 +116,7 @@ static int to_timecode(text_word word, row_time *out)
     for (int i = 0; i < 4; i++) {
         text_word number = { word.text, 0, word.line };
         while (number.size < word.size && (i == 3 || !strchr(":;", word.text[number.size]))) number.size++;
-        if (to_number(number, &part[i]) || part[i] < 0.0 || (i < 3 && number.size == word.size)) return 1;
+        if (text_to_number(number, &part[i]) || part[i] < 0.0 || (i < 3 && number.size == word.size)) return 1;
         word.text += number.size + (i < 3);
         word.size -= number.size + (i < 3);
     }
@@ -157,7 +128,7 @@ static int to_timecode(text_word word, row_time *out)
 static int to_time(const face_csv *f, text_word word, row_time *out)
 {
     out->frame = 0.0;
-    return f->timing == TIME_CODE ? to_timecode(word, out) : to_number(word, &out->seconds);
+    return f->timing == TIME_CODE ? to_timecode(word, out) : text_to_number(word, &out->seconds);
 }
 
 static void damaged(face_csv *f, uint32_t line)
@@ -173,8 +144,8 @@ static int read_row(face_csv *f)
     const uint32_t line = f->text.line;
     uint32_t column = 0, empty = 0, read = 0;
     int wrong = 0, has_time = 0;
-    text_word field;
-    for (int more = begin_line(f, &field); more; more = take_field(f, &field), column++) {
+    text_word field = { NULL, 0, 0 };
+    for (; take_field(f, &field); column++) {
         const int shape = column < f->column_count ? f->shape_of[column] : -1;
         double value = 0.0;
         if (column == f->time_column) {
@@ -182,7 +153,7 @@ static int read_row(face_csv *f)
         } else if (shape >= 0 && !field.size) {
             empty++;
         } else if (shape >= 0) {
-            wrong |= to_number(field, &value) || fabs(value) > (double)NOH_NUMBER_MAX;
+            wrong |= text_to_number(field, &value) || fabs(value) > (double)NOH_NUMBER_MAX;
             values[shape] = wrong ? 0.0f : (float)value;
             read++;
         }

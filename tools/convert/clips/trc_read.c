@@ -19,18 +19,10 @@ typedef struct trc_file {
     uint32_t damaged, damaged_line;
 } trc_file;
 
-/* The text up to the next tab, without blanks around it. 0 at the end of the line. */
+/* The next field, up to a tab. */
 static int take_field(text_scan *s, text_word *out)
 {
-    if (s->at == s->end || *s->at == '\n') return 0;
-    if (*s->at == '\t' && out->text) s->at++;
-    out->text = s->at;
-    out->line = s->line;
-    while (s->at < s->end && *s->at != '\n' && *s->at != '\t') s->at++;
-    out->size = (size_t)(s->at - out->text);
-    while (out->size && (out->text[out->size - 1] == ' ' || out->text[out->size - 1] == '\r')) out->size--;
-    while (out->size && *out->text == ' ') out->text++, out->size--;
-    return 1;
+    return text_field(s, '\t', " \r", out);
 }
 
 /* To the beginning of the next line. 0 at the end of the text. */
@@ -93,17 +85,6 @@ static int read_head(trc_file *f, double unit_cm, byte_buffer *names)
 
 /* ---- frames ---- */
 
-static int to_number(text_word word, float *out)
-{
-    model_error unused;
-    text_scan scan;
-    double value;
-    text_start(&scan, word.text, word.size, &unused);
-    if (text_number(&scan, word, &value) || fabs(value) > (double)NOH_NUMBER_MAX) return 1;
-    *out = (float)value;
-    return 0;
-}
-
 /* A marker without three numbers was not seen. */
 static int read_row(trc_file *f)
 {
@@ -113,8 +94,13 @@ static int read_row(trc_file *f)
     for (size_t i = 0; i < 3 * (size_t)f->m.count; i++) row[i] = NAN;
     for (uint32_t column = 0; take_field(&f->text, &field); column++) {
         const size_t at = column - 2u;
+        double value;
         if (column < 2 || at >= 3 * (size_t)f->m.count || !field.size) continue;
-        if (to_number(field, &row[at]) && !f->damaged++) f->damaged_line = field.line;
+        if (!text_to_number(field, &value) && fabs(value) <= (double)NOH_NUMBER_MAX) {
+            row[at] = (float)value;
+        } else if (!f->damaged++) {
+            f->damaged_line = field.line;
+        }
     }
     for (size_t i = 0; i < f->m.count; i++) {
         if (!isfinite(row[3 * i + 1]) || !isfinite(row[3 * i + 2])) row[3 * i] = NAN;

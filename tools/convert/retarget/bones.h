@@ -1,4 +1,4 @@
-/* bones.h: which joints are the bones of a person: by their names (base/names.h), by a file of its own, and hips by what
+/* bones.h: which joints are a person's bones: by their names (base/names.h), by a file of its own, and hips by what
  * both legs hang from. */
 #ifndef NOH_CONVERT_RETARGET_BONES_H
 #define NOH_CONVERT_RETARGET_BONES_H

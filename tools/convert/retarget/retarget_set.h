@@ -1,4 +1,4 @@
-/* retarget_set.h: clips of one humanoid on another (noh_retarget of low_life.h), with feet that stay where they stand. */
+/* retarget_set.h: clips of one humanoid on another (noh_retarget, low_life.h); feet stay where they stand. */
 #ifndef NOH_CONVERT_RETARGET_RETARGET_SET_H
 #define NOH_CONVERT_RETARGET_RETARGET_SET_H
 
