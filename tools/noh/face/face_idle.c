@@ -41,7 +41,8 @@ typedef struct meter {
     uint32_t part_count;
     noh_face_link links[LINKS_MAX];
     bounds face;              /* what the picture frames */
-    double outline[OUTLINES]; /* how far it reaches in each direction */
+    double ways[OUTLINES][2]; /* directions in the picture */
+    double outline[OUTLINES]; /* how far it reaches in each */
     double least;             /* motion that counts, model units */
 } meter;
 
@@ -131,7 +132,7 @@ static uint32_t compare_part(meter *m, part *p, double *outline, int first)
         if (first && is_in(&m->face, now)) p->regions[v] |= 1u << FACE_OUTLINE;
         memcpy(before, now, sizeof now);
         for (int d = 0; d < OUTLINES && p->regions[v] >> FACE_OUTLINE & 1u; d++) {
-            outline[d] = fmax(outline[d], now[0] * cos(d * (TURN / OUTLINES)) + now[1] * sin(d * (TURN / OUTLINES)));
+            outline[d] = fmax(outline[d], now[0] * m->ways[d][0] + now[1] * m->ways[d][1]);
         }
         if (way >= m->least) moved |= p->regions[v];
     }
@@ -160,6 +161,10 @@ static int measure(meter *m, double seconds, face_idle *out)
         for (uint32_t i = 0; i < m->f.plan.kinds[k].mesh_count && !status; i++) {
             status = add_part(m, k, i, out) ? tool_fail(m->f.desc.file->path, "out of memory") : 0;
         }
+    }
+    for (int d = 0; d < OUTLINES; d++) {
+        m->ways[d][0] = cos(d * (TURN / OUTLINES));
+        m->ways[d][1] = sin(d * (TURN / OUTLINES));
     }
     m->face = figure_bounds(&m->f, FRAME_FACE);
     m->least = (m->face.high[1] - m->face.low[1]) * (MOVES_PX / PICTURE_PX);
