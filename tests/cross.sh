@@ -1,9 +1,9 @@
 #!/bin/sh
 # cross.sh: builds the library for other processors and systems without a warning, and runs the tests there that
 # tests/cross_tests.sh lists: aarch64 (NEON) and armv7 (scalar) under qemu-user, wasm (scalar) under node, Windows under
-# Wine. x86 of 64 and of 32 bits is built alone. The library is -O2 everywhere, and at other levels for x86 and armv7 (NOH_LONG:
-# for all; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are missing is skipped
-# and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
+# Wine. x86 of 64 and of 32 bits is built alone. The library is -O2 everywhere, and at other levels for x86 and armv7
+# (NOH_LONG: for all; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
+# missing is skipped and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

@@ -74,7 +74,7 @@ async function two(browser) {
     await page.evaluate(() => document.getElementById('two').setWeight('smile', 1));
     await frames(page, 'two', 2);
     const smiles = await page.evaluate(() => ['one', 'two'].map((id) => document.getElementById(id).weight('smile')));
-    check('two: what is told to one is not told to the other', smiles[0] === 0 && smiles[1] === 1, smiles.join());
+    check('two: a call to one does not reach the other', smiles[0] === 0 && smiles[1] === 1, smiles.join());
     const globals = await page.evaluate(() => Object.keys(window).filter((name) => /noh|module|wasm|emscripten/i.test(name)));
     check('two: no globals', globals.length === 0, globals.join());
     await removed(page);
@@ -161,7 +161,7 @@ async function used(browser) {
     await page.evaluate(() => document.getElementById('it').hush());
     check('used: until it is hushed', !await page.isVisible('noh-character .caption'));
     await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
-    check('used: a clip that is not there is told in words', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
+    check('used: a clip that is not there is named in the message', (await page.textContent('noh-character .message')).includes("no clip 'nothing'"));
     await page.evaluate(() => { document.getElementById('it').src = 'none.noh'; });
     await page.waitForFunction(() => document.getElementById('it').error.includes('404'));
     check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').loaded));
@@ -179,19 +179,19 @@ async function early(browser) {
         const same = await it.ready === it, answers = [...await Promise.all(calls), await plays, await said(it.setWeight('typo', 1))];
         return { same, answers, loaded: it.loaded, error: it.error };
     });
-    check('early: calls wait, and names that are not there are told alike', told.same && told.loaded && told.error === ''
+    check('early: calls wait, and unknown names are reported alike', told.same && told.loaded && told.error === ''
         && told.answers.join() === "done,the pack has no target 'typo',the pack has no clip 'typo' that moves it,the pack has no target 'typo'", JSON.stringify(told));
     await whole(page, 'it');
     await frames(page, 'it', 1);
     check('early: what was called has come', await page.evaluate(() => document.getElementById('it').weight('smile')) === 0.5);
     const error = () => page.evaluate(() => document.getElementById('it').error);
     await page.evaluate(() => { document.getElementById('it').clip = 'nothing'; });
-    check('early: an attribute is told', (await error()).includes("no clip 'nothing'"), await error());
+    check('early: a wrong attribute is reported', (await error()).includes("no clip 'nothing'"), await error());
     await page.evaluate(() => { document.getElementById('it').clip = 'smile'; });
     check('early: until it is right', await error() === '' && !await page.isVisible('noh-character .message'), await error());
     await page.context().setOffline(true);
     const fails = await page.evaluate(() => { const it = document.getElementById('it'); it.src = 'face.noh'; return it.ready.catch((e) => e.message); });
-    check('early: offline is told in words', fails.includes('face.noh cannot be reached, because this device is offline') && await error() === fails, fails);
+    check('early: offline has a message', fails.includes('face.noh cannot be reached, because this device is offline') && await error() === fails, fails);
     check('early: with a button', await page.isVisible('noh-character [part=retry]'));
     await page.screenshot({ path: path.join(out, 'offline.png') });
     await page.context().setOffline(false);
@@ -214,7 +214,7 @@ async function model(browser) {
     check('model: its pack is kept', (await clips()).includes('bend') && !asked.some((url) => url.includes('convert.wasm')), asked.join(' '));
     await page.evaluate(() => { document.getElementById('it').src = 'cut.glb'; });
     const said = await page.evaluate(() => document.getElementById('it').ready.catch((error) => error.message));
-    check('model: a broken one is told', String(said).includes('truncated') && await page.isVisible('noh-character .message'), String(said));
+    check('model: a broken one is reported', String(said).includes('truncated') && await page.isVisible('noh-character .message'), String(said));
     await close(page, 'model');
 }
 

@@ -150,14 +150,14 @@ Object.defineProperty(window, 'speechSynthesis', { value: {
 async function text(browser) {
     const none = await open(browser, {}, "Object.defineProperty(window, 'speechSynthesis', { value: { getVoices: () => [], cancel() {} } });");
     await none.click('#say button');
-    check('text: nothing typed is told', await words(none, 'Type a sentence'));
+    check('text: nothing typed is reported', await words(none, 'Type a sentence'));
     await none.evaluate(() => {
         window.heard = [];
         for (const type of ['word', 'caption']) character.addEventListener(type, ({ detail }) => heard.push(detail.word ?? detail.words));
     });
     await none.fill('#line', 'A man came home.');
     await none.click('#say button');
-    check('text: no voice is told to a visitor', await words(none, 'This browser has no voice: the words are shown'), await none.textContent('#speech-text'));
+    check('text: a visitor reads that there is no voice', await words(none, 'This browser has no voice: the words are shown'), await none.textContent('#speech-text'));
     check('text: and the face says it without one', await opens(none) && await none.textContent('#caption') === 'A man came home.');
     await none.screenshot({ path: path.join(out, 'silent.png') });
     await none.waitForFunction(() => !character.speech.speaks);
@@ -193,7 +193,7 @@ async function text(browser) {
     await page.click('#say button');
     check('text: other scripts open the mouth, too', await opens(page));
     await page.evaluate(() => window.voice.now.onerror({ error: 'language-unavailable' }));
-    check('text: a language without a voice is told', await words(page, 'no voice for this language'));
+    check('text: a language without a voice is reported', await words(page, 'no voice for this language'));
     await close(page, 'text');
 }
 

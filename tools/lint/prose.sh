@@ -10,8 +10,8 @@ cd "$(dirname "$0")/../.." || exit 1
 clean='README.md CONTRIBUTING.md platform runtime shaders_es'
 clean="$clean CHANGELOG.md Makefile .ci/run tests/*.sh tests/README.md tests/cli tests/cross tests/fuzz tests/gl"
 clean="$clean tests/golden tests/memory tests/support tests/web tests/unit tools/*.sh tools/*.md tools/amalgam"
-clean="$clean tools/clip_tables tools/convert tools/docs tools/embed tools/install tools/lod_compare tools/mk tools/noh"
-clean="$clean tools/release tools/web_convert"
+clean="$clean tools/clip_tables tools/convert tools/demo_assets tools/docs tools/embed tools/install tools/lod_compare tools/mk tools/noh"
+clean="$clean tools/phones tools/release tools/train_ear/*.[ch] tools/web_convert"
 
 if ! command -v perl >/dev/null 2>&1; then
     echo 'prose skipped: perl is not installed'

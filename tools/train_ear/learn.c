@@ -27,7 +27,7 @@ enum {
     COUNT = OUTPUT_BIAS + V
 };
 
-/* Inputs are features, of which 32 are a standard deviation. The first layer's outputs end at 4, as a byte's 127. */
+/* Inputs are features; 32 is a standard deviation. The first layer's outputs end at 4, as a byte's 127. */
 #define INPUT_UNIT (1.0f / 32)
 #define FIRST_MAX 4.0f
 
@@ -213,8 +213,8 @@ static void first_into_bytes(ear_tables *t)
     }
 }
 
-/* A hidden value may have any unit: that of a row in which the largest weight is 127. One unit for all outputs: the
- * largest in which every output's weights fit. */
+/* A hidden value may have any unit: it gets the one in which the row's largest weight is 127. All outputs have one unit,
+ * the largest in which their weights fit. */
 static void into_bytes(ear_tables *t)
 {
     const double first_unit = 127 / (double)FIRST_MAX;

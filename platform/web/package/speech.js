@@ -335,7 +335,7 @@ export class Speech {
             },
         });
         this.now.frames = frames;
-        this.tell(frames ? `${name}, ${buffer.duration.toFixed(1)} s. The mouth is that of the live ear, without its latency.` : `${name}, ${buffer.duration.toFixed(1)} s.`);
+        this.tell(frames ? `${name}, ${buffer.duration.toFixed(1)} s. The live ear drives the mouth, without its latency.` : `${name}, ${buffer.duration.toFixed(1)} s.`);
     }
 
     // Samples as they come, each piece played after the one before.

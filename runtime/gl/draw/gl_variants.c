@@ -109,7 +109,7 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
-/* Shadow map fetches of a lit pixel: 1 in the phone tier, else 4, or fewer if its other textures leave less of 8 fetches. */
+/* Shadow map fetches of a lit pixel: 1 in the phone tier, else 4, or fewer if its other textures leave fewer of 8. */
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,

@@ -1,5 +1,5 @@
 /* The square of a festival, as an .obj model of boxes and round pillars: stalls, benches, lanterns, a drum on its
- * stage, a terrace with stairs. What of it stands in the way, and what people do there, is in festival.place. */
+ * stage, a terrace with stairs. festival.place has the obstacles and what people do there. */
 #ifndef FESTIVAL_FESTIVAL_H
 #define FESTIVAL_FESTIVAL_H
 

@@ -10,8 +10,8 @@ typedef struct {
     int value_count;
 } Animation;
 
-/* The weight of one target at one key. Targets that are not named are 0. Weights add up: those of targets that shut the
- * same lips or lids may sum to at most 1. */
+/* The weight of one target at one key. Targets that are not named are 0. Weights add up: targets that shut the same
+ * lips or lids may have at most 1 together. */
 typedef struct {
     int key;
     const char *target;

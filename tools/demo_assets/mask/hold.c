@@ -4,7 +4,7 @@
 #include "mouth.h"
 #include "wood.h"
 
-/* Parts without slits are treated like the border of the face beside them. */
+/* Parts without slits are treated like the border of the face next to them. */
 static double border_hold(const Seed *seed)
 {
     FacePoint point = { seed->s, seed->t, seed->t > EYE_Y ? 1 : -1, seed->t > MOUTH_Y ? 1 : -1 };

@@ -28,7 +28,7 @@ static const Hill hills[] = {
     { 38, -24, 32, 34, 5.6 },       /* cheek */
     { 44, -6, 24, 16, 1.6 },        /* cheekbone */
     { 0, -52, 36, 30, 2.3 },        /* the round of the teeth (counts twice) */
-    { 24, -34, 9, 16, -1.2 },       /* beside the nose */
+    { 24, -34, 9, 16, -1.2 },       /* next to the nose */
     { 29, -56, 10, 16, -1.0 },      /* beyond the corner of the mouth */
     { 24, -54, 7, 6, -0.7 },        /* corner of the mouth */
     { 0, -86, 24, 20, 2.6 },        /* chin (twice) */

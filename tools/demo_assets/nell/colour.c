@@ -102,7 +102,7 @@ static V3 hair_colour(const Seed *seed, double open)
     return shade(v3_scale(base, 1 - 0.45 * a * a * a * a), mix(open, 1, 0.4));
 }
 
-/* The occlusion is that of a view from the front: it says nothing of sides and back. */
+/* Occlusion as seen from the front: sides and back have none. */
 static V3 colour_of(const Seed *seed, V3 at, double front)
 {
     double open = mix(1, front, smooth(-0.010, 0.030, at.z));

@@ -73,7 +73,7 @@ static void grid_border(Grid *grid, const int *ring, int side, int first)
     }
 }
 
-/* Half way between the interpolation of the left and right borders and that of the lower and upper ones. */
+/* The mean of two interpolations: of the left and right borders, and of the lower and upper ones. */
 static int grid_inner(Cage *cage, const Grid *grid, int side, int row, int column, V3 bulge)
 {
     const CageVertex *all = cage->vertices;

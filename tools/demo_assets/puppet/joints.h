@@ -5,7 +5,7 @@
 #include "shared/maths.h"
 #include "shared/sides.h"
 
-/* Joints in the middle, then those of the left, then those of the right. */
+/* Joints in the middle, then the left ones, then the right ones. */
 enum { ROOT, HIPS, SPINE, CHEST, NECK, HEAD, JAW, MIDDLE_JOINTS };
 enum {
     SHOULDER,

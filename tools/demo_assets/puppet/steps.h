@@ -11,7 +11,7 @@ typedef struct {
 } Spot;
 
 typedef struct {
-    double lift_s, land_s; /* the order of a foot's steps is that of their times */
+    double lift_s, land_s; /* a foot's steps are in the order of their times */
     double height;         /* of the sole, at most */
     double heel;           /* how far the heel leads the way up, radians */
 } Step;

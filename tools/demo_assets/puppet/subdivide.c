@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* One side of a face. Sorted, the two that share an edge lie beside each other. */
+/* One side of a face. Sorted, the two that share an edge are neighbours. */
 typedef struct {
     int low, high; /* its vertices */
     int face, side;
@@ -67,7 +67,7 @@ static void make_face_points(const Cage *cage, Cage *fine)
     }
 }
 
-/* edge_of: for each side of each face the new vertex upon it. */
+/* edge_of: for each side of each face the new vertex on it. */
 static void make_edge_points(const Cage *cage, const HalfEdge *edges, Cage *fine, int *edge_of)
 {
     int first_face = cage->vertex_count;

@@ -18,7 +18,7 @@ V3 quat_rotate(Quat q, V3 v);
 /* The shortest turn from one direction to another, both of length 1, but at most `limit`. */
 Quat quat_between(V3 from, V3 to, double limit);
 
-/* The turn that brings direction a to b, and the half plane of `side_a` about it to that of `side_b`. */
+/* The turn that brings direction a to b, and the half plane of `side_a` about it to the half plane of `side_b`. */
 Quat quat_align(V3 a, V3 side_a, V3 b, V3 side_b);
 
 #endif

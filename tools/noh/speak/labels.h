@@ -1,4 +1,4 @@
-/* labels.h: phones and their times as a person or another program wrote them: to measure others against, or to speak. */
+/* labels.h: phones and their times as a person or a program wrote them: to measure others against, or to speak. */
 #ifndef NOH_NOH_SPEAK_LABELS_H
 #define NOH_NOH_SPEAK_LABELS_H
 
