@@ -39,6 +39,16 @@ typedef enum noh_node_kind {
     NOH_NODE_ONE_SHOT
 } noh_node_kind;
 
+typedef enum noh_condition {
+    NOH_WHEN_ABOVE = 0, /* param > threshold */
+    NOH_WHEN_BELOW,     /* param < threshold */
+    NOH_WHEN_TRIGGERED, /* param > threshold; taking the transition sets the parameter to 0 */
+    NOH_WHEN_ENDING     /* the state's first clip plays ONCE and ends within the transition's duration, or has ended */
+} noh_condition;
+
+#define NOH_TRANSITION_INERTIAL 1u /* switch immediately; the difference decays over the duration */
+#define NOH_TRANSITION_KEEP 2u     /* the state's clips continue where they stopped, instead of from the beginning */
+
 typedef struct noh_graph_node {
     uint16_t kind;
     uint16_t first_child, child_count; /* in the graph's children */
@@ -93,24 +103,10 @@ typedef struct noh_graph_state {
 } noh_graph_state;
 
 /* ======== graphs of a pack ========
- * An animation graph from a pack, played by name.
+ * An animation graph of a pack (noh build --graph). It names clips, joints, parameters and states; noh_actor_play_graph
+ * (noh.h) binds it to a stage's clips and plays it.
  *
- * The pack's graph (noh build --graph) names clips, joints, parameters and states. noh_graph_pack_init binds it to a
- * clip set: clips by name, joints of its masks by name. The result is an ordinary noh_graph, for any number of
- * instances:
- *
- *   desc.pack = &pack;  desc.set = &bank->clips;
- *   bytes = noh_graph_pack_size(&desc, &error);
- *   noh_graph_pack_init(memory, bytes, &desc, &made, &error);
- *   noh_graph_state_init(..., &made->graph, &made->clips, &state, &error);
- *   noh_graph_pack_set_param(made, state, noh_graph_pack_find_param(made, "speed"), 1.4f);
- *   noh_graph_step(state, &made->graph, &made->clips, ticks, fn, user);
- *   noh_graph_pose(state, &made->graph, &made->clips, &scratch, pose, floats);
- *
- * made->clips is the set with the graph's masks. To pose on several threads, give each a copy of its view's set
- * (noh_clip_bank_view.clips) with `masks` and `mask_count` from made->clips.
- *
- * Threads: the result is read-only and shared; making it reads the pack and the set. */
+ * Threads: read-only; any number of threads may share it. */
 
 /* A graph in a pack, as pointers into its bytes. */
 typedef struct noh_pack_graph {
@@ -138,74 +134,15 @@ noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_grap
  * returns  its index, or NOH_NONE */
 uint32_t noh_pack_graph_find(const noh_pack *pack, const char *name);
 
-typedef struct noh_graph_pack_desc {
-    const noh_pack *pack; /* contains the graph; required */
-    uint32_t graph;       /* its index there; default 0 */
-    /* the clips it plays: &bank->clips, or a set of your own; required. Without a bank, noh_graph_pack_size needs only
-     * the counts: noh_clip_bank_needs.shape */
-    const noh_clip_set *set;
-    /* The skeleton that the set moves, for joint names in masks: a pack, default (NULL) `pack`, and the skeleton's
-     * index there. Unused by a graph without masks. */
-    const noh_pack *mesh;
-    uint32_t skeleton;
-} noh_graph_pack_desc;
-
+/* A graph bound to clips and joints (noh_actor_graph). */
 typedef struct noh_graph_pack {
-    noh_graph graph;       /* for noh_graph_*, together with `clips` */
-    noh_clip_set clips;    /* desc.set with the graph's masks; with its own masks if the graph has none */
+    noh_graph graph;
+    noh_clip_set clips;    /* that it plays, with the graph's masks; with their own masks if the graph has none */
     noh_pack_graph source; /* names, in the pack's bytes */
 } noh_graph_pack;
 
-/* Exact size in bytes; 0 on error.
- * errors  as noh_pack_graph_at; ARG as noh_graph_pack_init */
-size_t noh_graph_pack_size(const noh_graph_pack_desc *desc, noh_error *error);
-
-/* Make a graph in memory[bytes], aligned to NOH_MEMORY_ALIGN, and check it (noh_graph_check). The pack's bytes and the
- * set must outlive it.
- * errors  ARG a field of desc, named, a set over the limits, or memory NULL or misaligned; MEMORY need: the bytes;
- *         errors of noh_pack_graph_at; NOT_FOUND the set lacks a named clip (where: its index in source.clips, see
- *         noh_graph_pack_clip_name) or the reference clip of an ADD node (where: the node), or the skeleton lacks a
- *         named joint (where: its index in source.names); DATA a node that these clips do not suit (where: its index),
- *         such as a one-shot whose clip loops; LIMIT more pose buffers than NOH_GRAPH_BUFFERS_MAX */
-noh_result noh_graph_pack_init(void *memory, size_t bytes, const noh_graph_pack_desc *desc, noh_graph_pack **made,
-                               noh_error *error);
-
-/* ---- names ---- */
-
-/* Find a parameter by name, for noh_graph_set_param.
- * returns  its index, or NOH_NONE */
-uint32_t noh_graph_pack_find_param(const noh_graph_pack *made, const char *name);
-
-/* Get the name of a parameter, or of a machine, select or one-shot; "" past the last. */
-const char *noh_graph_pack_param_name(const noh_graph_pack *made, uint32_t param);
-const char *noh_graph_pack_machine_name(const noh_graph_pack *made, uint32_t machine);
-
-/* Find a value of an ENUM parameter by name.
- * returns  its number, or NOH_NONE */
-uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, const char *name);
-
-/* Find a machine, select or one-shot by name, for noh_graph_machine_state.
- * returns  its number, or NOH_NONE */
-uint32_t noh_graph_pack_find_machine(const noh_graph_pack *made, const char *name);
-
-/* Find a state of a machine by the name of its child node.
- * returns  its number among the machine's children, or NOH_NONE */
-uint32_t noh_graph_pack_find_state(const noh_graph_pack *made, uint32_t machine, const char *name);
-
-/* Get the name of a state, numbered as by noh_graph_machine_state; "" if there is no such machine or state. */
-const char *noh_graph_pack_state_name(const noh_graph_pack *made, uint32_t machine, uint32_t state);
-
-/* Find the track that plays a clip node, by the node's name, for noh_controller_track and noh_event.track.
- * returns  its index, or NOH_NONE */
-uint32_t noh_graph_pack_find_track(const noh_graph_pack *made, const char *name);
-
 /* Get the name of a clip of a pack's graph by index; "" past the last. */
 const char *noh_graph_pack_clip_name(const noh_pack_graph *graph, uint32_t clip);
-
-/* Set a parameter, clamped to its range; whole numbers and ENUM values are rounded. Set a trigger to 1 to fire it;
- * taking it resets it to 0.
- * errors  ARG param (also NOH_NONE), or a value that is not finite */
-noh_result noh_graph_pack_set_param(const noh_graph_pack *made, noh_graph_state *state, uint32_t param, float value);
 
 #ifdef __cplusplus
 }

@@ -15,6 +15,7 @@
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "stage/character/time_lod_internal.h"
+#include "motion/graph/graph_pack_internal.h"
 #include "noh/low_stage.h"
 
 #include <dirent.h>

@@ -1,4 +1,4 @@
-/* The pose of a graph: low_motion.h, noh_graph_scratch_* and noh_graph_pose. */
+/* The pose of a graph: graph_internal.h, noh_graph_scratch_* and noh_graph_pose. */
 #include <string.h>
 
 #include "core/base/assert_internal.h"

@@ -5,6 +5,7 @@
 #include "support/pack_walk.h"
 #include "motion/anim/tracks_internal.h"
 #include "motion/graph/graph_internal.h"
+#include "motion/graph/graph_pack_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

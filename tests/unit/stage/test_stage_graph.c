@@ -4,6 +4,8 @@
 #include "support/stage_fixture.h"
 
 #include <math.h>
+#include "motion/graph/graph_internal.h"
+#include "motion/graph/graph_pack_internal.h"
 #include "noh/graph.h"
 #include "noh/low_motion.h"
 

@@ -10,6 +10,8 @@
 #include <string.h>
 
 #include "file/pack_file.h"
+#include "motion/graph/graph_internal.h"
+#include "motion/graph/graph_pack_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"
