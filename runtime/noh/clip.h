@@ -392,9 +392,8 @@ typedef struct noh_root_track {
     uint32_t reserved;
 } noh_root_track;
 
-/* Compose: displacement a, then b in the resulting frame. Inverse: the displacement that undoes a. */
+/* Compose: displacement a, then b in the resulting frame. */
 noh_root_pose noh_root_compose(uint32_t up, const noh_root_pose *a, const noh_root_pose *b);
-noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 
 /* ======== skeletons ======== */
 
@@ -414,11 +413,11 @@ typedef struct noh_blend {
     float *weights;       /* [joint_count] */
     float *float_sum;     /* [float_count] */
     float *float_weights; /* [float_count] */
-    float *totals;        /* [joint_count] unmasked weights, set after noh_blend_begin_over only */
+    float *totals;        /* [joint_count] unmasked weights, only of a sum that lies over another */
     float *float_totals;  /* [float_count] likewise */
-    int covers;           /* 1: begun by noh_blend_begin_over */
-    /* 0: weights are relative. 1: weights with a sum below 1 cover only partly: floats their defaults, a sum begun by
-     * noh_blend_begin_over the pose below it */
+    int covers;           /* 1: it lies over another sum */
+    /* 0: weights are relative. 1: weights with a sum below 1 cover only partly: floats their defaults, a sum that
+     * lies over another the pose below it */
     float full;
 } noh_blend;
 
@@ -483,12 +482,6 @@ void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value);
 /* Set the entries of a joint and all its descendants.
  * ranges  joint below skeleton->joint_count */
 void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value);
-
-/* Replace every entry v by 255 - v. */
-void noh_mask_invert(uint8_t *mask, uint32_t count);
-
-/* Get a mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
-noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
 
 /* ======== weights as functions of time ========
  * Weights as functions of time: a ramp and a ping-pong.
@@ -683,7 +676,7 @@ uint32_t noh_clip_bank_prefetch(noh_clip_bank *bank, const noh_controller *contr
 typedef struct noh_clip_bank_view {
     noh_clip_set clips; /* a copy of bank->clips that samples through this view */
     const noh_clip_bank *bank;
-    noh_clip_view *samples; /* noh_clip_view_stats_of counts its late decodes */
+    noh_clip_view *samples; /* counts its late decodes */
     float *sampled;         /* private: the floats of one clip */
 } noh_clip_bank_view;
 

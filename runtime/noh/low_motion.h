@@ -13,12 +13,6 @@
 extern "C" {
 #endif
 
-/* Upper bound on the events of one step if every track plays the worst clip of a set. Use it for budgets and queues
- * before anything plays. Allows for one change of direction per step. Saturates at NOH_STEP_EVENTS_MAX.
- * ranges  |speed| of every track at most speed_max (1/65,536), a step at most step_ticks_max */
-uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
-                                 uint32_t step_ticks_max);
-
 /* ======== time ========
  * Integer time that does not drift.
  *
@@ -56,39 +50,6 @@ int64_t noh_position_of(int64_t ticks);
 /* Get the clip tick to sample, `ago` ticks before now at the present speed. */
 uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip, int64_t ago);
 
-/* ======== root motion ========
- * Root displacement, extracted from the pose.
- *
- * A chosen part E of the root joint's transform (some axes of the translation, and the heading: the twist about the up
- * axis) moves the character in the world. The rest stays in the pose, so that world * E * rest is the original root.
- * From position a to b of a clip the character moves by
- *   inverse(E(a)) * E(b)                                         within one pass
- *   inverse(E(a)) * E(end) * L^(n-1) * inverse(E(0)) * E(b)      across n seams, L = inverse(E(0)) * E(end)
- * Headings count from the clip's own axes: the yaw of the first frame stays in the pose. So a clip that walks along z
- * moves its character along z, whatever direction its first frame faces.
- * E(0) and E(end) come from the source clip if the set has them (root_ends); sampled values blend towards them within
- * NOH_ROOT_SEAM_TICKS of either end. So a loop that closes in the source never drifts, however lossy its compression.
- * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
- * without rounding, and the sum of the n displacements is a geometric series of rotations.
- *
- *   noh_root_at       displacement since the start of a clip, after any number of passes
- *   noh_controller_root_motion (clip.h)   weighted displacement of all tracks since the last call
- *
- * source  Granberg 2009, chapter 16, names root motion; adding its displacements in floats drifts
- *
- * Threads: pure functions; those that call the set's `sample` may run where it may (clip.h). */
-
-#define NOH_ROOT_SEAM_TICKS 200u /* 1/240 s: less than a frame, so no position is off by more than its clip's error */
-
-/* Split the root joint's transform: extract returns E, with the heading relative to the model's axes; remove leaves the
- * transform without E. */
-noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root);
-void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
-
-/* Displacement from position 0 to an unwrapped position. */
-noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
-                          int64_t position);
-
 /* ======== skeletons ========
  * Joints, parents first, so that one pass over them computes model matrices. The arrays are borrowed.
  *
@@ -101,53 +62,11 @@ noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, 
  *         finite, a rotation that is not unit */
 noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
 
-/* ======== blending ========
- * Weighted blends of poses, layers over them, and additive differences.
- *
- *   noh_blend_begin, noh_blend_add (for each pose), noh_blend_finish       pose = sum of w * pose / sum of w
- *   noh_blend_begin_over, noh_blend_add (for each pose), noh_blend_cover   lay a sum over the pose below
- *   noh_pose_mix, noh_floats_mix          two poses, masked
- *   noh_pose_difference, noh_pose_add, noh_floats_add   additive layers
- *
- * Every joint and every float has its own sum of weights. So a mask on one track, or a clip that does not animate a
- * joint, leaves the other tracks at full weight there. Where the sum is 0 the result is the bind pose (for a float, its
- * default). A quaternion is negated if it points away from the sum so far. With two tracks this equals alignment to the
- * first one; with more, unlike that alignment, the sum can never vanish, and nothing depends on a first track that has
- * faded out.
- *
- * source  Granberg 2009, chapter 5, blends two clips with weights w and 1 - w; sums that are not divided by their
- *         weight, or that add q and -q, shrink or cancel
- *
- * Threads: pure functions of their arguments; any thread. */
-
-void noh_blend_begin(noh_blend *blend);
-
-/* Begin a sum that noh_blend_cover will lay over the pose of the sum in `blend`. */
-void noh_blend_begin_over(noh_blend *blend);
-
-/* Add one pose. Joints that a clip does not animate, or that a mask excludes, are skipped: the pose neither moves them
- * nor dilutes the other poses there.
- * shapes  pose[joint_count], floats[float_count]; NULL: not animated
- * ranges  weight > 0 */
-void noh_blend_add(noh_blend *blend, const noh_transform *pose, const float *floats, float weight, noh_mask_view mask);
-
-/* Divide the sums by their weights.
- * shapes  bind_pose[joint_count], defaults[float_count] (NULL: zeros), pose[joint_count], floats[float_count] */
-void noh_blend_finish(const noh_blend *blend, const noh_transform *bind_pose, const float *defaults,
-                      noh_transform *pose, float *floats);
-
-/* Lay a sum begun by noh_blend_begin_over over the pose below, in place. Each joint is covered by `amount` times the
- * mean mask of the poses added there (sum of w * mask / sum of w), fully where the pose below has no weight. With
- * `full` 1 the sum of w counts as at least 1, and so does a pose below without weight, which is the bind pose.
- * shapes  pose[joint_count], floats[float_count] */
-void noh_blend_cover(const noh_blend *blend, float amount, noh_transform *pose, float *floats);
-
 /* Interpolate: out = a at t = 0, b at t = 1; out may be a or b. The mask multiplies t.
  * shapes  a, b, out and mask (NULL: 1 everywhere) [joint_count]
  * ranges  t 0..1 */
 void noh_pose_mix(uint32_t joint_count, const noh_transform *a, const noh_transform *b, float t, const uint8_t *mask,
                   noh_transform *out);
-void noh_floats_mix(uint32_t count, const float *a, const float *b, float t, const uint8_t *mask, float *out);
 
 /* Compute the difference from a reference to a pose: rotation inverse(reference) * pose, the difference of
  * translations, the ratio of scales (1 where the reference's is 0). out may be pose, not reference. */
@@ -158,7 +77,6 @@ void noh_pose_difference(uint32_t joint_count, const noh_transform *reference, c
  * Weights above 1 exaggerate. */
 void noh_pose_add(uint32_t joint_count, const noh_transform *difference, float weight, const uint8_t *mask,
                   noh_transform *pose);
-void noh_floats_add(uint32_t count, const float *difference, float weight, const uint8_t *mask, float *floats);
 
 /* ======== the format of clips ========
  * The bytes of a compressed clip.
@@ -414,35 +332,6 @@ void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32
 /* Get the cache's own statistics; each view has its own. */
 noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
 
-/* ======== views of a clip cache, for threads ========
- * Sampling one clip cache from several threads.
- *
- * A view only reads its cache. It decodes missing segments into two segments of its own: the same bits, counted as
- * late. So request and decode segments on one thread, then sample on many:
- *   noh_clip_cache_begin_frame, _want, _work   one thread
- *   noh_clip_view_sample(view, ...)            any number of threads, each with its own view
- * Begin the next frame after all of them have finished.
- *
- * Threads: a view belongs to one thread at a time. While views sample, nothing may change their cache (low_motion.h
- * lists the calls that do). There is no lock and no atomic; the caller orders the two phases (a join, a barrier, a job
- * counter). */
-
-/* Exact size in bytes: the head, and two segments as large as the largest of the cache's clips. */
-size_t noh_clip_view_size(const noh_clip_cache *cache);
-size_t noh_clip_view_needs_size(const noh_clip_cache_needs *needs); /* before the cache is made */
-
-/* Make a view in memory[bytes], aligned to NOH_MEMORY_ALIGN. The cache must outlive it.
- * errors  ARG memory NULL or misaligned; MEMORY need: the bytes */
-noh_result noh_clip_view_init(void *memory, size_t bytes, const noh_clip_cache *cache, noh_clip_view **out,
-                              noh_error *error);
-
-/* Sample a pose; bit-identical to noh_clip_sample. */
-void noh_clip_view_sample(noh_clip_view *view, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
-                          float *floats);
-
-/* Get the view's own statistics (evictions stays 0). */
-noh_clip_cache_stats noh_clip_view_stats_of(const noh_clip_view *view);
-
 /* ======== blend spaces ========
  * Weights of clips placed along one or two parameters.
  *
@@ -452,12 +341,6 @@ noh_clip_cache_stats noh_clip_view_stats_of(const noh_clip_view *view);
  * no triangles, but samples every clip and gives each some weight everywhere.)
  *
  * Threads: pure functions of their arguments; any thread. */
-
-/* Compute the weights of clips along one parameter.
- * shapes  thresholds[count] increasing, weights[count]
- * ranges  |thresholds| <= NOH_BLEND_SPACE_COORDINATE_MAX; x is clamped to the first and last threshold, NaN counts as
- *         the first */
-void noh_blend_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
 
 /* Triangulate the points. They are first rounded to 1/4096 of their extent, so that all geometric tests are exact in
  * integers and the result is the same on every machine.

@@ -5,6 +5,9 @@
 
 #include "noh/clip.h"
 
+/* Get a mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
+noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
+
 /* Get a message if joints or floats exceed a limit, else NULL: products of either with a struct's size then fit in 32
  * bits. */
 const char *noh_clip_set_excess(const noh_clip_set *set);

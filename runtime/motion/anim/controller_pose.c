@@ -19,6 +19,7 @@
 #include "motion/anim/clip_set_internal.h"
 #include "motion/anim/clock_internal.h"
 #include "motion/pose/inertial_internal.h"
+#include "motion/pose/blend_internal.h"
 
 /* ---- scratch ---- */
 

@@ -179,20 +179,3 @@ uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop lo
     most = passes > UINT32_MAX ? UINT32_MAX : passes * key_count;
     return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
 }
-
-uint32_t noh_clip_set_events_max(const noh_clip_set *set, uint32_t track_count, uint32_t speed_max,
-                                 uint32_t step_ticks_max)
-{
-    uint64_t travel = (uint64_t)speed_max * step_ticks_max, most = 0;
-    NOH_ASSERT(set);
-    for (uint32_t i = 0; i < set->clip_count; i++) {
-        const noh_clip_entry *m = &set->clips[i];
-        /* the controller may play it in any mode: take the worst */
-        uint64_t there = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_REPEAT, travel, 2);
-        uint64_t back = noh_events_max(m->event_count, m->duration_ticks, NOH_LOOP_PING_PONG, travel, 2);
-        most = there > most ? there : most;
-        most = back > most ? back : most;
-    }
-    most *= track_count;
-    return most > NOH_STEP_EVENTS_MAX ? NOH_STEP_EVENTS_MAX : (uint32_t)most;
-}

@@ -1,4 +1,5 @@
 #include "core/base/assert_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 
@@ -28,14 +29,6 @@ void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t join
         if (is_below(skeleton, i, joint)) {
             mask[i] = value;
         }
-    }
-}
-
-void noh_mask_invert(uint8_t *mask, uint32_t count)
-{
-    NOH_ASSERT(mask || !count);
-    for (uint32_t i = 0; i < count; i++) {
-        mask[i] = (uint8_t)(255 - mask[i]);
     }
 }
 

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "motion/bank/clip_bank_bind_internal.h"
+#include "motion/clip/clip_view_internal.h"
 
 typedef struct noh_bank_clip bank_clip;
 

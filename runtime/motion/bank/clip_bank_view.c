@@ -3,6 +3,7 @@
 
 #include "motion/bank/clip_bank_internal.h"
 #include "core/base/assert_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

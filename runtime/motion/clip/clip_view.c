@@ -1,5 +1,6 @@
 #include "core/base/assert_internal.h"
 #include "motion/clip/clip_cache_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

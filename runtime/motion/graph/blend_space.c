@@ -1,4 +1,5 @@
 #include "core/base/assert_internal.h"
+#include "motion/graph/graph_weights_internal.h"
 #include "noh/base.h"
 #include "noh/graph.h"
 #include "noh/low_motion.h"

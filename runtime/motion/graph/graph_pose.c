@@ -12,6 +12,7 @@
 #include "noh/low_motion.h"
 #include "motion/graph/graph_weights_internal.h"
 #include "motion/anim/clip_set_internal.h"
+#include "motion/pose/blend_internal.h"
 
 #define NO_BUFFER 255u
 #define LACKS (NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)

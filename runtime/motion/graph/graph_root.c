@@ -4,6 +4,7 @@
 #include "core/base/assert_internal.h"
 #include "motion/anim/root_motion_internal.h"
 #include "motion/graph/graph_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/graph.h"

@@ -5,6 +5,13 @@
 #include "motion/graph/graph_internal.h"
 #include "noh/clip.h"
 #include "noh/graph.h"
+#include "noh/low_motion.h"
+
+/* Compute the weights of clips along one parameter.
+ * shapes  thresholds[count] increasing, weights[count]
+ * ranges  |thresholds| <= NOH_BLEND_SPACE_COORDINATE_MAX; x is clamped to the first and last threshold, NaN counts as
+ *         the first */
+void noh_blend_space_1d_weights(uint32_t count, const float *thresholds, float x, float *weights);
 
 typedef struct noh_graph_view {
     const noh_graph *graph;

@@ -1,4 +1,5 @@
 #include "core/base/assert_internal.h"
+#include "motion/pose/blend_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"

@@ -7,6 +7,7 @@
 #include "noh/low_motion.h"
 #include "stage/character/character_internal.h"
 #include "stage/character/lod_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
 #include "noh/noh.h"

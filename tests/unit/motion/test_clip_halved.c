@@ -10,6 +10,7 @@
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 #include "motion/clip/clip_decode_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "convert/codec/clip_space.h"
 #include "support/clip_fixture.h"
 

@@ -18,6 +18,7 @@
 #include "support/support.h"
 #include "motion/pose/inertial_internal.h"
 #include "motion/anim/sync_internal.h"
+#include "motion/pose/blend_internal.h"
 
 typedef struct stage {
     scene s;

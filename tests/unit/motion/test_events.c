@@ -867,7 +867,6 @@ static void a_step_is_bounded(void **state)
         one_open(&o, 1, NOH_LOOP_REPEAT, ticks, 3);
         one_start(&o, 0, way * NOH_SPEED_MAX);
         assert_int_equal(noh_controller_events_max(o.c, &o.f.set, UINT32_MAX), NOH_STEP_EVENTS_MAX);
-        assert_int_equal(noh_clip_set_events_max(&o.f.set, 1, NOH_SPEED_MAX, UINT32_MAX), NOH_STEP_EVENTS_MAX);
         assert_int_equal(noh_controller_step(o.c, &o.f.set, UINT32_MAX, NULL, NULL), NOH_STEP_EVENTS_MAX);
         assert_int_equal(o.c->clock, UINT32_MAX);
         assert_true(o.c->flags & NOH_CONTROLLER_EVENTS_CUT);
@@ -973,7 +972,6 @@ static void steps_stay_within_the_bound(void **state)
     one_start(&o, 0, 3 * NOH_SPEED_ONE);
     bound = noh_controller_events_max(o.c, &o.f.set, 100);
     assert_true(bound >= 60 && bound <= 120);
-    assert_true(noh_clip_set_events_max(&o.f.set, 1, 3 * NOH_SPEED_ONE, 100) >= bound);
     for (int i = 0; i < 50; i++) {
         const uint32_t delivered = noh_controller_step(o.c, &o.f.set, 100, NULL, NULL);
         assert_true(delivered <= bound);
@@ -997,14 +995,8 @@ static void bounds_saturate(void **state)
  * the same step: four times within a distance far shorter than the clip. The bound of a step counts both directions. */
 static void a_bound_holds_for_a_turn_within_the_step(void **state)
 {
-    static const uint32_t ticks[] = { 998 };
-    one_clip o;
     (void)state;
-    one_open(&o, 1000, NOH_LOOP_PING_PONG, ticks, 1);
-    o.f.set.clip_count = 1;
-    assert_int_equal(noh_clip_set_events_max(&o.f.set, 1, NOH_SPEED_ONE, 8), 4);
-    assert_int_equal(noh_clip_set_events_max(&o.f.set, 3, NOH_SPEED_ONE, 8), 12);
-    one_close(&o);
+    assert_int_equal(noh_events_max(1, 1000, NOH_LOOP_PING_PONG, 8u * NOH_SPEED_ONE, 2), 4);
 }
 
 /* ---- errors of the sources ---- */

@@ -6,6 +6,7 @@
 #include "motion/anim/controller_internal.h"
 #include "motion/anim/controller_pose_internal.h"
 #include "motion/anim/tracks_internal.h"
+#include "motion/clip/clip_view_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 

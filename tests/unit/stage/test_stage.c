@@ -3,6 +3,7 @@
 #include "support/stage_fixture.h"
 
 #include <math.h>
+#include "motion/anim/root_motion_internal.h"
 #include "noh/low_motion.h"
 
 static noh_error said;
