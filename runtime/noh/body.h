@@ -231,7 +231,6 @@ typedef struct noh_steps {
  *   noh_rigid_push          an impulse at a point
  *   noh_rigid_step          advance time
  *   noh_rigid_place         position and rotation; noh_rigid_motion: velocity, spin and momentum
- *   noh_rigid_energy        kinetic energy
  *   noh_rigid_shift         move the origin of its space
  *   noh_point_touch         collide a point mass with a world, with bounce and friction
  *
@@ -304,9 +303,6 @@ void noh_rigid_place(const noh_rigid *body, float position[3], float rotation[4]
  * shapes  velocity[3], spin[3] as set; momentum[3] angular, about its centre, kg m^2/s. Each may be NULL */
 void noh_rigid_motion(const noh_rigid *body, float velocity[3], float spin[3], float momentum[3]);
 
-/* Get the kinetic energy, including spin, in joules. */
-float noh_rigid_energy(const noh_rigid *body);
-
 int noh_rigid_sleeps(const noh_rigid *body);
 
 /* Move the origin: each point p of its space becomes p + by, metres. Precise to what floats at the new place can
@@ -340,7 +336,6 @@ noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *err
  *   noh_ik_two_bone     turn two bones so that their end meets a target
  *   noh_ik_look_init    look ahead
  *   noh_ik_look_step    turn towards a target, within a cone, at a limited speed
- *   noh_ik_share        a fraction of a rotation, to share a turn among spine, neck and head
  *
  * For chains of more bones see noh_ik_chain_solve. All positions and directions of a call are in the same space, which
  * may be any; rotations are applied in that space, on the left of a joint's rotation.
@@ -411,9 +406,6 @@ void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
  * source   Granberg 2009, chapter 11, "Look-At Inverse Kinematics" */
 void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
                       float seconds, float rotation[4]);
-
-/* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */
-void noh_ik_share(const float rotation[4], float share, float out[4]);
 
 /* ======== gaze ======== */
 

@@ -16,15 +16,13 @@ extern "C" {
 #endif
 
 /* ======== boxes, rays and capsules ========
- * Boxes, and ray tests against boxes and capsules.
+ * Points in boxes, boxes that overlap, and a ray against a capsule.
  *
- *   noh_aabb_contains, noh_aabb_overlap  axis-aligned boxes
- *   noh_obb_contains, noh_obb_overlap    oriented boxes
- *   noh_obb_closest                      the nearest point of a box
- *   noh_ray_aabb, noh_ray_obb, noh_ray_capsule
- *   noh_segments_closest                 the nearest points of two segments
+ *   noh_aabb_contains                  axis-aligned boxes
+ *   noh_obb_contains, noh_obb_overlap  oriented boxes
+ *   noh_ray_capsule                    a ray against a capsule
  *
- * Touching counts as overlapping. Boxes may be flat, segments points.
+ * Touching counts as overlapping. Boxes may be flat.
  * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes), 5.1.9 (segments), 5.3.3
  *          (slabs); Granberg, Character Animation with Direct3D, 2009, chapter 6, with its degenerate cases added
  * Threads: no state; any thread. */
@@ -34,7 +32,6 @@ typedef struct noh_aabb {
 } noh_aabb;
 
 int noh_aabb_contains(const noh_aabb *box, const float point[3]);
-int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b);
 int noh_obb_contains(const noh_obb *box, const float point[3]);
 
 /* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of
@@ -42,22 +39,8 @@ int noh_obb_contains(const noh_obb *box, const float point[3]);
  * overlapping. */
 int noh_obb_overlap(const noh_obb *a, const noh_obb *b);
 
-/* Get the point of a box nearest to a point: the point itself if it is inside. */
-void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3]);
-
-/* Intersect a ray with a box.
- * returns  the distance at which the ray enters, 0 if it begins inside; below 0: no hit */
-float noh_ray_aabb(const noh_ray *ray, const noh_aabb *box);
-float noh_ray_obb(const noh_ray *ray, const noh_obb *box);
-
 /* Intersect a ray with a capsule; a ball if `from` and `to` are equal. */
 float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3], float radius);
-
-/* Find the nearest points of two segments.
- * ranges   any segments, including points
- * shapes   along[2]: 0..1 along a and along b */
-void noh_segments_closest(const float a_from[3], const float a_to[3], const float b_from[3], const float b_to[3],
-                          float along[2]);
 
 /* ======== ragdolls ========
  * Ragdolls: a set of dolls with one rig.
@@ -68,7 +51,6 @@ void noh_segments_closest(const float a_from[3], const float a_to[3], const floa
  *   noh_ragdoll_push                       an impulse at a point
  *   noh_ragdolls_step                      advance time
  *   noh_ragdoll_bodies                     transforms of the bodies
- *   noh_ragdolls_shift                     move the origin of their space
  *   noh_ragdoll_measure                    violations of joint limits and contacts
  *
  * Bodies are capsules along their z axis. A rig (noh_ragdoll_rig_make makes one) defines how they are joined.
@@ -79,7 +61,7 @@ void noh_segments_closest(const float a_from[3], const float a_to[3], const floa
  * without pointers: a copy continues identically.
  * Far from the origin: each doll is simulated about its own origin, which moves with it, with the world relative to it,
  * so it falls at 100 km as at 0. Inputs and outputs are floats in the caller's space, with a resolution of 8 mm at 100
- * km and of 1 mm at 16 km; noh_ragdolls_shift moves that space closer.
+ * km and of 1 mm at 16 km.
  *
  * Overlaps: a body that begins a step inside the world or another body of the doll is moved out at NOH_PUSH_OUT_SPEED
  * and keeps none of that velocity. Out of obstacles that contain the axes of bodies, it leaves on the side of the first
@@ -153,15 +135,9 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
  * returns  ticks dropped in this call */
 uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks);
 
-/* Get the transforms, or the velocities, of a doll's bodies.
- * shapes  bodies[body_count], motions[body_count] */
+/* Get the transforms of a doll's bodies.
+ * shapes  bodies[body_count] */
 void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose *bodies);
-void noh_ragdoll_motions(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_motion *motions);
-
-/* Move the origin: every point p of dolls, goals and internal state becomes p + by. For worlds that are kept near their
- * origin; the caller moves the noh_world. Wakes nothing.
- * units   metres, finite */
-void noh_ragdolls_shift(noh_ragdolls *set, const float by[3]);
 
 int noh_ragdoll_sleeps(const noh_ragdolls *set, uint32_t doll);
 
@@ -502,10 +478,7 @@ float noh_distance_keep(float a[3], float inverse_mass_a, float b[3], float inve
  *
  *   noh_ragdoll_fit_make     how the bodies of a rig lie on the joints of its skeleton
  *   noh_ragdoll_from_pose    bodies from a pose: to place a doll, and goals to drive it
- *   noh_ragdoll_motions_of   velocities from two poses
  *   noh_ragdoll_to_pose      a pose from bodies
- *   noh_ragdoll_similarity   how similarly two dolls lie, to choose the clip to get up with
- *   noh_ragdoll_place_under  place the character so that its pose lies where the doll does
  *
  * To fall: place the bodies from the last visible pose, with velocities from the pose before it; then each step's
  * bodies make the pose. To get up: choose the clip whose first pose lies most like the doll, place the character under
@@ -537,29 +510,12 @@ void noh_ragdoll_fit_make(const noh_ragdoll_rig *rig, const noh_skeleton *skelet
 void noh_ragdoll_from_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleton, const noh_transform *local,
                            const noh_ragdoll_frame *frame, noh_ragdoll_pose *bodies);
 
-/* Compute the velocities of bodies between two poses; spins take the shorter arc.
- * shapes  before, now, motions: [count]
- * ranges  seconds above 0: the time between the two */
-void noh_ragdoll_motions_of(const noh_ragdoll_pose *before, const noh_ragdoll_pose *now, uint32_t count, float seconds,
-                            noh_ragdoll_motion *motions);
-
 /* Turn joints so that bodies have the given orientations, and move the joint of the first body to it. Bones keep their
  * lengths; joints without a body keep their pose.
  * shapes  bodies, weights: [fit->body_count]; weights 0..1: 0 keeps the pose; NULL: all 1. local[skeleton->joint_count]
  *         read and written */
 void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleton, const noh_ragdoll_frame *frame,
                          const noh_ragdoll_pose *bodies, const float *weights, noh_transform *local);
-
-/* Compare how the first bodies of two dolls lie (on the front, back or side, or upright), whatever their place and
- * heading. Returns the cosine of the angle between their up directions: 1 equal, -1 opposite. */
-float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b);
-
-/* Place and turn a character so that its pose lies where a doll does: the first bodies above each other, the others on
- * the same side. Turns about +Y only, and keeps the frame's height.
- * shapes  pose[count] the character's bodies, from noh_ragdoll_from_pose with *frame; doll[count]; frame: read and
- *         changed */
-void noh_ragdoll_place_under(const noh_ragdoll_pose *pose, const noh_ragdoll_pose *doll, uint32_t count,
-                             noh_ragdoll_frame *frame);
 
 /* ======== springs ========
  * A swinging chain of joints: hair, sleeves, skirts, tails.
@@ -568,7 +524,6 @@ void noh_ragdoll_place_under(const noh_ragdoll_pose *pose, const noh_ragdoll_pos
  *   noh_spring_reset                   back to rest, after its carrier was teleported
  *   noh_spring_step                    advance time, for any number of chains
  *   noh_spring_rotations               local rotations of the joints
- *   noh_spring_ends                    ends of the joints
  *
  * Each joint's end is a point with inertia, pulled towards its rest direction, at a fixed distance from the joint. At
  * any frame rate it moves like the reference implementation of VRMC_springBone 1.0 at 60 Hz: the chain advances
@@ -654,16 +609,10 @@ uint32_t noh_spring_step(const noh_spring_move *moves, uint32_t count, uint32_t 
  * moves  [count], their `rotations` must not overlap */
 void noh_spring_rotations(const noh_spring_move *moves, uint32_t count);
 
-/* Get the ends of the joints.
- * shapes  ends[joint_count][3], world space, at the last step's carrier */
-void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, float *ends);
-
 /* ======== gaze ========
  * Turns a body to look at a point: spine, neck, head and eyes together.
  *
  *   noh_gaze_rig_make   find the joints that turn, by name
- *   noh_gaze_init       look ahead
- *   noh_gaze_step       turn a pose: within a cone, at a limited speed
  *
  * The head turns as in body.h (noh_ik_look_step): towards a target outside its cone as far as it can. Spine and neck
  * take their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter
@@ -684,29 +633,16 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
 /* The state of a gaze. A copy continues identically; zeros look ahead. */
 typedef struct noh_gaze {
     noh_ik_look head, eyes;
-    float point[3]; /* for callers that store the target here (modules.h); unused by noh_gaze_step */
+    float point[3]; /* world: the target (modules.h) */
     uint32_t looks; /* 1: at the point; likewise */
     float near;     /* 1 / distance of the target */
     uint32_t begun, unused[2];
 } noh_gaze;
 
-void noh_gaze_init(noh_gaze *gaze);
-
-/* Advance time, and turn a pose.
- * desc     of the head; zeros: as in body.h
- * local    [joint_count], from a clip; changes the rotations of the rig's joints and eyes
- * target   in model space, finite; NULL: ahead
- * seconds  since the last step, 0..
- * cut      1: look there immediately, as a new noh_gaze does */
-void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_desc *desc, const noh_skeleton *skeleton,
-                   noh_transform *local, const float *target, float seconds, int cut);
-
 /* ======== reach ========
  * Hands that reach for moving points.
  *
  *   noh_reach_rig_make   find arms by joint names
- *   noh_reach_init       no target
- *   noh_reach_step       bend the arms of a pose so that its hands are on their points
  *
  * An arm is two bones (noh_ik_two_bone) that slow down before they are straight; its elbow keeps its side. A hand moves
  * to its point within 0.35 s, and back as smoothly; once there it stays on the point as it moves. The arm points at a
@@ -718,7 +654,7 @@ void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_de
 noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *rig, noh_error *error);
 
 typedef struct noh_reach_hand {
-    float point[3]; /* for callers that store the target here; unused by noh_reach_step */
+    float point[3]; /* world: the target (modules.h) */
     float part;     /* 0..1 fraction of the time to reach, before easing */
     uint32_t wants; /* 1: it reaches, while set */
     uint32_t unused[3];
@@ -728,16 +664,6 @@ typedef struct noh_reach_hand {
 typedef struct noh_reach {
     noh_reach_hand hands[NOH_REACH_ARMS_MAX];
 } noh_reach;
-
-void noh_reach_init(noh_reach *reach);
-
-/* Advance time, and bend a pose's arms.
- * local    [joint_count]; changes the rotations of upper arms and forearms
- * points   [NOH_REACH_ARMS_MAX][3] in model space, finite; used for hands that reach or return
- * seconds  since the last step, 0..
- * cut      1: hands are in their final place immediately */
-void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
-                    float points[NOH_REACH_ARMS_MAX][3], float seconds, int cut);
 
 /* ======== retargeting ========
  * Clips of one humanoid on another: a map from a source skeleton to a target one, and poses through it.

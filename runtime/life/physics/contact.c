@@ -8,6 +8,7 @@
 
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "life/physics/shape_internal.h"
 #include "noh/low_core.h"
 #include "noh/body.h"
 #include "noh/low_life.h"

@@ -7,6 +7,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/shape_internal.h"
 
 #define STILL_STEPS 30u  /* half a second */
 #define STILL_PART 0.02f /* of its size: 35 mm for 1.75 m */

@@ -13,6 +13,32 @@
 extern "C" {
 #endif
 
+/* Get the velocities of a doll's bodies.
+ * shapes  motions[body_count] */
+void noh_ragdoll_motions(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_motion *motions);
+
+/* Move the origin: every point p of dolls, goals and internal state becomes p + by. For worlds that are kept near their
+ * origin; the caller moves the noh_world. Wakes nothing.
+ * units   metres, finite */
+void noh_ragdolls_shift(noh_ragdolls *set, const float by[3]);
+
+/* Compute the velocities of bodies between two poses; spins take the shorter arc.
+ * shapes  before, now, motions: [count]
+ * ranges  seconds above 0: the time between the two */
+void noh_ragdoll_motions_of(const noh_ragdoll_pose *before, const noh_ragdoll_pose *now, uint32_t count, float seconds,
+                            noh_ragdoll_motion *motions);
+
+/* Compare how the first bodies of two dolls lie (on the front, back or side, or upright), whatever their place and
+ * heading. Returns the cosine of the angle between their up directions: 1 equal, -1 opposite. */
+float noh_ragdoll_similarity(const noh_ragdoll_pose *a, const noh_ragdoll_pose *b);
+
+/* Place and turn a character so that its pose lies where a doll does: the first bodies above each other, the others on
+ * the same side. Turns about +Y only, and keeps the frame's height.
+ * shapes  pose[count] the character's bodies, from noh_ragdoll_from_pose with *frame; doll[count]; frame: read and
+ *         changed */
+void noh_ragdoll_place_under(const noh_ragdoll_pose *pose, const noh_ragdoll_pose *doll, uint32_t count,
+                             noh_ragdoll_frame *frame);
+
 /* ---- rigs ---- */
 
 /* Make masses more equal, so that heavy bodies do not pull light joints apart: child over parent within 0.8..1.2, with

@@ -6,6 +6,7 @@
 #include "noh/low_life.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "life/physics/shape_internal.h"
 
 static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 {

@@ -9,6 +9,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/ragdoll_internal.h"
 
 /* ---- joints ---- */
 

@@ -12,6 +12,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/shape_internal.h"
 
 #define BINS 64u
 #define DENSITY 1000.0f

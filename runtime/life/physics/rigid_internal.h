@@ -8,6 +8,9 @@
 extern "C" {
 #endif
 
+/* Get the kinetic energy, including spin, in joules. */
+float noh_rigid_energy(const noh_rigid *body);
+
 #ifdef __cplusplus
 }
 #endif

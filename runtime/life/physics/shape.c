@@ -4,6 +4,7 @@
 #include "noh/low_life.h"
 
 #include "life/physics/vector_internal.h"
+#include "life/physics/shape_internal.h"
 
 static float clamp(float x, float low, float high)
 {

@@ -12,6 +12,10 @@
 extern "C" {
 #endif
 
+/* Get the ends of the joints.
+ * shapes  ends[joint_count][3], world space, at the last step's carrier */
+void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, float *ends);
+
 /* Check a desc.
  * errors  ARG, LIMIT: as noh_spring_init */
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error);

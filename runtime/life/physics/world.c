@@ -6,6 +6,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "life/physics/shape_internal.h"
 
 /* ---- checks ---- */
 

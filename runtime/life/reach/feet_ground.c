@@ -4,6 +4,7 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/shape_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
 

@@ -9,6 +9,17 @@
 extern "C" {
 #endif
 
+void noh_gaze_init(noh_gaze *gaze);
+
+/* Advance time, and turn a pose.
+ * desc     of the head; zeros: as in body.h
+ * local    [joint_count], from a clip; changes the rotations of the rig's joints and eyes
+ * target   in model space, finite; NULL: ahead
+ * seconds  since the last step, 0..
+ * cut      1: look there immediately, as a new noh_gaze does */
+void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_desc *desc, const noh_skeleton *skeleton,
+                   noh_transform *local, const float *target, float seconds, int cut);
+
 /* Check a state that comes from outside.
  * returns  NULL if it may be used, else a constant message */
 const char *noh_gaze_check(const noh_gaze *gaze);

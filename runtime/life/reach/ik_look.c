@@ -4,6 +4,7 @@
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "life/physics/vector_internal.h"
+#include "life/reach/rig_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
 

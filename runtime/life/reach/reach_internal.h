@@ -9,6 +9,16 @@
 extern "C" {
 #endif
 
+void noh_reach_init(noh_reach *reach);
+
+/* Advance time, and bend a pose's arms.
+ * local    [joint_count]; changes the rotations of upper arms and forearms
+ * points   [NOH_REACH_ARMS_MAX][3] in model space, finite; used for hands that reach or return
+ * seconds  since the last step, 0..
+ * cut      1: hands are in their final place immediately */
+void noh_reach_step(noh_reach *reach, const noh_reach_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
+                    float points[NOH_REACH_ARMS_MAX][3], float seconds, int cut);
+
 /* Check a state that comes from outside.
  * returns  NULL if it may be used, else a constant message */
 const char *noh_reach_check(const noh_reach *reach);

@@ -5,6 +5,7 @@
  * nearest mapped joint above: inverse(K_above) * (the source's local rotations from there on) * K. */
 #include "core/base/assert_internal.h"
 #include "life/reach/retarget_internal.h"
+#include "life/reach/rig_internal.h"
 
 enum { SOURCE, TARGET };
 

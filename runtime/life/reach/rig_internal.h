@@ -10,6 +10,10 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 #include "life/physics/vector_internal.h"
+#include "noh/body.h"
+
+/* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */
+void noh_ik_share(const float rotation[4], float share, float out[4]);
 
 NOH_UNUSED static inline int noh_rig_is_below(const noh_skeleton *k, uint32_t joint, uint32_t above)
 {

@@ -19,6 +19,8 @@
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "stage/cast/stage_ragdoll_internal.h"
+#include "life/physics/shape_internal.h"
+#include "life/physics/ragdoll_internal.h"
 
 #define BLEND_TICKS 19200u
 #define SPEED_SECONDS 0.005f /* speeds are differences over so long */

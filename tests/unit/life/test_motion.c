@@ -1,5 +1,6 @@
 /* Tests of motion.c and shape.c: closed forms, oracles in double, and the errors of the source's chapter.
  */
+#include "life/physics/shape_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"

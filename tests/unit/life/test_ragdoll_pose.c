@@ -1,4 +1,5 @@
 /* Tests of ragdoll_pose.c: a real character's poses as bodies and back. */
+#include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
