@@ -254,10 +254,6 @@ void noh_walkers_remove(noh_walkers *walkers, uint32_t index);
  * direction [2] x, z of any length; NULL: as it arrived */
 void noh_walkers_face(noh_walkers *walkers, uint32_t index, const float direction[2]);
 
-/* Get the direction that a walker faces: a unit vector x, z.
- * returns  0 if there is no such walker */
-int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float heading[2]);
-
 /* Move the world's origin, together with noh_crowd_shift_origin and noh_stage_shift_origin: subtracts `by` from
  * walkers. x and z are relative to the crowd's origin, so walkers are as precise at 100 km as at the origin. Heights
  * are floats in the world. */
@@ -413,14 +409,11 @@ int noh_smart_release(noh_smart *smart, uint32_t agent);
 void noh_smart_step(noh_smart *smart, uint32_t ticks);
 
 void noh_smart_use_of(const noh_smart *smart, uint32_t agent, noh_smart_use *use);
-/* An agent's needs [need_count]; NULL: there is no such agent. */
-const float *noh_smart_needs(const noh_smart *smart, uint32_t agent);
 /* The agent's largest need that some object satisfies, the first of equal ones; NOH_NONE: none is above `least`. */
 uint32_t noh_smart_most(const noh_smart *smart, uint32_t agent, float least);
 
-/* A slot and an object, as in the desc. */
+/* A slot, as in the desc. */
 const noh_smart_slot *noh_smart_slot_at(const noh_smart *smart, uint32_t slot);
-const noh_smart_object *noh_smart_object_at(const noh_smart *smart, uint32_t object);
 /* The agent that holds a slot; NOH_NONE: it is free. */
 uint32_t noh_smart_holder(const noh_smart *smart, uint32_t slot);
 

@@ -88,9 +88,9 @@ typedef struct noh_lod {
     uint8_t joints, influences; /* levels */
     uint8_t update_rate;        /* noh_update_rate */
     uint8_t started;            /* 0: the next choice ignores the current levels and does not fade */
-    /* the level within the quality setting; finer than `mesh` only with a limit of noh_lod_set_limit */
+    /* the level within the quality setting; finer than `mesh` only with a limit */
     uint8_t mesh_wanted;
-    uint8_t mesh_limit; /* of noh_lod_set_limit */
+    uint8_t mesh_limit; /* the finest level taken; 0: no limit */
 } noh_lod;
 
 /* Pixels per metre at a distance.
@@ -101,40 +101,19 @@ typedef struct noh_lod {
 float noh_lod_scale(float distance_m, float field_of_view_rad, uint32_t viewport_height);
 
 /* Choose the levels of a frame. Call before noh_lod_targets.
- * shapes  update_error_m[NOH_UPDATE_RATE_COUNT] of everything that plays (noh_time_lod_error); NULL: full update rate
+ * shapes  update_error_m[NOH_UPDATE_RATE_COUNT] of everything that plays; NULL: full update rate
  * units   clock in ticks, never decreasing
  * ranges  pixels_per_metre >= 0, not NaN */
 void noh_lod_choose(noh_lod *d, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre,
                     const float *update_error_m, int64_t clock);
 
-/* Show one mesh level in full detail otherwise, regardless of error, for tools and debugging. For a level that is not
- * loaded or past the last, the nearest existing one is shown. The next noh_lod_choose does not fade. */
-void noh_lod_set_mesh(noh_lod *d, const noh_lod_table *table, uint32_t level, float pixels_per_metre);
-
 /* Call when the camera has jumped or the character was out of view: the next choice ignores the current levels and does
  * not fade. */
 void noh_lod_cut(noh_lod *d);
 
-/* From the next choice on, take no finer mesh level than this one, because finer ones have no memory. 0:
- * no limit. mesh_wanted is still the level within the quality setting; error_m is for the level shown. */
-void noh_lod_set_limit(noh_lod *d, uint32_t level);
-
-/* The finest mesh level that needs memory: the finest of the level shown, the level a fade leaves, and the level
- * wanted. */
-uint32_t noh_lod_finest(const noh_lod *d);
-
 /* Progress of a change of mesh level: 0 only mesh_before, 1 only mesh, smooth at both ends (smoothstep). For a dither
  * of two draws, or a geomorph along the collapsed edges. The next change waits until it is 1. */
 float noh_lod_fade(const noh_lod *d, int64_t clock);
-
-/* The total error in pixels, including targets. It is within the quality setting, unless the finest levels and the
- * clips themselves exceed it, or the scale grew too fast for the lead during a fade. */
-float noh_lod_error_pixels(const noh_lod *d);
-
-/* Joints to pose, and influences to use per vertex, at the chosen levels; 0: all, the table has no levels of the
- * kind. */
-uint32_t noh_lod_joint_count(const noh_lod *d, const noh_lod_table *table);
-uint32_t noh_lod_influence_count(const noh_lod *d, const noh_lod_table *table);
 
 /* Drop morph targets with effects too small to see: the smallest |weight| * radius first, while the sum is within the
  * share of targets. Sets d->skipped_m to the sum. Takes two passes over the weights if all can be dropped, at most 33.
@@ -153,7 +132,7 @@ uint32_t noh_lod_targets(noh_lod *d, const noh_lod_settings *settings, const flo
  * firing callbacks. An update at tick t poses the instance as of its next update, and until then the frame blends from
  * the true pose at t to the true pose there: no lag, no jumps, and an error that grows with the square of the update
  * period, measured for each clip by noh_time_lod_measure. A change made in between shows from the next update on, or
- * from the next frame after noh_time_lod_wake, and never as a jump.
+ * from the next frame after noh_character_wake, and never as a jump.
  *
  * Poses are blended as matrices in object space, so every skinned vertex moves in a straight line from one true
  * position to the next. Blending local transforms would follow arcs, but needs new matrices every frame, which costs
@@ -207,16 +186,6 @@ typedef struct noh_time_probe {
     int travels;
 } noh_time_probe;
 
-/* Compute the errors of a playing controller: the largest of its blended tracks plus the weighted sum of its additive
- * ones. A track's error grows with the square of a playback speed above 1, as interpolation error does for a clip that
- * is smooth over an update period. A clip that ends by itself was measured as stopping; played ping-pong its velocity
- * reverses instead, so its error counts twice.
- * shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
-void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
-
-/* Call after changing tracks: an update is then due. */
-void noh_time_lod_wake(noh_time_lod *t);
-
 /* Bytes of working memory for measuring; 0 for a set over NOH_JOINTS_MAX or NOH_FLOATS_MAX. */
 size_t noh_time_lod_measure_size(const noh_time_probe *probe);
 
@@ -237,8 +206,8 @@ noh_result noh_time_lod_measure(void *memory, size_t bytes, const noh_time_probe
 /* ======== a character ========
  * One character: its controller, its LOD levels, and the two poses that it blends.
  *
- * A character is one block of bytes without pointers: clone, save or move it with one memcpy of
- * noh_character_bytes(ch). Hundreds fit in one array. Shared data (the set, the LOD table, the scratch) is passed to
+ * A character is one block of bytes without pointers: clone, save or move it with one memcpy of its `bytes`. Hundreds
+ * fit in one array. Shared data (the set, the LOD table, the scratch) is passed to
  * every call.
  *
  * A frame of a game:
@@ -339,19 +308,9 @@ const float *noh_character_palette(const noh_character *ch, float *mixed, uint32
  * shapes  mixed[float_count of the set] */
 const float *noh_character_floats(const noh_character *ch, float *mixed);
 
-/* The bounding sphere in this frame: centre x, y, z and radius, in object space. Updates must be given the joint
- * radii. */
-void noh_character_sphere(const noh_character *ch, float sphere[4]);
-
 /* Call after changing tracks or weights. An update is then due, and the character moves to the changed pose within half
  * to one update period. */
 void noh_character_wake(noh_character *ch);
-
-/* Call when the camera has jumped: LOD levels are chosen again, and the character is posed before it is shown. */
-void noh_character_cut(noh_character *ch);
-
-/* The bytes to copy to clone or save a character. The copy must also be aligned to NOH_MEMORY_ALIGN. */
-size_t noh_character_bytes(const noh_character *ch);
 
 /* Give a copy its own update phase. */
 void noh_character_set_instance(noh_character *ch, uint32_t instance);

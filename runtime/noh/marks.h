@@ -62,7 +62,6 @@ uint32_t noh_actor_blobs(const noh_stage *stage, noh_actor actor, const noh_blob
  *   noh_decals_init     a ring of decals for one actor
  *   noh_decals_strike   add a decal where noh_stage_pick hit
  *   noh_decals_step     let time pass: decals fade
- *   noh_decal_alpha     the opacity of one
  *
  * noh_gl.h draws them. A decal lies in the bind pose of the actor's mesh: a square around the point that was
  * hit, in the plane of the triangle there. It covers surfaces that face as that triangle does, within a sphere around
@@ -116,9 +115,6 @@ noh_result noh_decals_strike(noh_decals *decals, const noh_stage *stage, const n
                              const noh_decal_desc *desc, uint32_t *index, noh_error *error);
 
 void noh_decals_step(noh_decals *decals, uint32_t ticks);
-
-/* 0..1, from the age of the decal. */
-float noh_decal_alpha(const noh_decals *decals, uint32_t index);
 
 #ifdef __cplusplus
 }

@@ -160,14 +160,6 @@ noh_result noh_actor_hair_init(void *memory, size_t bytes, const noh_actor_hair_
  * ticks  that the stage was stepped by since the last frame; unused with in_state */
 void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks);
 
-/* heads[*count], valid until the next frame. */
-const noh_hair_head *noh_actor_hair_heads(const noh_actor_hair *hair, uint32_t *count);
-
-/* shapes  points[hair_count][point_count][3], head space */
-void noh_actor_hair_points(const noh_actor_hair *hair, uint32_t head, float *points);
-
-const noh_actor_hair_desc *noh_actor_hair_desc_of(const noh_actor_hair *hair);
-
 /* ======== feet of actors ========
  * Actors that stand on the ground.
  *

@@ -6,6 +6,7 @@
 #include "support/renderer.h"
 #include "gl/draw/gl_draw_internal.h"
 #include "stage/character/lod_pack_internal.h"
+#include "stage/character/lod_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

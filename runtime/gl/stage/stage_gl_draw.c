@@ -14,6 +14,7 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "stage/character/lod_internal.h"
 
 typedef noh_gl_drawing drawing;
 

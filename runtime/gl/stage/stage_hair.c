@@ -15,6 +15,7 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "stage/actors/actor_hair_internal.h"
 #include "shaders.gen.h"
 
 #define SIDE_TEXELS 1024u /* of the texture; only an extreme desc needs more rows */

@@ -10,6 +10,10 @@
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 
+/* Get the direction that a walker faces: a unit vector x, z.
+ * returns  0 if there is no such walker */
+int noh_walkers_heading(const noh_walkers *walkers, uint32_t index, float heading[2]);
+
 enum { WALKER_WALK, WALKER_IDLE, WALKER_RUN, WALKER_CLIPS };
 #define WALKER_SWAY 32u /* equal parts of a pass of the clip */
 #define WALKER_PARTS (NOH_FEET_POINTS / 2u)

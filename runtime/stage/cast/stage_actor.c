@@ -12,6 +12,7 @@
 #include "noh/low_stage.h"
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
+#include "stage/character/character_internal.h"
 
 /* ---- ids ---- */
 

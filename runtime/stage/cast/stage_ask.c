@@ -11,6 +11,7 @@
 #include "noh/low_stage.h"
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
+#include "stage/character/lod_internal.h"
 
 /* A joint in model space, as shown. */
 static void joint_matrix(const noh_character *ch, uint32_t joint, float matrix[12])

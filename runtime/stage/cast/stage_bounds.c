@@ -17,6 +17,7 @@
 #include "noh/noh.h"
 #include "stage/character/character_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "stage/character/lod_internal.h"
 
 #define ROUNDING 1.000004f /* more than the sums and roots below can lose */
 #define REACH_SAMPLES 64u  /* of each clip */

@@ -8,6 +8,7 @@
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "stage/character/time_lod_internal.h"
+#include "stage/character/lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"

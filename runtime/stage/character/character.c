@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "motion/anim/clock_internal.h"
+#include "stage/character/lod_internal.h"
 
 /* ---- memory ---- */
 

@@ -11,6 +11,16 @@
 extern "C" {
 #endif
 
+/* The bounding sphere in this frame: centre x, y, z and radius, in object space. Updates must be given the joint
+ * radii. */
+void noh_character_sphere(const noh_character *ch, float sphere[4]);
+
+/* Call when the camera has jumped: LOD levels are chosen again, and the character is posed before it is shown. */
+void noh_character_cut(noh_character *ch);
+
+/* The bytes to copy to clone or save a character. The copy must also be aligned to NOH_MEMORY_ALIGN. */
+size_t noh_character_bytes(const noh_character *ch);
+
 /* ---- memory ---- */
 
 /* Check a block from outside, such as a saved game, before any other call. If it passes, no call overruns its memory.

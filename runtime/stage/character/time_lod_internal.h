@@ -10,6 +10,16 @@
 extern "C" {
 #endif
 
+/* Compute the errors of a playing controller: the largest of its blended tracks plus the weighted sum of its additive
+ * ones. A track's error grows with the square of a playback speed above 1, as interpolation error does for a clip that
+ * is smooth over an update period. A clip that ends by itself was measured as stopping; played ping-pong its velocity
+ * reverses instead, so its error counts twice.
+ * shapes  clip_error_m[clip_count of the set][NOH_UPDATE_RATE_COUNT], error_m[NOH_UPDATE_RATE_COUNT] */
+void noh_time_lod_error(const noh_controller *c, const float *clip_error_m, float *error_m);
+
+/* Call after changing tracks: an update is then due. */
+void noh_time_lod_wake(noh_time_lod *t);
+
 NOH_STATIC_ASSERT(sizeof(noh_time_lod) == 48, time_lod);
 
 /* Ticks between updates; 0 for NOH_UPDATE_RATE_FULL. */

@@ -388,17 +388,14 @@ void noh_smart_use_of(const noh_smart *smart, uint32_t agent, noh_smart_use *use
     use->ticks = a->ticks;
 }
 
-const float *noh_smart_needs(const noh_smart *smart, uint32_t agent)
-{
-    NOH_ASSERT(smart && agent < smart->agent_max);
-    return agents_of(smart)[agent].phase == NOH_SMART_AWAY ? NULL : needs_of(smart, agent);
-}
-
 uint32_t noh_smart_most(const noh_smart *smart, uint32_t agent, float least)
 {
-    const float *needs = noh_smart_needs(smart, agent);
+    const float *needs;
     uint32_t most = NOH_NONE;
-    for (uint32_t n = 0; needs && n < smart->need_count; n++) {
+    NOH_ASSERT(smart && agent < smart->agent_max);
+    if (agents_of(smart)[agent].phase == NOH_SMART_AWAY) return NOH_NONE;
+    needs = needs_of(smart, agent);
+    for (uint32_t n = 0; n < smart->need_count; n++) {
         if (!smart->satisfiers[n] || !(needs[n] > least)) continue;
         least = needs[n];
         most = n;
@@ -410,12 +407,6 @@ const noh_smart_slot *noh_smart_slot_at(const noh_smart *smart, uint32_t slot)
 {
     NOH_ASSERT(smart && slot < smart->slot_count);
     return &slots_of(smart)[slot].slot;
-}
-
-const noh_smart_object *noh_smart_object_at(const noh_smart *smart, uint32_t object)
-{
-    NOH_ASSERT(smart && object < smart->object_count);
-    return &objects_of(smart)[object];
 }
 
 uint32_t noh_smart_holder(const noh_smart *smart, uint32_t slot)

@@ -12,6 +12,7 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
+#include "stage/actors/walkers_internal.h"
 
 #define RADIUS 0.25f
 
