@@ -17,7 +17,6 @@ extern "C" {
  * The table of OpenGL ES functions used by noh.
  *
  *   noh_gl_api_load       fill the table through the caller's lookup function
- *   noh_gl_has_extension  whether the context lists an extension
  *   noh_gl_error_take     return the oldest GL error and clear all
  *
  * The library links no GL: the application makes a context current and passes a lookup function. The table is a plain
@@ -270,9 +269,6 @@ noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh
  * lost context may report errors forever. */
 unsigned noh_gl_error_take(const noh_gl_api *api);
 
-/* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
-int noh_gl_has_extension(const noh_gl_api *api, const char *name);
-
 /* ======== what a GPU can do ========
  * Capabilities of a context.
  *
@@ -346,9 +342,8 @@ void noh_gl_caps_nominal(noh_gl_caps *out);
  * Each removes the old names from the ledger without calling GL, because in the new context these names may belong to
  * other objects, and makes new objects from the pack. The ledger then has the same bytes as before. The new context
  * must have the same capabilities as the old one: probe it with noh_gl_caps_probe. If they differ, or if there is no
- * new context, release the objects without calling GL and plan again: pass the table below to a noh_gl_*_delete that
- * takes an api, and call noh_gl_*_forget for the others. For a stage, copy the table below over your own, then call
- * noh_stage_delete.
+ * new context, release the objects without calling GL and plan again: copy the table below over your own, then delete
+ * the objects, or the stage (noh_stage_delete).
  *
  *   noh_gl_lost_api  a table whose delete functions do nothing
  *
@@ -484,14 +479,14 @@ const char *noh_gl_shader_text(const char *name);
  *   noh_stage_floor_draw,         and the depth mask
  *   noh_backdrop_draw
  *   noh_stage_draw_shadow,        cull mode, polygon offset       all else, framebuffers and    (1)
- *   noh_gl_light_begin_shadow                                     viewport too
- *   to _end_shadow, _draw_shadow
+ *   noh_stage_hair_draw_shadow,                                   viewport too
+ *   noh_stage_terrain_draw_shadow
  *   noh_stage_frame_end,          nothing                         all, framebuffers and         (1)
  *   noh_gl_morph_update,                                          viewport too; pixel store
  *   noh_gl_skin_update,
  *   noh_gl_caps_probe
  *   _init, _create, _restore,     nothing                         pixel store                   (1), and texture unit 0
- *   _fill, _upload                                                                              or the last used active
+ *   _upload                                                                                     or the last used active
  *   noh_gl_mesh_bind, _unbind,    the program                     nothing                       what they bind
  *   noh_gl_morph_bind,
  *   noh_gl_morph_bind_streams

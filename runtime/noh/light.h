@@ -19,11 +19,7 @@ extern "C" {
  * Environment light, as a short description and as spherical harmonics.
  *
  *   noh_environment_find, noh_environment_at   built-in environments: white, studio, room, sky
- *   noh_environment_radiance                   radiance from a direction
  *   noh_light_from_environment                 its spherical harmonics, exact
- *   noh_light_rotate                           rotated light
- *   noh_light_irradiance                       light reflected by a white matte surface, by its normal
- *   noh_light_key                              split into one directional light and the rest
  *   noh_light_exposure                         exposure for faces
  *
  * An environment is an ambient radiance, up to eight lamps and up to two windows. A lamp is round: its radiance at the
@@ -74,34 +70,12 @@ uint32_t noh_environment_find(const char *name);
  * ranges  index below NOH_ENVIRONMENT_COUNT */
 const noh_environment *noh_environment_at(uint32_t index);
 
-/* The radiance from a direction.
- * ranges  direction is unit */
-void noh_environment_radiance(const noh_environment *environment, const float direction[3], float rgb[3]);
-
 /* Compute the spherical harmonics of an environment.
  * ranges  order 1..NOH_SH_ORDER_MAX; lamp_count at most NOH_LAMPS_MAX, powers at most 2
  * errors  at most 3e-6 of the sum of the lamp colours; for windows with half below 0.7, 1e-5 of the window colours
  * source  the integral over a lamp is of a polynomial of degree at most 7, which Gauss-Legendre quadrature with four
  *         nodes integrates exactly (Abramowitz, Stegun: 25.4.29) */
 void noh_light_from_environment(const noh_environment *environment, uint32_t order, noh_light *light);
-
-/* Rotate light.
- * ranges  rotation as in noh_sh_rotate; to is not from */
-void noh_light_rotate(const noh_light *from, const float rotation[9], noh_light *to);
-
-/* The light reflected by a white matte surface, without shadows: convolution with the clamped cosine at the light's
- * order. May be below 0 opposite a sharp lamp, by a few per cent of it.
- * ranges  normal is unit */
-void noh_light_irradiance(const noh_light *light, const float normal[3], float rgb[3]);
-
-/* Split light into a directional key light, which can cast shadows, and the smallest possible rest. Key and rest add up
- * to the light in every coefficient.
- * direction  unit, towards the key light, the main direction of luminance
- * rgb        key light reflected by a white matte surface facing it; zeros if light has no direction
- * rest       must not be light
- * ranges     light's order at least 2
- * source     Sloan: Stupid spherical harmonics (SH) tricks, GDC 2008, Extracting conventional lights from SH */
-void noh_light_key(const noh_light *light, float direction[3], float rgb[3], noh_light *rest);
 
 /* The exposure at which a face that looks towards +Z shows its own colours under this light: 1.1 divided by the
  * luminance that a white matte face reflects, or by 0.6 times the luminance of one that faces the key light, if that is
@@ -115,7 +89,6 @@ float noh_light_exposure(const noh_light *light, const float rotation[9]);
  *
  *   noh_reflection_size       bytes of the texels; noh_reflection_scratch_size: bytes of init's scratch
  *   noh_reflection_init       sample a radiance and blur it
- *   noh_reflection_texel      one texel; noh_reflection_direction: its direction
  *   noh_reflection_of_environment  a radiance function for an environment
  *
  * Level 0 is a mirror; level k of 0 to 4 is blurred as by a surface of roughness k / 4 at normal incidence: by the GGX
@@ -162,15 +135,6 @@ size_t noh_reflection_scratch_size(uint32_t side);
  *          its bytes) */
 noh_result noh_reflection_init(void *memory, size_t bytes, void *scratch, size_t scratch_bytes,
                                const noh_reflection_desc *desc, noh_reflection *out, noh_error *error);
-
-/* Decode a texel.
- * ranges  level below NOH_REFLECTION_LEVELS, face 0..5, x and y below side >> level */
-void noh_reflection_texel(const noh_reflection *reflection, uint32_t level, uint32_t face, uint32_t x, uint32_t y,
-                          float rgb[3]);
-/* The unit vector through the centre of a texel of a face of side x side texels. */
-void noh_reflection_direction(uint32_t side, uint32_t face, uint32_t x, uint32_t y, float direction[3]);
-/* The number of texels in all levels before this one. */
-uint32_t noh_reflection_first(uint32_t side, uint32_t level);
 
 /* ======== transfer ========
  * Precomputed radiance transfer of a mesh that deforms: the light that each vertex receives from an

@@ -31,28 +31,6 @@ extern "C" {
 const char *noh_gl_geometry_version(const noh_gl_api *api);
 const char *noh_gl_geometry_defines(const noh_gl_api *api);
 
-/* ======== names for debuggers ========
- * Object labels and call groups for RenderDoc and apitrace (KHR_debug).
- *
- *   noh_gl_label        name an object
- *   noh_gl_group_begin  open a named group of calls
- *   noh_gl_group_end    close it
- *
- * All do nothing if the context has no debug functions. The library labels every object that it makes and groups every
- * pass.
- *
- * Threads: the context's own thread, for every function. */
-
-/* Label an object with `what` and `of`, separated by a space, or with `what` alone if `of` is NULL or "". The label is
- * cut to NOH_GL_LABEL_BYTES.
- * kind  GL_BUFFER, GL_TEXTURE, GL_PROGRAM, GL_VERTEX_ARRAY, GL_FRAMEBUFFER or GL_RENDERBUFFER
- * name  the object, which must have been bound at least once */
-void noh_gl_label(const noh_gl_api *api, unsigned kind, unsigned name, const char *what, const char *of);
-
-/* Begin and end a group of calls, named like a label. Groups nest; each begin needs an end. */
-void noh_gl_group_begin(const noh_gl_api *api, const char *what, const char *of);
-void noh_gl_group_end(const noh_gl_api *api);
-
 /* ======== GL objects ========
  * GL objects with counted bytes.
  *
@@ -80,7 +58,7 @@ typedef struct noh_gl_renderbuffer {
 #define NOH_GL_CUBE UINT32_MAX
 
 typedef struct noh_gl_texture_desc {
-    unsigned format; /* a sized internal format known to noh_gl_texel_bytes, an ETC2 format, or RG11_EAC */
+    unsigned format; /* a sized internal format that noh uses, an ETC2 format, or RG11_EAC */
     uint32_t width;  /* texels, 1..65536 */
     uint32_t height; /* texels, 1..65536 */
     uint32_t layers; /* 0: GL_TEXTURE_2D; NOH_GL_CUBE: GL_TEXTURE_CUBE_MAP with six square faces; 1..65536:
@@ -122,9 +100,6 @@ void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, no
  * errors  MEMORY, GL as noh_gl_buffer_create */
 noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *out, noh_error *error);
 void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *framebuffer);
-
-/* The bytes of one texel of an internal format; 0 for a block format, or one that noh does not use. */
-uint32_t noh_gl_texel_bytes(unsigned format);
 
 /* ======== GL programs ========
  * Compiling and linking shaders.
@@ -185,47 +160,12 @@ noh_result noh_gl_program_create(const noh_gl_api *api, const noh_gl_program_des
 /* Delete a program and set it to 0; does nothing for 0. ledger NULL: the program was not counted. */
 void noh_gl_program_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *program);
 
-/* ======== known drivers ========
- * Workarounds chosen by the renderer's name.
- *
- *   noh_gl_quirk_find   the entry for a renderer, with its reason and source
- *
- * Capabilities are tested (gl_device.h). Only what cannot be tested is decided by the renderer's name, with this table.
- * To force or disable a quirk, change caps.renderer.
- *
- * Threads: any; the table is constant. */
-
-typedef enum noh_quirk {
-    NOH_QUIRK_SOFTWARE,    /* rasterises on the CPU: auto chooses the path cpu */
-    NOH_QUIRK_BLEND_DEAR,  /* float blending is slow: auto chooses gather for any number of targets */
-    NOH_QUIRK_HALF_UNSURE, /* rounds halves irregularly: the probe sets half-float modes to NOH_HALF_UNKNOWN */
-    /* Renders in tiles with 16, 32 or 64 bytes per pixel: more bytes of float layers make tiles smaller, or spill. Of
-     * these, the first entry in the table applies */
-    NOH_QUIRK_TILE_16,
-    NOH_QUIRK_TILE_32,
-    NOH_QUIRK_TILE_64
-} noh_quirk;
-
-typedef struct noh_gl_quirk {
-    const char *renderer; /* a substring of GL_RENDERER */
-    noh_quirk quirk;
-    const char *reason; /* a sentence; if the quirk decides the path, the plan's `reason` */
-    const char *source; /* a document, an issue, or the measurement */
-} noh_gl_quirk;
-
-/* The first entry with this quirk whose name occurs in `renderer`; NULL: none. */
-const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
-
 /* ======== spherical harmonics ========
  * Real spherical harmonics of order 1 to 6: functions on the sphere as 1, 4, 9, 16, 25 or 36 numbers.
  *
  *   noh_sh_basis         the basis functions in a direction
- *   noh_sh_evaluate      a function, from its coefficients, in a direction
- *   noh_sh_add_sample    projection: one sample of a function
- *   noh_sh_from_zonal    a function symmetric about an axis
  *   noh_sh_convolve      convolution with a kernel symmetric about its axis, by band
  *   noh_sh_cosine_lobe   the kernel of irradiance
- *   noh_sh_rotate        a rotated function
  *
  * Order n has the bands 0 to n - 1, band l has the 2 l + 1 functions m = -l to l, and coefficient (l, m) is number
  * l (l + 1) + m. The functions are orthonormal over the sphere and have no Condon-Shortley phase: band 0 is the
@@ -245,19 +185,6 @@ const noh_gl_quirk *noh_gl_quirk_find(const char *renderer, noh_quirk quirk);
  * errors  at most 3e-6 absolute */
 void noh_sh_basis(uint32_t order, const float direction[3], float *basis);
 
-/* The function's value in a direction.
- * shapes  coefs[NOH_SH_COUNT(order)] */
-float noh_sh_evaluate(uint32_t order, const float *coefs, const float direction[3]);
-
-/* Add value * weight in a direction. For a projection, add samples in directions that cover the sphere, with their
- * solid angles as weights, which add up to 4 pi. */
-void noh_sh_add_sample(uint32_t order, const float direction[3], float value, float weight, float *coefs);
-
-/* Write coefs[NOH_SH_COUNT(order)] of the zonal function zonal[order], rotated from the z axis to `axis`: each band is
- * the basis in the axis, scaled.
- * source  Sloan, Luna, Snyder: Local, deformable precomputed radiance transfer, SIGGRAPH 2005, equation 3 */
-void noh_sh_from_zonal(uint32_t order, const float *zonal, const float axis[3], float *coefs);
-
 /* Multiply band l of coefs by bands[l]. For convolution with a symmetric kernel of zonal coefficients k_l, bands[l] =
  * sqrt(4 pi / (2 l + 1)) k_l.
  * source  Funk-Hecke theorem; Ramamoorthi, Hanrahan 2001, equation 5 */
@@ -266,12 +193,6 @@ void noh_sh_convolve(uint32_t order, const float *bands, float *coefs);
 /* bands[NOH_SH_ORDER_MAX] of the clamped cosine over pi: 1, 2/3, 1/4, 0, -1/24, 0. Convolving radiance with it gives
  * the light reflected by a white matte surface, by its normal. */
 extern const float noh_sh_cosine_lobe[NOH_SH_ORDER_MAX];
-
-/* Rotate a function: its value in direction d moves to direction rotation * d.
- * shapes  rotation[9] 3 rows of 3, orthonormal with determinant 1; from, to [NOH_SH_COUNT(order)], to is not from
- * errors  at most 1e-6 of the length of each band
- * source  Ivanic, Ruedenberg 1996 and 1998: band l from bands l - 1 and 1 */
-void noh_sh_rotate(uint32_t order, const float rotation[9], const float *from, float *to);
 
 /* ======== morph targets on the GPU ========
  * Morph targets accumulated on the GPU, for many instances at once.
@@ -331,8 +252,7 @@ typedef struct noh_gl_morph_desc {
     float expected_active;           /* for auto: share of targets active at once, 0..1; 0: 0.5 */
     int without_tangents;            /* 1: two layers, a third less memory, if no shader reads morphed tangents */
     /* For levels loaded later: `meshes` are levels of one mesh, and only their headers are read, which must stay. Until
-     * noh_gl_morph_use is called, this coarser level of the same mesh, possibly of another pack, is the finest that is
-     * accumulated. Default (NULL) all of `meshes` is loaded */
+     * they are, this coarser level of the same mesh, possibly of another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is loaded */
     const noh_mesh *coarse;
     /* 1: on the path cpu, writes finished vertices to vertex buffers (deform.h) instead of sums to a texture,
      * which is faster. Draw with noh_gl_draw_mesh or noh_gl_mesh_bind, with a binding taken after the last update, and
@@ -341,7 +261,7 @@ typedef struct noh_gl_morph_desc {
      * sums in a texture */
     int vertices;
     const char *simd; /* name of the kernel of the path cpu (deform.h), for tests. NULL or unavailable: the fastest */
-    /* With `coarse`: noh_gl_morph_blocks and noh_gl_morph_strips of the finest mesh, counted on the whole mesh */
+    /* With `coarse`: noh_gl_morph_plan.block_count of the finest mesh and its rows, counted on the whole mesh */
     uint32_t later_blocks, later_strips;
     uint32_t draws;     /* for auto: draws of an instance in a frame, shadow maps included; 0: 1 */
     int without_direct; /* 1: auto takes no path `direct`. A renderer draws it or paths with sums, not both */
@@ -375,9 +295,6 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
 /* Delete the GL objects. The memory may then be reused. */
 void noh_gl_morph_delete(noh_gl_morph *morph);
 
-/* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
-void noh_gl_morph_forget(noh_gl_morph *morph);
-
 /* Make the GL objects again in a new context (gl_device.h). Weights stay; the next noh_gl_morph_update accumulates
  * every instance. `log` as in noh_gl_program_create.
  * errors  GL, MEMORY, DATA as noh_gl_morph_init; it then has no GL objects, and restore may be called again */
@@ -403,11 +320,6 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
  * state   the table in gl_device.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
-
-/* With desc.coarse: set the finest level to accumulate. Deltas are read from the pack of `mesh`, which must stay as
- * long. The next update accumulates each instance whose level changes.
- * mesh  a whole mesh: the one of desc.coarse, or the one passed to noh_gl_morph_fill after everything is uploaded */
-void noh_gl_morph_use(noh_gl_morph *morph, const noh_mesh *mesh);
 
 /* With finished vertices: make a vertex array for each instance of a mesh and each buffer of the ring, so that draws
  * need not set attribute pointers again, which is slow in drivers. Call it after init and after each restore; without
@@ -436,20 +348,6 @@ void noh_gl_morph_bind(const noh_gl_api *api, const noh_gl_morph_binding *bindin
  * u_streams  the location of noh_streams in that program: find it once, when the program is linked */
 void noh_gl_morph_bind_streams(const noh_gl_api *api, int u_streams, const noh_gl_morph_binding *binding);
 
-/* Blocks of 4 x 4 accumulation texels touched by each target's rectangles, summed over targets; the unit of work of the
- * GPU paths. */
-uint32_t noh_gl_morph_blocks(const noh_mesh *mesh);
-
-/* Rows of such blocks, summed over rectangles; each is a quad on the blended paths. */
-uint32_t noh_gl_morph_strips(const noh_mesh *mesh);
-
-/* With desc.coarse: upload the next piece of the delta data of the finest of `meshes`, which is not used yet.
- * ranges   from: the whole mesh, at the finest level of `meshes` or a finer one; *at: initially 0, then as left by the
- *          previous call; *bytes: most bytes to send, at least 256 for progress; the bytes sent are subtracted
- * state    texture 0 of unit 0, the active one
- * returns  1 once everything is uploaded */
-int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, uint32_t *bytes);
-
 /* ======== palettes on the GPU ========
  * The joints of skinned meshes on the GPU, for many instances at once.
  *
@@ -463,7 +361,7 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
  *   noh_gl_skin_set_user      set four floats of one instance, for crowds and your own shaders
  *   noh_gl_skin_update        upload what changed
  *   noh_gl_skin_binding_of    where a vertex shader finds an instance's palettes
- *   noh_gl_skin_plan_of, noh_gl_skin_instance, noh_palette_mode_name
+ *   noh_gl_skin_instance      the number of an instance of a mesh
  *
  * A palette holds the joints of one draw in rows of four floats: three rows per joint, a 3 x 4 matrix; or, for a mesh
  * with NOH_MESH_DUAL_QUATERNION, four rows: the rotation, the dual part, and two for the stretch. The converter splits
@@ -518,14 +416,9 @@ noh_result noh_gl_skin_init(void *memory, size_t bytes, const noh_gl_device *dev
 /* Delete the GL object. The memory may then be reused. */
 void noh_gl_skin_delete(noh_gl_skin *skin);
 
-/* Release the GL object of a lost context without GL calls (gl_device.h). It may be restored later. */
-void noh_gl_skin_forget(noh_gl_skin *skin);
-
 /* Make the GL object again in a new context (gl_device.h); the next noh_gl_skin_update sends everything.
  * errors  GL, MEMORY as noh_gl_skin_init; it then has no GL object, and restore may be called again */
 noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error);
-
-const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin);
 
 /* The number of the i-th instance of the m-th mesh. */
 uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i);
@@ -566,9 +459,6 @@ void noh_gl_skin_update(noh_gl_skin *skin);
 
 /* The binding of an instance, with `influences` 0; set `influences` to draw with fewer joints per vertex. */
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance);
-
-/* The names "auto", "uniform", "texture". */
-const char *noh_palette_mode_name(noh_palette_mode mode);
 
 /* ======== programs of the plain renderer ========
  * The programs of the plain renderer, one for each type of mesh.
@@ -652,25 +542,22 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 /* ======== meshes and a plain renderer ========
  * Meshes on the GPU, and a plain renderer for them.
  *
- *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore, noh_gl_mesh_bytes
+ *   noh_gl_mesh_create       upload a mesh; noh_gl_mesh_delete, noh_gl_mesh_restore
  *   noh_gl_mesh_lod          the indices of an LOD level
  *   noh_gl_mesh_bind         bind its vertex array, with an instance's finished vertices; noh_gl_mesh_unbind
- *   noh_gl_mesh_create_empty buffers for levels loaded later; noh_gl_mesh_fill fills them piece by piece
  *   noh_gl_picture_create    upload a texture; delete it with noh_gl_texture_delete
- *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _forget, _restore,
- *                            _variant
+ *   noh_gl_renderer_create   compile the shaders of the plain renderer; _size, _delete, _restore
  *   noh_gl_draw_begin        begin drawing; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
  *   noh_gl_draw_tint         the tint of the next meshes; noh_gl_draw_wrinkles, their wrinkles; noh_gl_draw_user,
- *                            values for your own shaders;
- *                            noh_gl_draw_priority, a part of their blended submeshes; noh_gl_next_priority
+ *                            values for your own shaders
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the textures of glTF materials. A
  * game's own shaders can replace it (noh_gl_renderer_desc.shaders): two texts, compiled for all types of meshes. A game
  * with its own renderer needs only noh_gl_mesh, a noh_gl_morph_binding, a noh_gl_skin_binding and noh_gl_shader_prefix.
  *
- * Threads: the context's own thread; any thread for noh_gl_mesh_bytes, noh_gl_mesh_lod and noh_gl_picture_bytes. */
+ * Threads: the context's own thread; any thread for noh_gl_mesh_lod and noh_gl_picture_bytes. */
 
 #define NOH_PRIORITY_ANY 1000
 
@@ -690,10 +577,6 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
  * the first two are the bind pose, even if finished vertices are at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL */
 #define NOH_ATTRIBUTE_REST 10u        /* vec3 */
 #define NOH_ATTRIBUTE_REST_NORMAL 11u /* ivec2 */
-
-/* The exact GPU bytes of a mesh's buffers. `mesh` may be any LOD level: data used only by finer levels is not
- * counted. */
-uint64_t noh_gl_mesh_bytes(const noh_mesh *mesh);
 
 /* Upload a mesh and all its coarser LOD levels directly from the pack. `mesh` may be any level; finer ones are not
  * uploaded. Leaves vertex array 0 bound.
@@ -752,7 +635,7 @@ typedef struct noh_gl_renderer_desc {
     int fewer_influences;      /* 1: bindings will lower `influences` */
     int fades;                 /* 1: LOD levels will fade (noh_gl_lod): also compiles variants that discard pixels */
     int encode_srgb;           /* 1: the shader encodes to sRGB, for framebuffers that do not, such as WebGL's canvas */
-    int lit;                   /* 1: shaders use the light of noh_gl_renderer_light */
+    int lit;                   /* 1: shaders use the light of a stage (noh_stage_set_lighting) */
     noh_shading shading;       /* as in noh_stage_desc */
     noh_gl_passes passes;
     const noh_gl_shader_desc *shaders; /* your own shaders instead of the library's; copied, except its texts. NULL:
@@ -787,7 +670,7 @@ typedef struct noh_gl_renderer {
     float user[4];                       /* of the next noh_gl_draw_mesh */
     int priority;                        /* of the next draws, or NOH_PRIORITY_ANY */
     float wrinkles[NOH_WRINKLE_REGIONS]; /* of the next noh_gl_draw_mesh, as vectors of noh_wrinkle_regions */
-    uint8_t wrinkle_models, smoothed;    /* of noh_gl_draw_wrinkle_look */
+    uint8_t wrinkle_models, smoothed;    /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
     uint8_t shading;                     /* noh_shading */
     const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
     noh_gl_raster raster;                /* state restored by noh_gl_draw_end */
@@ -810,15 +693,9 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
                                   size_t bytes, noh_gl_renderer *out, noh_error *error);
 void noh_gl_renderer_delete(noh_gl_renderer *renderer);
 
-/* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
-void noh_gl_renderer_forget(noh_gl_renderer *renderer);
-
 /* Make the GL objects again in a new context (gl_device.h). `log` as in noh_gl_program_create.
  * errors  GL, MEMORY, DATA as noh_gl_renderer_create; it then has no GL objects */
 noh_result noh_gl_renderer_restore(noh_gl_renderer *renderer, char *log, size_t log_bytes, noh_error *error);
-
-/* Set the light of a renderer with `lit`, from the next noh_gl_draw_begin on. Both are borrowed, and read by draws. */
-void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light, const noh_lighting *lighting);
 
 /* Begin drawing with your render state (gl_device.h), and open a debug group that noh_gl_draw_end closes. Bind your
  * framebuffer and set your viewport and depth function first. The camera is copied, and set for each variant at its
@@ -863,24 +740,10 @@ void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
  * them to 0. Instances of a crowd have their own (noh_gl_skin_set_user). NULL: zeros */
 void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
 
-/* Draw only blended submeshes with materials of this priority in the next noh_gl_draw_mesh and noh_gl_draw_crowd calls.
- * To sort the meshes of a figure, draw them once for each priority, from low to high, and within a priority from far to
- * near. NOH_PRIORITY_ANY, the state after noh_gl_draw_begin: all, from low to high, and for equal priorities in the
- * order of the pack. Opaque submeshes are always drawn. */
-void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
-
-/* The lowest priority above `above` of a mesh's blended materials; NOH_PRIORITY_ANY: there is none. */
-int noh_gl_next_priority(const noh_mesh *mesh, int above);
-
 /* Set the wrinkles of regions for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets them to none. Instances of
  * a crowd have their own (noh_gl_skin_set_wrinkles).
  * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
 void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
-
-/* Set the wrinkle models for the next noh_gl_draw_mesh and noh_gl_draw_crowd calls.
- * models    NOH_WRINKLE_BY_*; 0, the state after noh_gl_draw_begin: the material's
- * smoothed  0..255: how far wrinkles are smoothed out; 255: completely */
-void noh_gl_draw_wrinkle_look(noh_gl_renderer *renderer, uint32_t models, uint32_t smoothed);
 
 /* Draw `count` consecutive instances of one mesh, from the binding `first` on, with one draw call per submesh.
  * noh_gl_skin_set_place places the instances. Rigid meshes work too; palettes must be in a texture. Blended submeshes
@@ -892,21 +755,6 @@ void noh_gl_draw_crowd(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const
 
 /* End drawing: unbind program, vertex array, textures and uniform buffer, and restore render state (gl_device.h). */
 void noh_gl_draw_end(const noh_gl_renderer *renderer);
-
-/* Make a mesh without contents, for levels loaded later. Only the headers of `room`, the finest level that may be
- * loaded, are read, and they must stay. Before drawing, fill it from `mesh`, a coarser level of the same mesh; draws
- * show no finer level. After filling a finer level, set out->mesh to it, or back again.
- * errors  as noh_gl_mesh_create */
-noh_result noh_gl_mesh_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room,
-                                    const noh_mesh *mesh, noh_gl_mesh *out, noh_error *error);
-
-/* Upload the next piece of a mesh and all its coarser levels, possibly from another pack than `room`. Data shared by
- * levels is overwritten with equal bytes, so the mesh may be drawn meanwhile. Leaves vertex array 0 bound.
- * ranges   *at: initially 0, then as left by the previous call; *bytes: most bytes to send, at least 64 for progress;
- *          the bytes sent are subtracted
- * returns  1 once everything is uploaded */
-int noh_gl_mesh_fill(const noh_gl_api *api, const noh_gl_mesh *mesh, const noh_mesh *from, uint64_t *at,
-                     uint32_t *bytes);
 
 #ifdef __cplusplus
 }

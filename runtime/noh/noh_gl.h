@@ -45,18 +45,13 @@ extern "C" {
  *
  *   noh_lighting_make       shader lighting from any light: the key light and the rest
  *   noh_lighting_shadow     set the view of the shadow map
- *   noh_gl_light_bytes      exact GPU bytes of the textures
- *   noh_gl_light_create     upload the reflection, make the shadow map; noh_gl_light_delete,
- *                           noh_gl_light_forget, noh_gl_light_restore
  *   noh_gl_light_upload     upload a changed reflection
- *   noh_gl_light_begin_shadow  bind and clear the shadow map; noh_gl_light_end_shadow
- *   noh_gl_renderer_light   set the light of a renderer (low_gl.h)
  *
  * A renderer with noh_gl_renderer_desc.lit uses it (shaders_es/common_light.glsl): diffuse light by spherical harmonics
  * of order 3, specular light from the cube map by roughness with the split sum, the key light with the shadow map.
  * Occlusion dims both. A renderer without `lit` has its own light and needs none of this.
  *
- * Threads: the context's own thread; any thread for noh_lighting_* and noh_gl_light_bytes. */
+ * Threads: the context's own thread; any thread for noh_lighting_*. */
 
 typedef enum noh_tonemap {
     NOH_TONEMAP_NONE,   /* radiance 1 is white; brighter values are clamped */
@@ -99,33 +94,12 @@ typedef struct noh_gl_light {
     noh_gl_light_desc desc;
     noh_gl_texture cube, shadow; /* GL_RGB9_E5; GL_DEPTH_COMPONENT16 with comparison, one texel without shadows */
     unsigned framebuffer;        /* 0 without shadows */
-    noh_gl_offscreen kept;       /* state restored by noh_gl_light_end_shadow */
+    noh_gl_offscreen kept;       /* state restored after the shadow map */
 } noh_gl_light;
-
-uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc);
-
-/* Upload the reflection and make the shadow map.
- * errors  ARG no reflection; MEMORY, GL as noh_gl_texture_create, or the shadow map cannot be drawn to. All GL objects
- *         made so far are then deleted */
-noh_result noh_gl_light_create(const noh_gl_device *device, const noh_gl_light_desc *desc, noh_gl_light *out,
-                               noh_error *error);
-void noh_gl_light_delete(noh_gl_light *light);
-
-/* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
-void noh_gl_light_forget(noh_gl_light *light);
-
-/* Make the GL objects again in a new context (gl_device.h).
- * errors  MEMORY, GL as noh_gl_light_create; it then has no GL objects */
-noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error);
 
 /* Upload the reflection's texels again, after noh_reflection_init in the same memory with the same side.
  * errors  GL the driver refused the upload */
 noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error);
-
-/* Begin: bind the shadow map's framebuffer, set its viewport and clear it. Then draw the depth of shadow casters as
- * seen from the light. End: restore render state, framebuffers and viewport. Only with shadow_px above 0. */
-void noh_gl_light_begin_shadow(const noh_gl_light *light);
-void noh_gl_light_end_shadow(const noh_gl_light *light);
 
 /* ======== morph targets on the GPU ======== */
 
@@ -183,7 +157,7 @@ typedef struct noh_gl_morph_plan {
     uint32_t atlas_width, atlas_height; /* of the texture array of tiles, in texels */
     uint32_t instance_count, weight_count;
     uint32_t rect_count, texel_count, pair_count; /* of the tables, shared by LOD levels of one mesh */
-    uint32_t block_count;                         /* blocks of 4 x 4 delta texels in them, noh_gl_morph_blocks */
+    uint32_t block_count;                         /* blocks of 4 x 4 delta texels in them */
     uint32_t wide;         /* 1: a delta texel has 16 bytes, for occlusion, or for faster fetches by a software
                             * rasteriser; 0: 12 */
     uint32_t points;       /* 1: blocks are blended as points; 0: as strips, one quad each */

@@ -11,6 +11,7 @@
 #include "draw/figure.h"
 #include "gpu/canvas.h"
 #include "gl/device/gl_api_internal.h"
+#include "gl/draw/gl_light_internal.h"
 
 #define SIDE 160u
 

@@ -8,6 +8,8 @@
 #include <string.h>
 
 #include "gpu/canvas.h"
+#include "gl/draw/gl_light_internal.h"
+#include "gl/light/light_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/light.h"

@@ -7,6 +7,7 @@
 #include "gl/draw/gl_draw_internal.h"
 #include "stage/character/lod_pack_internal.h"
 #include "stage/character/lod_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

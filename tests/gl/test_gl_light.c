@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "gl/draw/gl_light_internal.h"
 
 static void open_scene(scene *s, const noh_environment *environment, uint32_t shadow_px, const float values[4])
 {

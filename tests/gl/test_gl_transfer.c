@@ -10,6 +10,7 @@
 #include "core/mesh/mesh_internal.h"
 #include "deform/morph/morph_internal.h"
 #include "gl/draw/gl_light_internal.h"
+#include "gl/light/light_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

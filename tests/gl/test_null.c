@@ -6,6 +6,7 @@
 #include "null.h"
 #include "support/parts_fixture.h"
 #include "support/renderer.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 #include <stdio.h>
 #include <stdlib.h>

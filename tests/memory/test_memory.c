@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "deform/morph/morph_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

@@ -1,6 +1,8 @@
 #include "light_scene.h"
 
 #include "support/renderer.h"
+#include "gl/draw/gl_light_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

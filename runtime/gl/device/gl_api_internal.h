@@ -11,6 +11,9 @@
 extern "C" {
 #endif
 
+/* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
+int noh_gl_has_extension(const noh_gl_api *api, const char *name);
+
 /* Desktop OpenGL: vertex shaders set the point size, as they always do in OpenGL ES. */
 #define NOH_GL_PROGRAM_POINT_SIZE 0x8642u
 

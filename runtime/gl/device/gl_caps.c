@@ -13,6 +13,8 @@
 #include <string.h>
 
 #include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/device/gl_quirks_internal.h"
 #include "shaders.gen.h"
 
 #define TEXELS 16

@@ -4,6 +4,7 @@
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 #define GROUP_ID 0x6e6f68u /* "noh": distinguishes the library's groups from the application's */
 

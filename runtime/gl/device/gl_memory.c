@@ -9,6 +9,7 @@
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_table_internal.h"
 
 #define SIDE_MAX 65536u
 

@@ -7,6 +7,7 @@
 #include "noh/low_gl.h"
 
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 #include <string.h>
 

@@ -10,6 +10,10 @@
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "gl/device/gl_names_internal.h"
+#include "noh/low_gl.h"
+
+/* The bytes of one texel of an internal format; 0 for a block format, or one that noh does not use. */
+uint32_t noh_gl_texel_bytes(unsigned format);
 
 #define NOH_GL_TABLE_TEXELS_MAX (1u << 22)
 

@@ -23,6 +23,8 @@
 #include "gl/draw/gl_material_internal.h"
 #include "gl/device/gl_names_internal.h"
 #include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
 {

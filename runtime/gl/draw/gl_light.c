@@ -11,6 +11,8 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/light/sh_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/light/light_internal.h"
 
 /* ---- uniforms ---- */
 

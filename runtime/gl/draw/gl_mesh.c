@@ -16,6 +16,8 @@
 
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 static uint64_t position_bytes(const noh_mesh *mesh)
 {

@@ -23,6 +23,7 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 /* A refused glBufferSubData goes unnoticed (glGetError would wait for the GPU in some browsers), so every 64th update
  * writes slots completely. */

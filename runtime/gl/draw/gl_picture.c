@@ -12,6 +12,7 @@
 #include "noh/pack.h"
 
 #include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 #define STRIP_BLOCKS 16u
 

@@ -18,6 +18,7 @@
 #include "gl/device/gl_names_internal.h"
 #include "gl/draw/gl_renderer_internal.h"
 #include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 static noh_result create_white(noh_gl_renderer *r, noh_error *error)
 {

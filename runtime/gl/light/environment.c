@@ -7,6 +7,8 @@
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
+#include "gl/light/sh_internal.h"
+#include "gl/light/light_internal.h"
 
 /* white: the furnace. studio: a large soft box, a fill, a rim, a dark floor. room: a window to the left, a ceiling
  * that reflects it, a lamp behind, warm walls and floor. sky: blue with a bright zenith, sun, ground. Colours are

@@ -6,6 +6,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
+#include "gl/light/light_internal.h"
 
 /* A face's direction at s, t of -1..1: middle + s * across + t * down. */
 static const float faces[6][3][3] = {

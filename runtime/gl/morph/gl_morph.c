@@ -18,6 +18,7 @@
 #include <string.h>
 
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 /* ---- making ---- */
 

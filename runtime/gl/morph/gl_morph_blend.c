@@ -31,6 +31,7 @@
 #include "noh/pack.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
+#include "gl/device/gl_debug_internal.h"
 #include "shaders.gen.h"
 
 /* ---- making ---- */

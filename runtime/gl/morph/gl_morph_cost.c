@@ -16,6 +16,7 @@
 #include <string.h>
 
 #include "gl/morph/gl_morph_internal.h"
+#include "gl/device/gl_quirks_internal.h"
 #include "noh/deform.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

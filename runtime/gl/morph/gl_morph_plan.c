@@ -10,6 +10,7 @@
 #include "gl/device/gl_names_internal.h"
 #include "core/base/assert_internal.h"
 #include "deform/morph/morph_internal.h"
+#include "gl/device/gl_quirks_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

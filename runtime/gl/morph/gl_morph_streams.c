@@ -16,6 +16,7 @@
 #include "noh/noh_gl.h"
 #include "noh/pack.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/device/gl_debug_internal.h"
 
 #define STREAM_CHUNK (NOH_STREAM_CHUNK / NOH_STREAM_STRIDE) /* vertices sent at once at load */
 

@@ -9,6 +9,7 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
+#include "gl/light/light_internal.h"
 #include "shaders.gen.h"
 
 enum { U_RAYS = NOH_DRAWABLE_OWN, U_ENDS, U_KIND };

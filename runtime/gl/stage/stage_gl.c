@@ -16,6 +16,8 @@
 #include "noh/pack.h"
 #include "gl/draw/gl_renderer_internal.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "gl/morph/gl_morph_internal.h"
+#include "gl/draw/gl_light_internal.h"
 
 /* ---- memory ---- */
 

@@ -15,6 +15,8 @@
 #include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "stage/character/lod_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
+#include "gl/draw/gl_light_internal.h"
 
 typedef noh_gl_drawing drawing;
 

@@ -14,6 +14,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 
 /* ---- room ---- */
 

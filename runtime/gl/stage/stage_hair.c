@@ -16,6 +16,8 @@
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "stage/actors/actor_hair_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/draw/gl_light_internal.h"
 #include "shaders.gen.h"
 
 #define SIDE_TEXELS 1024u /* of the texture; only an extreme desc needs more rows */

@@ -12,6 +12,8 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/stage/drawable_internal.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "gl/device/gl_debug_internal.h"
+#include "gl/draw/gl_light_internal.h"
 #include "shaders.gen.h"
 
 enum { U_CAMERA = NOH_DRAWABLE_OWN, U_ORIGIN, U_SCALE, U_LIGHT, U_FLAT, U_STEEP, U_BLOCK, U_EDGES };

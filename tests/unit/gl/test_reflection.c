@@ -6,6 +6,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "gl/light/light_internal.h"
 #include "noh/base.h"
 #include "noh/light.h"
 #include "noh/low_core.h"

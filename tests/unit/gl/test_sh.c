@@ -5,6 +5,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "gl/light/sh_internal.h"
+#include "gl/light/light_internal.h"
 #include "noh/base.h"
 #include "noh/light.h"
 #include "noh/low_core.h"

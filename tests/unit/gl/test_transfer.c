@@ -10,6 +10,7 @@
 #include "convert/light/transfer_fit.h"
 #include "convert/model/model_build.h"
 #include "convert/pack/pack_strip.h"
+#include "gl/light/light_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"
