@@ -137,23 +137,13 @@ void noh_morph_finish_scalar(const noh_mesh *mesh, const noh_morph_layers *layer
  *
  * Threads: no state; any thread. */
 
-/* Compute the box of the targets' offsets of any vertex, before joints move it; contains 0.
- * shapes  weights[target_count], of any size and sign; NULL: no morph targets */
-void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6]);
-
 /* Compute the box of a rigid mesh.
  * shapes  world[12], NULL: mesh space; weights[target_count], NULL: no morph targets */
 void noh_mesh_box(const noh_mesh *mesh, const float *world, const float *weights, float box[6]);
-/* Compute the box of a rigid mesh from a given box of target offsets (noh_mesh_target_box); box may be deltas. */
-void noh_mesh_moved_box(const noh_mesh *mesh, const float *world, const float deltas[6], float box[6]);
 
 /* Compute the box of a skinned mesh.
  * shapes  matrices[skin's joint_count][12] (noh_skin_matrices); weights as above */
 void noh_skin_box(const noh_mesh *mesh, const float *matrices, const float *weights, float box[6]);
-
-/* Compute for each joint the box of the vertices that it moves, as if it alone moved them; empty if it moves none.
- * shapes  boxes[skin's joint_count][6] */
-void noh_skin_joint_boxes(const noh_mesh *mesh, const float *matrices, const float *weights, float *boxes);
 
 /* Increase joint radii to contain a mesh: each becomes at least the distance of the farthest corner of the joint's box
  * (noh_mesh.joint_boxes), extended by the targets' boxes, in the joint's space. Start with -1 for every joint and add
@@ -196,10 +186,6 @@ typedef struct noh_dual_quaternion {
     float stretch[9]; /* [3][3] rows, symmetric */
 } noh_dual_quaternion;
 
-/* Split a matrix of 3 rows of 4. If its axes vanish or lie in a plane the rotation is undefined: it is then the
- * identity, and all of A is stretch. */
-void noh_dual_quaternion_from_matrix(const float matrix[12], noh_dual_quaternion *out);
-
 /* Split the matrices of all joints of a skin, once per instance and frame (noh_skin_matrices).
  * shapes  matrices[count][12], out[count] */
 void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_quaternion *out);
@@ -209,10 +195,6 @@ void noh_skin_dual_quaternions(const float *matrices, uint32_t count, noh_dual_q
  * ranges  index below vertex_count, of a skinned mesh */
 void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
                           uint32_t index, noh_vertex *out);
-
-/* Compute only the position of a vertex, with the same bits. */
-void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
-                            uint32_t index, float out[3]);
 
 /* Skin a range of vertices; parameters as for noh_skin_vertices. */
 void noh_skin_vertices_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,

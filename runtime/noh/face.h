@@ -17,7 +17,7 @@ extern "C" {
  * Involuntary motion of a face: blinks, gaze, emotions, breath, small motions of the head.
  *
  *   noh_face_init          make a face from a seed: at rest, looking ahead
- *   noh_face_step          advance time; noh_face_skip: time while it is not visible
+ *   noh_face_step          advance time
  *   noh_face_look_at       turn the eyes to a point, and the head if the eyes do not reach; noh_face_follow: track it
  *   noh_face_set_emotion   start an emotion, which rises, holds and fades
  *   noh_face_set_activity  resting, talking or reading: sets the blink rate and how long the gaze rests on a point
@@ -46,9 +46,7 @@ typedef enum noh_emotion {
     NOH_EMOTION_COUNT
 } noh_emotion;
 
-/* Convert between an emotion and its name, "joy", "sadness" and so on. Unknown names give NOH_EMOTION_COUNT; emotions
- * past the last give NULL. */
-noh_emotion noh_emotion_of_name(const char *name);
+/* The name of an emotion, "joy", "sadness" and so on; NULL past the last. */
 const char *noh_emotion_name(noh_emotion emotion);
 
 typedef enum noh_activity {
@@ -178,16 +176,12 @@ void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
 
 void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose);
 
-/* Advance time while the face is not visible, at constant cost. It ends at rest, with the same gaze target and
- * emotions; blinks, breaths and glances come at other times than with noh_face_step. */
-void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
-
 /* ======== recipes ========
  * Maps what a face shows to the morph targets of its mesh.
  *
  *   noh_face_channels       a pose and speech as one number per channel
  *   noh_face_recipe_bind    bind a recipe's rows to a mesh's targets by name; noh_face_recipe_bind_by: by a function
- *   noh_face_recipe_in_pack an artist's recipe in a pack; noh_face_recipe_of_pack: the same as a table
+ *   noh_face_recipe_in_pack an artist's recipe in a pack
  *   noh_face_rules_of_pack  a pack's rules between an emotion and blinks, looks and speech
  *   noh_face_apply          channels to weights
  *
@@ -293,12 +287,6 @@ noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
 
 /* Read the rules in a pack's recipe (rows `override` and `binary`, or VRM's); those over the mouth become 0. */
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules);
-
-/* Get the recipe in a pack (`noh build --recipe`) as a table. Skips rows of unknown channels.
- * shapes  rows[row_max]; they refer to the pack's strings
- * errors  NOT_FOUND the pack has none; MEMORY more rows than row_max (need: the count). *recipe is then unchanged */
-noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
-                                   noh_error *error);
 
 typedef struct noh_face_link {
     uint16_t channel, target;

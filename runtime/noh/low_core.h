@@ -104,7 +104,6 @@ uint32_t noh_crc32c(uint32_t crc, const void *bytes, size_t count);
  *   noh_quat_nlerp        between two rotations, along the shorter arc
  *   noh_quat_to_rotation  to axis times angle, 0 to pi
  *   noh_quat_from_rotation
- *   noh_quat_twist        the part of a rotation about one axis
  *
  * Threads: no state; any thread. */
 
@@ -126,11 +125,6 @@ void noh_quat_nlerp(const float a[4], const float b[4], float t, float out[4]);
 void noh_quat_to_rotation(const float q[4], float rotation[3]);
 void noh_quat_from_rotation(const float rotation[3], float q[4]);
 
-/* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity if q turns by pi about an axis orthogonal to
- * it (the twist is then undefined).
- * source  swing-twist decomposition: projection of the vector part on the axis */
-void noh_quat_twist(const float q[4], unsigned axis, float out[4]);
-
 static inline float noh_quat_dot(const float a[4], const float b[4])
 {
     return (a[0] * b[0] + a[1] * b[1]) + (a[2] * b[2] + a[3] * b[3]);
@@ -143,9 +137,6 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
  *   noh_sin_cos_turn   sine and cosine of a 32-bit fraction of a turn
  *   noh_atan2          the angle of a direction
  *   noh_acos           the angle of a cosine, clamped
- *   noh_exp2           a power of two
- *   noh_log2           the logarithm to base two
- *   noh_turn_from_radians, noh_radians_from_turn
  *
  * Chebyshev fits of the reduced functions, from sums, products, quotients and square roots only: the same bits on every
  * machine. Errors compare the float result with the exact function of the float argument, measured by the tests over
@@ -175,23 +166,6 @@ float noh_atan2(float y, float x);
  * ranges  x is clamped to -1..1, because rounding can move a dot product of unit vectors outside
  * errors  at most 4e-7 */
 float noh_acos(float x);
-
-/* 2 to the power x.
- * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
- * errors  at most 2e-7 relative */
-float noh_exp2(float x);
-
-/* The logarithm of x to base 2.
- * ranges  above 0 and finite; -150 for 0 and below
- * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
-float noh_log2(float x);
-
-/* Radians to a turn.
- * ranges  |radians| <= 1e6 */
-uint32_t noh_turn_from_radians(float radians);
-
-/* A turn to radians, -pi to pi. */
-float noh_radians_from_turn(uint32_t turn);
 
 /* ======== packs ======== */
 

@@ -80,9 +80,6 @@ const char *noh_pack_chunk_name(const noh_pack *pack, uint32_t chunk);
  * errors  NOT_FOUND past the last texture (where: the index, need: the count); *texture is untouched */
 noh_result noh_pack_texture_at(const noh_pack *pack, uint32_t index, noh_texture *texture, noh_error *error);
 
-/* The bytes of a mip level; format is NOH_TEXTURE_RGBA8 or another of format.h. */
-uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height);
-
 /* A mip level of a texture.
  * ranges  level below texture->header->level_count */
 noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level);
@@ -161,8 +158,6 @@ uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);
  *
  *   noh_wrinkles_of       the matrix of a mesh
  *   noh_wrinkles_weights  region weights from morph weights
- *   noh_wrinkles_area     a triangle's weight from its change of area
- *   noh_wrinkles_normal   a normal with wrinkles, blended as in shaders_es/common_wrinkle.glsl
  *
  * source   "character wrinkle" (region weights from expressions, for which it gives no formula)
  * Threads: constant data; any thread. */
@@ -183,17 +178,6 @@ noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_err
  * shapes  weights[target_count]; regions[NOH_WRINKLE_REGIONS]
  * ranges  weights finite; those below 0 count as 0 */
 void noh_wrinkles_weights(const noh_wrinkles *wrinkles, const float *weights, float *regions);
-
-/* The wrinkle weight of a triangle by its area, as in the SparseMorphTargets sample: 0.3 at rest, more when it shrinks,
- * slightly less when it grows, within 0..1. Areas are in bind space: after targets, before joints. A triangle with no
- * area at rest keeps its rest weight. */
-float noh_wrinkles_area(float area_at_rest, float area);
-
-/* Blend a wrinkle normal onto a base normal, with the wrinkle's slopes times weight.
- * shapes  base, wrinkle, out: [3] unit, tangent space; out may be base or wrinkle
- * ranges  z of both above 0; weight 0..1
- * source  reoriented normal mapping: Barre-Brisebois, Hill, Blending in Detail, 2012 */
-void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, float *out);
 
 /* ======== packs as they are sent ========
  * Packs compressed for transfer, a few times smaller, and unpacked as they arrive.
@@ -253,9 +237,6 @@ noh_result noh_wire_pack(const noh_wire *wire, noh_pack *pack, noh_error *error)
 
 /* Whether the whole pack is complete and the file has ended; never 1 for a truncated file. */
 int noh_wire_is_complete(const noh_wire *wire);
-
-/* Bytes of the file taken so far. */
-uint32_t noh_wire_bytes_read(const noh_wire *wire);
 
 #ifdef __cplusplus
 }

@@ -5,6 +5,7 @@
 #include "convert/model/model.h"
 #include "convert/wrinkle/region_mask.h"
 #include "gl/draw/gl_variants_internal.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

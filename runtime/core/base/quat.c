@@ -4,6 +4,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 
 /* Sums only, with the signs of b applied beforehand: where the processor has fused multiply-adds, gcc 12 makes them out
  * of alternating sums and differences of products, whatever -ffp-contract says. */

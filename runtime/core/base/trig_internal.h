@@ -10,6 +10,28 @@
 extern "C" {
 #endif
 
+/* 2 to the power x.
+ * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
+ * errors  at most 2e-7 relative */
+float noh_exp2(float x);
+
+/* The logarithm of x to base 2.
+ * ranges  above 0 and finite; -150 for 0 and below
+ * errors  at most 2e-7 absolute near 1, else 1e-7 relative */
+float noh_log2(float x);
+
+/* Radians to a turn.
+ * ranges  |radians| <= 1e6 */
+uint32_t noh_turn_from_radians(float radians);
+
+/* A turn to radians, -pi to pi. */
+float noh_radians_from_turn(uint32_t turn);
+
+/* The twist of q about the axis 0, 1 or 2, as a quaternion; the identity if q turns by pi about an axis orthogonal to
+ * it (the twist is then undefined).
+ * source  swing-twist decomposition: projection of the vector part on the axis */
+void noh_quat_twist(const float q[4], unsigned axis, float out[4]);
+
 #ifdef __cplusplus
 }
 #endif

@@ -9,6 +9,17 @@
 extern "C" {
 #endif
 
+/* The wrinkle weight of a triangle by its area, as in the SparseMorphTargets sample: 0.3 at rest, more when it shrinks,
+ * slightly less when it grows, within 0..1. Areas are in bind space: after targets, before joints. A triangle with no
+ * area at rest keeps its rest weight. */
+float noh_wrinkles_area(float area_at_rest, float area);
+
+/* Blend a wrinkle normal onto a base normal, with the wrinkle's slopes times weight.
+ * shapes  base, wrinkle, out: [3] unit, tangent space; out may be base or wrinkle
+ * ranges  z of both above 0; weight 0..1
+ * source  reoriented normal mapping: Barre-Brisebois, Hill, Blending in Detail, 2012 */
+void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, float *out);
+
 /* Decode a vertex's normal and tangent without normalising; their lengths are 0.57 to 1. Without tangents the tangent
  * is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);

@@ -6,6 +6,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
+#include "core/mesh/mesh_internal.h"
 
 noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_error *error)
 {

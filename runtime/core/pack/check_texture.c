@@ -1,5 +1,6 @@
 /* check_texture.c: the checker of textures. */
 #include "core/pack/check_internal.h"
+#include "core/pack/pack_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/pack.h"

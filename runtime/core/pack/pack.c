@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "core/pack/check_internal.h"
+#include "core/pack/pack_internal.h"
 
 #define CHUNK_TAG(NAME, name, tag, many) NOH_TAG_##NAME,
 #define CHUNK_MANY(NAME, name, tag, many) many,

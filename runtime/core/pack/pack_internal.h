@@ -10,6 +10,9 @@
 extern "C" {
 #endif
 
+/* The bytes of a mip level; format is NOH_TEXTURE_RGBA8 or another of format.h. */
+uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height);
+
 /* Check the chunk of the n-th graph: counts, arrays, names, nodes. noh_pack_open checks only its checksum;
  * noh_pack_graph_at (graph.h) calls this function.
  * ranges  index below the pack's count of graphs

@@ -5,6 +5,7 @@
  * (wire_etc2.c, wire_eac.c), each predicted from known texels: neighbours, and texels of the previous level, each the
  * mean of four. */
 #include "core/wire/wire_blocks_internal.h"
+#include "core/pack/pack_internal.h"
 
 #include <string.h>
 

@@ -10,10 +10,14 @@
 
 #include "noh/base.h"
 #include "noh/format.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* Bytes of the file taken so far. */
+uint32_t noh_wire_bytes_read(const noh_wire *wire);
 
 /* ---- the entropy coder ---- */
 

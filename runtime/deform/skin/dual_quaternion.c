@@ -8,6 +8,7 @@
 
 #include "core/base/math_internal.h"
 #include "deform/skin/skin_blend_internal.h"
+#include "deform/skin/skin_internal.h"
 
 /* Axes of 1000 : 1 need 14: each step halves the ratio until it is small, then doubles the number of correct digits. */
 #define POLAR_STEPS 24

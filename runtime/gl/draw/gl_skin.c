@@ -19,6 +19,7 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
+#include "deform/skin/skin_internal.h"
 
 static const float identity[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
 

@@ -18,6 +18,13 @@
 extern "C" {
 #endif
 
+/* The emotion of a name; NOH_EMOTION_COUNT: unknown. */
+noh_emotion noh_emotion_of_name(const char *name);
+
+/* Advance time while the face is not visible, at constant cost. It ends at rest, with the same gaze target and
+ * emotions; blinks, breaths and glances come at other times than with noh_face_step. */
+void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
+
 /* Compute noh_face_pose.breath alone. */
 float noh_face_breath(const noh_face *face, const noh_face_desc *desc);
 

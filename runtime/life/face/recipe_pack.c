@@ -3,6 +3,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
+#include "life/face/recipe_internal.h"
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/format.h"

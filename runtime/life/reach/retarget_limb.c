@@ -1,5 +1,6 @@
 /* retarget_limb.c: feet where the source has them, hips that go down for them, hands as far out as the source's. */
 #include "life/reach/retarget_internal.h"
+#include "core/base/trig_internal.h"
 
 #define SOFT 0.998f      /* share of a limb's length beyond which it straightens slowly */
 #define REACH 0.999f     /* share of a leg's length that the hips go down for */

@@ -21,6 +21,7 @@
 #include "core/base/name_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "deform/skin/skin_internal.h"
 
 #define KEEPS 1.25f      /* a head with a slot counts as larger by this factor */
 #define LEAP_M 0.2f      /* a head that moves farther in a frame, plus LEAP_SPEED, was teleported */

@@ -11,6 +11,7 @@
 #include "convert/pack/texture_levels.h"
 #include "convert/texture/etc2_block.h"
 #include "convert/texture/texture_blocks.h"
+#include "core/pack/pack_internal.h"
 #include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/pack.h"

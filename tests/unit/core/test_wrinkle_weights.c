@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/mesh/mesh_internal.h"
 #include "noh/format.h"
 #include "noh/pack.h"
 

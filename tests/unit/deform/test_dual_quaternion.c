@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "deform/skin/skin_internal.h"
 #include "noh/deform.h"
 #include "noh/low_core.h"
 

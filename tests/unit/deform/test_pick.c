@@ -5,6 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "core/pack/pack_internal.h"
 #include "noh/low_core.h"
 
 #define SIDE 5u /* vertices; the sheet covers 0..4 in x and y */
