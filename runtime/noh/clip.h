@@ -579,7 +579,7 @@ noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, n
  *
  * Threads: stepping only reads the bank, so any thread may step its own controllers. begin_frame, prefetch and work
  * change the cache: call them on one thread, with no other call on the bank at the same time. Calls that sample
- * (noh_controller_pose, _root_motion, _inertia_*, noh_character_update...) also change the cache when
+ * (noh_controller_pose, _root_motion, _inertia_*) also change the cache when
  * passed &bank->clips: one thread only. To pose on several threads, give each thread a noh_clip_bank_view and pass
  * &view->clips instead:
  *   noh_controller_pose(c, &view->clips, &scratch, pose, floats);   per controller, with the thread's own view, scratch

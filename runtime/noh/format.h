@@ -461,7 +461,7 @@ typedef struct noh_clip_header {
     /* 0: the errors are for the meshes that the clip was built with. joint_errors bound all points no farther from a
      * joint than the farthest vertex that it moves with a weight of 0.05 or more.
      * update_rate_error is exact for a few hundred vertices, including the farthest of each joint, and does not bound
-     * points between them (noh_time_lod_points_measure). Above 0: built without meshes; both bound points at this
+     * points between them. Above 0: built without meshes; both bound points at this
      * distance from each joint (--shell-cm), in the skeleton's unit. */
     float error_shell;
     /* The root joint in the source's first and last frame: rotation x, y, z, w, then translation. Root motion uses

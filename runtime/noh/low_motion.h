@@ -1,4 +1,4 @@
-/* low_motion.h: caches, poses and graphs step by step: for engines built of parts (noh_low.h). */
+/* low_motion.h: caches, poses and blend spaces: for engines built of parts (noh_low.h). */
 
 #ifndef NOH_LOW_MOTION_H
 #define NOH_LOW_MOTION_H

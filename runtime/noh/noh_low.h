@@ -2,9 +2,9 @@
  * It may change between minor versions; the other headers change less often.
  *
  *   low_core.h    memory, small mathematics, texels
- *   low_motion.h  clip caches, poses, graphs
+ *   low_motion.h  clip caches, poses, blend spaces
  *   low_life.h    ragdolls, springs, hair, feet, rays
- *   low_stage.h   a character and its level of detail
+ *   low_stage.h   levels of detail, palettes, rules of a flock
  *   low_gl.h      meshes, morph targets, palettes and a plain renderer on the GPU */
 #ifndef NOH_LOW_H
 #define NOH_LOW_H

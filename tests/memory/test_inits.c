@@ -17,6 +17,7 @@
 #include "stage/character/time_lod_internal.h"
 #include "motion/graph/graph_pack_internal.h"
 #include "motion/clip/clip_view_internal.h"
+#include "stage/character/character_internal.h"
 #include "noh/low_stage.h"
 
 #include <dirent.h>

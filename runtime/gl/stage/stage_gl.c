@@ -18,6 +18,7 @@
 #include "gl/stage/stage_gl_internal.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/draw/gl_light_internal.h"
+#include "stage/character/character_internal.h"
 
 /* ---- memory ---- */
 

@@ -16,6 +16,7 @@
 #include "motion/anim/sync_internal.h"
 #include "core/base/math_internal.h"
 #include "stage/actors/walkers_internal.h"
+#include "stage/character/character_internal.h"
 
 #define TURN_SPEED 4.0f
 

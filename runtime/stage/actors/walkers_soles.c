@@ -9,6 +9,7 @@
 #include "noh/low_stage.h"
 #include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
+#include "stage/character/character_internal.h"
 
 #define LOWER 0.0004f   /* leg lengths: changes to the other foot if that is lower by this */
 #define AIR_FROM 0.002f /* leg lengths above the standing foot: a foot starts to be in the air, */

@@ -15,6 +15,7 @@
 #include "noh/low_stage.h"
 #include "noh/noh.h"
 #include "stage/actors/walkers_internal.h"
+#include "stage/character/character_internal.h"
 
 #define TURN_HALF_LIFE_S 0.12f /* of the velocity that headings follow */
 #define EVEN_HALF_LIFE_S 0.06f /* of the speed that blends follow */

@@ -15,6 +15,7 @@
 #define NOH_STAGE_MODULE_INTERNAL_H
 
 #include "motion/anim/controller_pose_internal.h"
+#include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"

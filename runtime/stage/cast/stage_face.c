@@ -17,6 +17,7 @@
 #include "motion/anim/clock_internal.h"
 #include "stage/character/character_internal.h"
 #include "stage/cast/stage_face_internal.h"
+#include "stage/character/time_lod_internal.h"
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */
 #define NECK_SHARE 0.4f

@@ -3,6 +3,7 @@
 #include "core/base/assert_internal.h"
 #include "motion/anim/controller_internal.h"
 #include "stage/character/character_internal.h"
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_stage.h"

@@ -10,6 +10,7 @@
 
 #include "motion/anim/clip_set_internal.h"
 #include "stage/character/measure_internal.h"
+#include "stage/character/time_lod_internal.h"
 
 #define STEP_TICKS 400u /* multiples of this contain the frames at 24, 30, 60 and 120 Hz */
 

@@ -8,6 +8,7 @@
 #ifndef NOH_CHARACTER_JOINT_LOD_INTERNAL_H
 #define NOH_CHARACTER_JOINT_LOD_INTERNAL_H
 
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/low_stage.h"
 

@@ -7,6 +7,7 @@
 #include "motion/anim/clip_set_internal.h"
 #include "core/base/math_internal.h"
 #include "stage/character/measure_internal.h"
+#include "stage/character/time_lod_internal.h"
 
 const char *noh_probe_fault(const noh_time_probe *p, uint32_t clip)
 {

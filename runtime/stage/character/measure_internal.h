@@ -2,6 +2,7 @@
 #ifndef NOH_CHARACTER_MEASURE_INTERNAL_H
 #define NOH_CHARACTER_MEASURE_INTERNAL_H
 
+#include "stage/character/time_lod_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"

@@ -11,6 +11,7 @@
 #include "stage/character/scheduler_internal.h"
 #include "stage/character/time_lod_internal.h"
 #include "motion/graph/graph_internal.h"
+#include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"

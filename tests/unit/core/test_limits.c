@@ -14,6 +14,7 @@
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "stage/character/time_lod_internal.h"
+#include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/gl_device.h"

@@ -3,6 +3,7 @@
 #ifndef NOH_CONVERT_CODEC_CLIP_ERRORS_H
 #define NOH_CONVERT_CODEC_CLIP_ERRORS_H
 
+#include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_stage.h"

@@ -2,6 +2,7 @@
 #ifndef NOH_CONVERT_SKIN_JOINT_POINTS_H
 #define NOH_CONVERT_SKIN_JOINT_POINTS_H
 
+#include "stage/character/time_lod_internal.h"
 #include "noh/low_stage.h"
 #include "convert/model/model.h"
 

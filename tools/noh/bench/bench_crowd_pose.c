@@ -8,6 +8,7 @@
 #include "bench_job.h"
 #include "cli/message.h"
 #include "stage/character/time_lod_internal.h"
+#include "stage/character/character_internal.h"
 
 #define SAMPLE_NS 2e7
 #define CROWD 1000u
