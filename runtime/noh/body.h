@@ -331,11 +331,10 @@ int noh_point_touch(const noh_world *world, float radius, float position[3], flo
 noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *error);
 
 /* ======== two bones, and a head that looks ========
- * Closed-form inverse kinematics: an arm or a leg that reaches a point, a head that looks at one.
+ * Closed-form inverse kinematics of an arm or a leg that reaches a point; the limits of a head that looks at one
+ * (noh_gaze_modifier, modules.h).
  *
  *   noh_ik_two_bone     turn two bones so that their end meets a target
- *   noh_ik_look_init    look ahead
- *   noh_ik_look_step    turn towards a target, within a cone, at a limited speed
  *
  * For chains of more bones see noh_ik_chain_solve. All positions and directions of a call are in the same space, which
  * may be any; rotations are applied in that space, on the left of a joint's rotation.
@@ -344,7 +343,7 @@ noh_result noh_terrain_of(const noh_pack *pack, noh_field *field, noh_error *err
  * at the root or in line with the pole give a pose and never NaN.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 11 (law of cosines, a look-at with a limit), with
  *          its degenerate cases added
- * Threads: no state but the noh_ik_look passed; any thread. */
+ * Threads: no state; any thread. */
 
 /* ---- two bones ---- */
 
@@ -391,21 +390,6 @@ typedef struct noh_ik_look {
     /* 0: no target, or a released one; 1: a target; 2, 3: a target behind, over the left or the right shoulder */
     uint32_t follows;
 } noh_ik_look;
-
-/* Make a look ahead.
- * shapes  ahead[3], unit: direction of the head at rest */
-void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
-
-/* Advance time and turn the look towards a target along a great circle, never beyond the cone. Targets outside the cone
- * are approached as far as the cone allows. Within 20 degrees of straight behind, the look stays over the shoulder from
- * which the target came, instead of turning from side to side with every small motion.
- * ranges   seconds >= 0
- * ahead    unit; of the animated pose, in the space of the head's parent
- * target   from the head, any length; NULL or 0: no target
- * rotation turns ahead to the look
- * source   Granberg 2009, chapter 11, "Look-At Inverse Kinematics" */
-void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
-                      float seconds, float rotation[4]);
 
 /* ======== gaze ======== */
 

@@ -67,11 +67,6 @@ typedef struct noh_morph_kernel {
     void (*finish)(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out);
 } noh_morph_kernel;
 
-/* Compute what a half-float accumulator on a GPU contains after blending: the sum is rounded to half after each
- * target. */
-void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
-                              const noh_morph_layers *layers);
-
 /* Compute a vertex as drawn: position, normal, tangent and texture coordinates of the bind pose plus their differences.
  * The normal is normalised; the tangent is made orthogonal to it and normalised, and keeps its handedness. A direction
  * that vanishes becomes the bind pose's.
@@ -89,7 +84,6 @@ void noh_morph_uv(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t
  *
  *   noh_morph_finished_stride   bytes of a vertex
  *   noh_morph_finish            vertices from accumulated layers
- *   noh_morph_finish_scalar     the same in plain C: the reference
  *
  * A finished vertex has its position as three floats, with the bits of noh_morph_vertex; its normal as an octahedral
  * pair of 16-bit integers; and, if the mesh has tangents, its tangent as such a pair with the handedness in the lowest
@@ -117,8 +111,6 @@ uint32_t noh_morph_finished_stride(const noh_mesh *mesh);
  * shapes  out[count][noh_morph_finished_stride(mesh)], aligned to 4
  * ranges  first + count at most vertex_count */
 void noh_morph_finish(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count, void *out);
-void noh_morph_finish_scalar(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count,
-                             void *out);
 
 /* ======== bounds ========
  * The bounding box of a deformed mesh, computed without reading its vertices.

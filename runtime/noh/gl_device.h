@@ -272,9 +272,7 @@ unsigned noh_gl_error_take(const noh_gl_api *api);
 /* ======== what a GPU can do ========
  * Capabilities of a context.
  *
- *   noh_gl_caps_probe        read the limits and test each capability: draw and read back
- *   noh_gl_geometry_version  the #version line for geometry shaders
- *   noh_gl_geometry_defines  the #extension line for geometry shaders
+ *   noh_gl_caps_probe  read the limits and test each capability: draw and read back
  *
  * Extension strings can be wrong either way: OSMesa blends floats without listing the extension, and some drivers list
  * formats that they cannot render. So each capability is tested once, on 16 texels. The struct is plain data: a test,

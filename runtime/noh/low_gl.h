@@ -24,13 +24,6 @@
 extern "C" {
 #endif
 
-/* ======== what a GPU can do ======== */
-
-/* `version` and `geometry_defines` for the desc of a program with a geometry stage. The version is NULL
- * without geometry shaders; the defines are NULL if no #extension is needed. */
-const char *noh_gl_geometry_version(const noh_gl_api *api);
-const char *noh_gl_geometry_defines(const noh_gl_api *api);
-
 /* ======== GL objects ========
  * GL objects with counted bytes.
  *
@@ -208,7 +201,6 @@ extern const float noh_sh_cosine_lobe[NOH_SH_ORDER_MAX];
  *   noh_gl_morph_binding_of   where a vertex shader finds an instance's deltas
  *   noh_gl_morph_plan_of      the plan of an accumulator
  *   noh_gl_morph_instance     the number of an instance of a mesh
- *   noh_gl_morph_streamed     the targets that the path streams adds
  *   noh_gl_morph_bind         bind an instance's textures for your own draw
  *   noh_gl_morph_bind_streams bind the streams for your own draw
  *   noh_morph_path_name, noh_accumulate_name
@@ -331,12 +323,6 @@ void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
 noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const struct noh_gl_mesh *drawn, noh_error *error);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
-
-/* Get the targets that the path streams adds, in index order: those with nonzero weights, at most the four with the
- * largest |weight| x radius.
- * shapes   weights[target_count]
- * returns  the number of targets */
-uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
 
 /* Bind the textures of a binding to their units: the accumulated deltas to NOH_UNIT_LAYERS; on the path direct the
  * three tables to NOH_UNIT_LAYERS, NOH_UNIT_LISTS and the next. */
@@ -500,9 +486,6 @@ typedef struct noh_gl_variant {
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
         u_wrinkle_models, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
 } noh_gl_variant;
-
-/* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have NOH_FEATURE_ALPHA at most. */
-uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
 
 /* The key of a mesh with given bindings; set `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features`
  * yourself, they are 0.

@@ -213,8 +213,6 @@ noh_result noh_ragdoll_rig_make(const noh_ragdoll_source *source, const noh_ragd
  *
  *   noh_ground_below        the ground below a point: from a world, or a function of the game
  *   noh_feet_rig_make       legs and soles of any skeleton, by joint names and skin
- *   noh_feet_init           an initial state
- *   noh_feet_step           move pelvis and legs of a pose so that the soles meet the ground
  *
  * Clips are made on a flat floor: the model's plane y = 0 at its place. A foot keeps its clip's height above that floor
  * as its height above the ground, and leans with the ground where that is flat enough to stand on. A foot is planted
@@ -225,7 +223,7 @@ noh_result noh_ragdoll_rig_make(const noh_ragdoll_source *source, const noh_ragd
  * Soles do not enter the ground where the legs reach. Heights are stored in world space, so a place that jumps from
  * step to step moves the body smoothly. Without ground within reach below a sole, that foot keeps its clip.
  * source   ozz-animation, sample_foot_ik (rays, the pelvis by the foot that needs most, the ankle by the normal)
- * Threads: no state but the noh_feet passed; any thread, if the ground's function allows it. */
+ * Threads: no state; any thread, if the ground's function allows it. */
 
 /* ---- the ground ---- */
 
@@ -240,46 +238,6 @@ float noh_ground_below(const noh_ground *ground, const float from[3], float dept
  * source   as for a ragdoll; metres and mass are unused
  * errors   NOT_FOUND no thighs, or no thigh with a shin and a skinned foot */
 noh_result noh_feet_rig_make(const noh_ragdoll_source *source, noh_feet_rig *rig, noh_error *error);
-
-/* ---- feet ---- */
-
-/* The state of a foot. Heights and positions are in world space. */
-typedef struct noh_foot {
-    float height, speed; /* of the ground below it, smoothed */
-    float normal[3];     /* of the ground that it leans with */
-    float was[3][3];     /* heel, ball and toes, as in the clip */
-    float moved[2];      /* x and z, from the clip's position */
-    float held[2];       /* x and z where `part` is planted */
-    float stands;        /* 0..1: how far it is planted */
-    uint32_t part;       /* the lowest: 0 heel, 1 ball, 2 toes */
-    uint32_t is_held;    /* 1: it is planted */
-    uint32_t has_ground; /* 1: there was ground below it */
-} noh_foot;
-
-/* The state of all feet. A copy continues identically. */
-typedef struct noh_feet {
-    noh_foot feet[NOH_FEET_LEGS_MAX];
-    float pelvis, speed; /* height of the pelvis above the floor of its clips, in world space */
-    uint32_t begun;
-    /* 1 + the leg that the caller's placement keeps still: no other leg is planted, and no foot is moved along the
-     * ground; 0: none, every leg is planted while its clip holds it still */
-    uint32_t kept;
-} noh_feet;
-
-void noh_feet_init(noh_feet *feet);
-
-/* The transform of a model. */
-typedef struct noh_feet_place {
-    float position[3], rotation[4]; /* its up must be the world's, +Y */
-    float scale;                    /* world units per unit of the skeleton, above 0 */
-} noh_feet_place;
-
-/* Advance time, and put a pose on the ground.
- * local    [joint_count], from a clip; changes the rig's top, thighs, shins and feet
- * seconds  since the last step, 0..; 0: repeat the same pose
- * cut      1: ignore the previous state, as for a new noh_feet */
-void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
-                   const noh_feet_place *place, const noh_ground *ground, float seconds, int cut);
 
 /* ======== hair ========
  * Moving hair: a few control hairs; the visible hair is interpolated between them.
@@ -614,14 +572,13 @@ void noh_spring_rotations(const noh_spring_move *moves, uint32_t count);
  *
  *   noh_gaze_rig_make   find the joints that turn, by name
  *
- * The head turns as in body.h (noh_ik_look_step): towards a target outside its cone as far as it can. Spine and neck
- * take their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter
+ * The head turns towards a target outside its cone as far as it can. Spine and neck take their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter
  * of the angle themselves. Animation of eye joints in clips is overwritten.
  *
  * For bodies without an animated face: faces (face.h, modules.h) have their own gaze.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 11, "Look-At Inverse Kinematics", which turns
  *          only the head
- * Threads: no state but the noh_gaze passed; any thread. */
+ * Threads: no state; any thread. */
 
 /* Find spine, neck, head and eyes by joint names such as 'mixamorig:Spine1', 'neck.x', 'b_Head_05', 'LeftEye'; joints
  * of the spine have no legs below them. The body must face +z in the bind pose. Without eye joints, the eyes are at the
@@ -647,7 +604,7 @@ typedef struct noh_gaze {
  * An arm is two bones (noh_ik_two_bone) that slow down before they are straight; its elbow keeps its side. A hand moves
  * to its point within 0.35 s, and back as smoothly; once there it stays on the point as it moves. The arm points at a
  * point out of reach. The hand keeps its angle to the forearm.
- * Threads: no state but the noh_reach passed; any thread. */
+ * Threads: no state; any thread. */
 
 /* Find upper arm, forearm and hand by the names that noh_ragdoll_find_rows knows.
  * errors   NOT_FOUND no upper arm has a forearm and a hand, or there are no thighs */

@@ -106,10 +106,6 @@ float noh_lod_scale(float distance_m, float field_of_view_rad, uint32_t viewport
 void noh_lod_choose(noh_lod *d, const noh_lod_table *table, const noh_lod_settings *settings, float pixels_per_metre,
                     const float *update_error_m, int64_t clock);
 
-/* Call when the camera has jumped or the character was out of view: the next choice ignores the current levels and does
- * not fade. */
-void noh_lod_cut(noh_lod *d);
-
 /* Progress of a change of mesh level: 0 only mesh_before, 1 only mesh, smooth at both ends (smoothstep). For a dither
  * of two draws, or a geomorph along the collapsed edges. The next change waits until it is 1. */
 float noh_lod_fade(const noh_lod *d, int64_t clock);

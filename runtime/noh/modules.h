@@ -169,8 +169,8 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
  *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
  *   kind.modifiers = modifiers, kind.modifier_count = 4;
  *
- * List gaze before feet, and hands and springs after them: feet move the body. The state is a noh_feet; the stage
- * plans, saves, restores, forks and hashes it. The game may move places along the ground in coarse steps; bodies follow
+ * List gaze before feet, and hands and springs after them: feet move the body. The stage plans, saves,
+ * restores, forks and hashes their state. The game may move places along the ground in coarse steps; bodies follow
  * smoothly.
  * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
  * whose actors are attached to others: a modifier does not know their own place.

@@ -5,6 +5,7 @@
 #include "support/level_fixture.h"
 #include "deform/morph/morph_internal.h"
 #include "gl/morph/gl_morph_internal.h"
+#include "deform/morph/morph_finish_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

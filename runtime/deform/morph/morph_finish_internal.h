@@ -7,6 +7,10 @@
 #include "noh/deform.h"
 #include "noh/pack.h"
 
+/* noh_morph_finish in plain C: the reference. */
+void noh_morph_finish_scalar(const noh_mesh *mesh, const noh_morph_layers *layers, uint32_t first, uint32_t count,
+                             void *out);
+
 /* Adding it to a number below 2^22 rounds to the nearest integer, ties to even, in the lowest bits. */
 #define NOH_ROUNDER 12582912.0f
 

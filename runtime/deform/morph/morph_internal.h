@@ -10,6 +10,11 @@
 extern "C" {
 #endif
 
+/* Compute what a half-float accumulator on a GPU contains after blending: the sum is rounded to half after each
+ * target. */
+void noh_morph_accumulate_f16(const noh_mesh *mesh, const float *weights, noh_half_mode mode,
+                              const noh_morph_layers *layers);
+
 /* Accumulate in plain C: the reference for the SIMD paths. */
 void noh_morph_accumulate_scalar(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers);
 

@@ -6,10 +6,18 @@
 
 #include "noh/base.h"
 #include "noh/gl_device.h"
+#include "noh/low_gl.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ======== what a GPU can do ======== */
+
+/* `version` and `geometry_defines` for the desc of a program with a geometry stage. The version is NULL
+ * without geometry shaders; the defines are NULL if no #extension is needed. */
+const char *noh_gl_geometry_version(const noh_gl_api *api);
+const char *noh_gl_geometry_defines(const noh_gl_api *api);
 
 /* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
 int noh_gl_has_extension(const noh_gl_api *api, const char *name);

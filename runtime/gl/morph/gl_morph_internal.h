@@ -17,6 +17,12 @@
 extern "C" {
 #endif
 
+/* Get the targets that the path streams adds, in index order: those with nonzero weights, at most the four with the
+ * largest |weight| x radius.
+ * shapes   weights[target_count]
+ * returns  the number of targets */
+uint32_t noh_gl_morph_streamed(const noh_mesh *mesh, const float *weights, uint32_t targets[NOH_MORPH_STREAMS_MAX]);
+
 /* Release the GL objects of a lost context without GL calls (gl_device.h). They may be restored later. */
 void noh_gl_morph_forget(noh_gl_morph *morph);
 

@@ -9,6 +9,44 @@
 extern "C" {
 #endif
 
+/* The state of a foot. Heights and positions are in world space. */
+typedef struct noh_foot {
+    float height, speed; /* of the ground below it, smoothed */
+    float normal[3];     /* of the ground that it leans with */
+    float was[3][3];     /* heel, ball and toes, as in the clip */
+    float moved[2];      /* x and z, from the clip's position */
+    float held[2];       /* x and z where `part` is planted */
+    float stands;        /* 0..1: how far it is planted */
+    uint32_t part;       /* the lowest: 0 heel, 1 ball, 2 toes */
+    uint32_t is_held;    /* 1: it is planted */
+    uint32_t has_ground; /* 1: there was ground below it */
+} noh_foot;
+
+/* The state of all feet. A copy continues identically. */
+typedef struct noh_feet {
+    noh_foot feet[NOH_FEET_LEGS_MAX];
+    float pelvis, speed; /* height of the pelvis above the floor of its clips, in world space */
+    uint32_t begun;
+    /* 1 + the leg that the caller's placement keeps still: no other leg is planted, and no foot is moved along the
+     * ground; 0: none, every leg is planted while its clip holds it still */
+    uint32_t kept;
+} noh_feet;
+
+void noh_feet_init(noh_feet *feet);
+
+/* The transform of a model. */
+typedef struct noh_feet_place {
+    float position[3], rotation[4]; /* its up must be the world's, +Y */
+    float scale;                    /* world units per unit of the skeleton, above 0 */
+} noh_feet_place;
+
+/* Advance time, and put a pose on the ground.
+ * local    [joint_count], from a clip; changes the rig's top, thighs, shins and feet
+ * seconds  since the last step, 0..; 0: repeat the same pose
+ * cut      1: ignore the previous state, as for a new noh_feet */
+void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
+                   const noh_feet_place *place, const noh_ground *ground, float seconds, int cut);
+
 /* ---- feet ---- */
 
 /* Move the origin of the world: all positions p become p - by. */

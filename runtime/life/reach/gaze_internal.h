@@ -9,6 +9,21 @@
 extern "C" {
 #endif
 
+/* Make a look ahead.
+ * shapes  ahead[3], unit: direction of the head at rest */
+void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
+
+/* Advance time and turn the look towards a target along a great circle, never beyond the cone. Targets outside the cone
+ * are approached as far as the cone allows. Within 20 degrees of straight behind, the look stays over the shoulder from
+ * which the target came, instead of turning from side to side with every small motion.
+ * ranges   seconds >= 0
+ * ahead    unit; of the animated pose, in the space of the head's parent
+ * target   from the head, any length; NULL or 0: no target
+ * rotation turns ahead to the look
+ * source   Granberg 2009, chapter 11, "Look-At Inverse Kinematics" */
+void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
+                      float seconds, float rotation[4]);
+
 void noh_gaze_init(noh_gaze *gaze);
 
 /* Advance time, and turn a pose.

@@ -5,6 +5,7 @@
 #include "noh/low_core.h"
 #include "life/physics/vector_internal.h"
 #include "life/reach/rig_internal.h"
+#include "life/reach/gaze_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
 

@@ -44,6 +44,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 #include "stage/cast/module_internal.h"
+#include "life/reach/feet_internal.h"
 
 #ifdef __cplusplus
 extern "C" {

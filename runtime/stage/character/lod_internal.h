@@ -10,6 +10,10 @@
 extern "C" {
 #endif
 
+/* Call when the camera has jumped or the character was out of view: the next choice ignores the current levels and does
+ * not fade. */
+void noh_lod_cut(noh_lod *d);
+
 /* Show one mesh level in full detail otherwise, regardless of error, for tools and debugging. For a level that is not
  * loaded or past the last, the nearest existing one is shown. The next noh_lod_choose does not fade. */
 void noh_lod_set_mesh(noh_lod *d, const noh_lod_table *table, uint32_t level, float pixels_per_metre);

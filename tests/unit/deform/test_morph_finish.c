@@ -2,6 +2,7 @@
  * noh_morph_vertex's as closely as their formats allow; what nothing moves has the pack's own words. */
 #include "support/support.h"
 #include "deform/morph/morph_internal.h"
+#include "deform/morph/morph_finish_internal.h"
 
 #include <math.h>
 #include <stdlib.h>

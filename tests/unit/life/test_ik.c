@@ -1,6 +1,7 @@
 /* Tests of runtime/sim/ik*.c in closed form: ends on their targets, poles, limits, and a million cases at random.
  * cross: slow, a million cases */
 #include "life/reach/rig_internal.h"
+#include "life/reach/gaze_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 

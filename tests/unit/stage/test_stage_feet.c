@@ -4,6 +4,7 @@
 
 #include <math.h>
 
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -8,6 +8,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -13,6 +13,7 @@
 #include "bench_job.h"
 #include "tool_shaders.gen.h"
 #include "cli/message.h"
+#include "gl/device/gl_api_internal.h"
 #include "noh/low_core.h"
 
 typedef struct quad_target {

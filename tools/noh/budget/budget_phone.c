@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "gl/draw/gl_variants_internal.h"
 #include "noh/format.h"
 #include "noh/low_gl.h"
 #include "phones.gen.h"

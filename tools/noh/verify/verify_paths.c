@@ -7,6 +7,8 @@
 
 #include "cli/message.h"
 #include "deform/morph/morph_internal.h"
+#include "deform/morph/morph_finish_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"
