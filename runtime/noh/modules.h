@@ -123,7 +123,7 @@ typedef struct noh_actor_hair_desc {
     uint32_t head_max;      /* heads visible at once, 1..NOH_STAGE_ACTORS_MAX; any more have no hair */
     uint32_t near_max;      /* heads whose hair moves at once, 0..NOH_HAIR_NEAR_MAX */
     int in_state;           /* 1: simulated by noh_actor_hair_modifier */
-    float wind[3];          /* as in noh_hair_carrier, in the world; may change between frames */
+    float wind[3];          /* mean acceleration, metres per second squared, in the world; gusts reach twice as much */
 } noh_actor_hair_desc;
 
 /* A visible head. */
@@ -144,11 +144,11 @@ noh_result noh_actor_hair_desc_make(const noh_haircut *cut, const noh_pack *pack
                                     noh_actor_hair_desc *out, noh_error *error);
 
 /* The modifier that simulates hair in the stage. `desc` must outlive the stage and stay where it is.
- * memory  16 bytes and noh_hair_size, in each actor */
+ * memory  128 bytes, and 40 for each point of its control hairs, in each actor */
 noh_modifier noh_actor_hair_modifier(const noh_actor_hair_desc *desc);
 
-/* The exact bytes: about 80 for each head and, with in_state 0, noh_hair_size for each that moves. 0 for an impossible
- * desc. */
+/* The exact bytes: about 80 for each head and, with in_state 0, 112 and 40 for each point of one that moves. 0 for an
+ * impossible desc. */
 size_t noh_actor_hair_size(const noh_actor_hair_desc *desc);
 
 /* desc    must outlive the hair and stay where it is; with in_state 1 it is the one given to noh_actor_hair_modifier
@@ -334,63 +334,21 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 /* ======== springs ========
  * Springs of a kind: chains of joints that swing as its actors move.
  *
- *   noh_springs_module                   for noh_kind_desc.springs: the springs of the pack (noh build --springs)
- *   noh_springs_of_pack                  get the springs of a pack
- *   noh_springs_size, noh_springs_init   chains and colliders of a skeleton, shared by all its actors
- *   noh_springs_modifier                 the modifier that runs them, for noh_kind_desc.modifiers
+ *   noh_springs_module   for noh_kind_desc.springs: the springs of the pack (noh build --springs)
  *
- * For the springs of a pack noh_springs_module is enough: the stage creates them and runs them after all other
- * modifiers. The other calls are for springs described by the game.
- *
- * The stage plans, saves, forks and hashes the state of springs. It has the same bits for any number of jobs. A chain
+ * The stage creates them, runs them after all modifiers, and plans, saves, forks and hashes the state of springs. It has the same bits for any number of jobs. A chain
  * is a noh_spring (low_life.h), moved by the parent of its first joint as posed by clips, faces and earlier modifiers.
  * Springs replace what clips do to the joints of a chain; chains rest in the bind pose.
  *
  * A chain shorter than NOH_SPRINGS_FADE_PIXELS on the screen fades to its rest. Below half of that length it stays at
  * rest and costs nothing. Larger again, it starts from rest and fades in. All chains are at rest after a cut.
- * Threads: noh_springs_init as any init; afterwards it is read only. */
+ * Threads: as the stage. */
 
 #define NOH_SPRINGS_FADE_PIXELS 16.0f
-
-/* Rows, chains and capsules: see format.h. All are read at init. */
-typedef struct noh_springs_desc {
-    noh_skeleton skeleton; /* of the kinds that use it */
-    float metres;          /* of one unit of the skeleton: noh_skeleton_header.unit_cm / 100 */
-    const noh_spring_row *rows;
-    uint32_t row_count; /* 1..NOH_JOINTS_MAX */
-    uint32_t chain_count;
-    const noh_spring_chain *chains; /* simulated in this order: a chain attached to another comes after it */
-    const noh_spring_capsule *colliders;
-    uint32_t collider_count; /* 0..NOH_SPRING_COLLIDERS_MAX */
-    float restitution;       /* noh_spring_desc.restitution of all chains; 0 for a pack's springs */
-} noh_springs_desc;
-
-typedef struct noh_springs noh_springs;
 
 /* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the
  * pack has none. */
 noh_module noh_springs_module(void);
-
-/* Get the springs that a pack has for one of its skeletons. `desc` points into the pack.
- * returns  0: the pack has none, and *desc is untouched */
-int noh_springs_of_pack(const noh_pack *pack, uint32_t skeleton, noh_springs_desc *desc);
-
-/* Get the state_bytes and scratch_bytes of the modifier, for a valid desc. */
-void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size_t *scratch_bytes);
-
-/* Get the modifier. The springs must outlive the stage. The kind must have the desc's skeleton; springs do not move a
- * kind with fewer joints.
- * memory  in each actor: 4 bytes for each chain, rounded up to 16, and a noh_spring for each */
-noh_modifier noh_springs_modifier(const noh_springs *springs);
-
-/* The exact bytes; 0 for counts that are impossible. */
-size_t noh_springs_size(const noh_springs_desc *desc);
-
-/* errors  ARG memory is NULL or misaligned, a chain's rows are not there or not parent and child, a joint swings twice,
- *         or a number is out of its range (where: the chain, row or collider); LIMIT a count, or the state of
- *         one actor would have more than NOH_MODIFIER_BYTES_MAX; MEMORY it is too small */
-noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *desc, noh_springs **springs,
-                            noh_error *error);
 
 /* ======== faces of actors ========
  * Faces of actors: blinking, gaze, emotions, breathing, and small idle motion.

@@ -10,6 +10,7 @@
 #include "file/pack_file.h"
 #include "life/hair/haircut_internal.h"
 #include "stage/actors/actor_hair_internal.h"
+#include "life/hair/hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/format.h"

@@ -24,6 +24,8 @@
 #include "../../platform/platform.h"
 #include "gl/device/gl_api_internal.h"
 #include "gl/device/gl_quirks_internal.h"
+#include "gl/device/gl_timer_internal.h"
+#include "core/base/half_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

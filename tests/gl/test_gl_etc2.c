@@ -8,6 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
+#include "core/base/half_internal.h"
 #include "noh/low_core.h"
 
 #define WIDTH 70u

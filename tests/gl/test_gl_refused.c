@@ -6,6 +6,7 @@
 #include "support/renderer.h"
 
 #include "gpu/gpu.h"
+#include "gl/device/gl_timer_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

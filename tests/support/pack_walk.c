@@ -6,6 +6,7 @@
 #include "deform/morph/morph_internal.h"
 #include "motion/graph/graph_internal.h"
 #include "motion/graph/graph_pack_internal.h"
+#include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -1,3 +1,4 @@
+#include "core/base/half_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 

@@ -1,5 +1,6 @@
 /* etc2.c: decoding ETC2 and EAC. A block is read as two words, the most significant byte first; texel x, y of it has
  * the number 4 x + y. */
+#include "core/base/half_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_core.h"

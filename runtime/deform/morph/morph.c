@@ -14,6 +14,7 @@
 #include "core/base/math_internal.h"
 #include "deform/morph/morph_accumulate_internal.h"
 #include "deform/morph/morph_finish_internal.h"
+#include "core/base/half_internal.h"
 
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {

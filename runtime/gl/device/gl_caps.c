@@ -15,6 +15,7 @@
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
 #include "gl/device/gl_quirks_internal.h"
+#include "core/base/half_internal.h"
 #include "shaders.gen.h"
 
 #define TEXELS 16

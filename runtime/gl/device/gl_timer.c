@@ -3,6 +3,7 @@
 #include "gl/device/gl_names_internal.h"
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
+#include "gl/device/gl_timer_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 

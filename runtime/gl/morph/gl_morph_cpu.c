@@ -5,6 +5,7 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "deform/morph/morph_internal.h"
+#include "core/base/half_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

@@ -7,6 +7,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "life/hair/hair_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_life.h"

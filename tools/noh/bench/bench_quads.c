@@ -14,6 +14,7 @@
 #include "tool_shaders.gen.h"
 #include "cli/message.h"
 #include "gl/device/gl_api_internal.h"
+#include "core/base/half_internal.h"
 #include "noh/low_core.h"
 
 typedef struct quad_target {

@@ -1,6 +1,7 @@
 #include "view/view_app.h"
 #include "cli/message.h"
 #include "file/png_file.h"
+#include "gl/device/gl_timer_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/gl_device.h"

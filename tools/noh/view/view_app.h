@@ -28,6 +28,7 @@
 #include <stdio.h>
 
 #include "draw/framing.h"
+#include "gl/device/gl_timer_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
