@@ -353,15 +353,10 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set,
 
 /* Advance time and deliver events. fn may be NULL.
  * A step delivers at most NOH_STEP_EVENTS_MAX events. Later keys are passed without delivery, and
- * NOH_CONTROLLER_EVENTS_CUT is set in c->flags until the next step. noh_controller_events_max gives an upper bound
- * beforehand.
+ * NOH_CONTROLLER_EVENTS_CUT is set in c->flags until the next step.
  * ranges   ticks 0..2^32-1; 0 does nothing. The clock stops at INT64_MAX
  * returns  the number of events delivered */
 uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
-
-/* Upper bound on the events of a step, including running changes, if the callback starts and moves nothing. At most
- * NOH_STEP_EVENTS_MAX. */
-uint32_t noh_controller_events_max(const noh_controller *c, const noh_clip_set *set, uint32_t ticks);
 
 /* Bytes to copy to clone or save a controller. Align the copy to NOH_MEMORY_ALIGN too. */
 size_t noh_controller_bytes(const noh_controller *c);

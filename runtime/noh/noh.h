@@ -79,7 +79,7 @@ typedef struct noh_lod_settings {
  * The game provides the block, then spawns, plays, steps and draws. Nothing is allocated after init.
  *
  *   plan     noh_stage_plan_make, noh_stage_plan_parts, noh_stage_init, noh_stage_delete, noh_stage_restore,
- *            noh_stage_plan_of, noh_stage_stats_of
+ *            noh_stage_stats_of
  *   names    noh_stage_find, noh_stage_name
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
  *            noh_actor_place_between, noh_actor_cut, noh_actor_set_appearance, noh_actor_attach
@@ -349,8 +349,6 @@ void noh_stage_delete(noh_stage *stage);
 /* Make the GL objects again in a new context (gl_device.h): the next frame shows what it would have shown.
  * errors  GL, MEMORY, DATA. The stage then has no GL objects; restore may be called again */
 noh_result noh_stage_restore(noh_stage *stage, noh_error *error);
-
-const noh_stage_plan *noh_stage_plan_of(const noh_stage *stage);
 
 /* Counts of the last frame, and high-water marks for planning the next build. Not part of the state. */
 typedef struct noh_stage_stats {

@@ -163,19 +163,3 @@ uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_pa
     }
     return passed;
 }
-
-uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs)
-{
-    uint64_t duration = (uint64_t)duration_ticks * 65536u, passes = runs, most;
-    /* A comb of period c has at most floor(x / c) + 1 teeth in a closed interval of length x. */
-    if (duration && loop == NOH_LOOP_REPEAT) {
-        passes += travel / duration;
-    } else if (duration && loop == NOH_LOOP_PING_PONG) {
-        passes = 2u * (passes + travel / (2u * duration)); /* there and back: two combs */
-    }
-    if (key_count == 0) {
-        return 0;
-    }
-    most = passes > UINT32_MAX ? UINT32_MAX : passes * key_count;
-    return most > UINT32_MAX ? UINT32_MAX : (uint32_t)most;
-}

@@ -46,10 +46,6 @@ int noh_events_first(const noh_event_key *keys, uint32_t count, const noh_passag
 uint32_t noh_events_pass(const noh_event_key *keys, uint32_t count, const noh_passage *passage, uint32_t limit,
                          noh_key_fn fn, void *user);
 
-/* Upper bound on the occurrences that a given travel can pass; saturates at UINT32_MAX.
- * units   travel: total movement, 1/65,536 ticks; runs: number of stretches of constant direction, at least 1 */
-uint32_t noh_events_max(uint32_t key_count, uint32_t duration_ticks, noh_loop loop, uint64_t travel, uint32_t runs);
-
 #ifdef __cplusplus
 }
 #endif

@@ -190,12 +190,6 @@ noh_result noh_stage_restore(noh_stage *stage, noh_error *error)
     return stage->gpu ? stage->desc.gpu->restore(stage, error) : NOH_OK;
 }
 
-const noh_stage_plan *noh_stage_plan_of(const noh_stage *stage)
-{
-    NOH_ASSERT(stage);
-    return stage->plan;
-}
-
 const noh_stage_stats *noh_stage_stats_of(const noh_stage *stage)
 {
     NOH_ASSERT(stage);

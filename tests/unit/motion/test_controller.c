@@ -1162,7 +1162,6 @@ static void damaged_blocks_do_no_harm(void **state)
         for (int k = 0; k < 3; k++) {
             step(&g, 700);
             take_pose(&g);
-            (void)noh_controller_events_max(g.c, &g.s.set, 10000);
             (void)noh_controller_inertia_capture(g.c, &g.s.set, &g.scratch, NULL);
             if (noh_controller_check(g.memory, sizeof g.memory, &g.s.set, &error) != NOH_OK)
                 fail_msg("round %d: %s (%u)", round, error.what, (unsigned)error.where);
