@@ -1,6 +1,7 @@
 /* null_objects.c: objects of the GL that does nothing: names, bindings, storage. */
 #include "null_internal.h"
 
+#include "gl/device/gl_memory_internal.h"
 #include "noh/low_gl.h"
 
 #include <string.h>

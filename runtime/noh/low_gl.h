@@ -28,12 +28,9 @@ extern "C" {
  * GL objects with counted bytes.
  *
  *   noh_gl_texture_bytes        bytes of a texture with its mip levels
- *   noh_gl_renderbuffer_bytes   bytes of a renderbuffer with its samples
  *   noh_gl_ledger_bytes         bytes of all existing objects
  *   noh_gl_buffer_create / noh_gl_buffer_delete
  *   noh_gl_texture_create / noh_gl_texture_delete
- *   noh_gl_renderbuffer_create / noh_gl_renderbuffer_delete
- *   noh_gl_framebuffer_create / noh_gl_framebuffer_delete
  *
  * Sizes are the requested sizes: OpenGL ES does not report what a driver adds for alignment or metadata. The same
  * functions plan a budget and count its use, so both agree to the byte.
@@ -42,11 +39,6 @@ extern "C" {
  * and the ledger is unchanged. Deleting an object twice does nothing.
  *
  * Threads: the context's own thread; any thread for the functions that only return bytes. */
-
-typedef struct noh_gl_renderbuffer {
-    unsigned name; /* 0: none */
-    uint64_t bytes;
-} noh_gl_renderbuffer;
 
 #define NOH_GL_CUBE UINT32_MAX
 
@@ -64,9 +56,6 @@ typedef struct noh_gl_texture_desc {
 /* The bytes of a texture; 0 for an invalid desc. */
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc);
 
-/* The bytes of a renderbuffer; 0 for invalid arguments. samples 0 and 1 are equal. */
-uint64_t noh_gl_renderbuffer_bytes(unsigned format, uint32_t width, uint32_t height, uint32_t samples);
-
 /* Make a buffer of `bytes` bytes, filled from `data` (NULL: contents undefined). A GL_ELEMENT_ARRAY_BUFFER becomes part
  * of the bound vertex array: bind vertex array 0 first.
  * errors  ARG bytes is 0; LIMIT bytes does not fit a GLsizeiptr; MEMORY GL_OUT_OF_MEMORY (need: `bytes`); GL the driver
@@ -81,18 +70,6 @@ void noh_gl_buffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_b
 noh_result noh_gl_texture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_gl_texture_desc *desc,
                                  noh_gl_texture *out, noh_error *error);
 void noh_gl_texture_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_texture *texture);
-
-/* Make a renderbuffer. samples: 0 or 1 for none. The driver may use more samples than requested; the ledger counts the
- * requested ones.
- * errors  ARG an unknown format, a size of 0, or more than 64 samples; MEMORY, GL as noh_gl_buffer_create */
-noh_result noh_gl_renderbuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned format, uint32_t width,
-                                      uint32_t height, uint32_t samples, noh_gl_renderbuffer *out, noh_error *error);
-void noh_gl_renderbuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, noh_gl_renderbuffer *renderbuffer);
-
-/* Make a framebuffer; it has no bytes of its own.
- * errors  MEMORY, GL as noh_gl_buffer_create */
-noh_result noh_gl_framebuffer_create(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *out, noh_error *error);
-void noh_gl_framebuffer_delete(const noh_gl_api *api, noh_gl_ledger *ledger, unsigned *framebuffer);
 
 /* ======== GL programs ========
  * Compiling and linking shaders.
@@ -194,7 +171,6 @@ extern const float noh_sh_cosine_lobe[NOH_SH_ORDER_MAX];
  *   noh_gl_morph_init         build the accumulator in your memory and make its GL objects
  *   noh_gl_morph_delete       delete the GL objects
  *   noh_gl_morph_restore      make the GL objects again after a lost context
- *   noh_gl_morph_set_mesh     vertex arrays for finished vertices
  *   noh_gl_morph_set_weights  set one instance's weights; costs only a comparison if they did not change
  *   noh_gl_morph_set_lod      accumulate an instance only for an LOD level
  *   noh_gl_morph_update       accumulate the instances whose weights changed
@@ -312,15 +288,6 @@ void noh_gl_morph_set_lod(noh_gl_morph *morph, uint32_t instance, uint32_t level
  * state   the table in gl_device.h: bindings of units 0 to 2 are empty. No state is changed if no instance changed
  * errors  none: init checked everything */
 void noh_gl_morph_update(noh_gl_morph *morph, noh_gl_morph_stats *stats);
-
-/* With finished vertices: make a vertex array for each instance of a mesh and each buffer of the ring, so that draws
- * need not set attribute pointers again, which is slow in drivers. Call it after init and after each restore; without
- * it noh_gl_mesh_bind changes the pointers of the mesh's own array and restores them. Without finished vertices it does
- * nothing.
- * mesh    index in the desc
- * drawn   the noh_gl_mesh that draws the mesh; its buffers must stay
- * errors  GL the driver refused a vertex array; the mesh then has none */
-noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const struct noh_gl_mesh *drawn, noh_error *error);
 
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance);
 

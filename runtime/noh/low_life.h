@@ -51,7 +51,6 @@ float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3]
  *   noh_ragdoll_push                       an impulse at a point
  *   noh_ragdolls_step                      advance time
  *   noh_ragdoll_bodies                     transforms of the bodies
- *   noh_ragdoll_measure                    violations of joint limits and contacts
  *
  * Bodies are capsules along their z axis. A rig (noh_ragdoll_rig_make makes one) defines how they are joined.
  * Angles and limits count from the rig's rest, so a doll placed at rest has nothing to correct.
@@ -140,19 +139,6 @@ uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t t
 void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose *bodies);
 
 int noh_ragdoll_sleeps(const noh_ragdolls *set, uint32_t doll);
-
-/* ---- quality ---- */
-
-typedef struct noh_ragdoll_measures {
-    float limit;           /* radians beyond the limits, worst joint */
-    float penetration;     /* metres of the deepest body inside the world */
-    float separation;      /* metres between the anchors of the worst joint; for sliding joints beyond their limits */
-    float separation_mean; /* mean over all joints */
-    float energy;          /* joules: kinetic, and potential above height 0 */
-} noh_ragdoll_measures;
-
-void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world *world,
-                         noh_ragdoll_measures *measures);
 
 /* ======== ragdolls out of a character ========
  * Makes a ragdoll from a character: skeleton, joint names and skin.

@@ -258,7 +258,6 @@ void noh_clip_info_of(const noh_clip *clip, noh_clip_info *info);
  *   noh_clip_cache_size, _init                    for clips that are open
  *   noh_clip_cache_begin_frame, _want, _want_frames, _work   decode ahead
  *   noh_clip_sample                               a pose
- *   noh_clip_cache_stats_of, _capacity, _holds_all, _clip   statistics and contents
  *
  * Threads: every call that takes a non-const cache is for one thread at a time, with no other call on that cache at the
  * same time. To sample on several threads between those calls, give each a noh_clip_view.
@@ -279,16 +278,6 @@ typedef struct noh_clip_cache_desc {
      * each clip, as if one track played each. Never more than the clips have */
     uint32_t cached_segment_count;
 } noh_clip_cache_desc;
-
-/* Counts since init, to tune the cache size. A sample that jumps to a segment whose neighbours are not cached decodes
- * two of its frames, and counts two per track. */
-typedef struct noh_clip_cache_stats {
-    uint64_t samples;
-    uint64_t misses; /* segments that a sample had to decode, partly or fully */
-    uint64_t evictions;
-    uint64_t decoded;      /* track-frames: each frame of each track of a segment counts as one */
-    uint64_t decoded_late; /* track-frames that a sample had to wait for */
-} noh_clip_cache_stats;
 
 /* Exact size of a cache in bytes; 0 if the desc is invalid (see the error). */
 size_t noh_clip_cache_size(const noh_clip_cache_desc *desc, noh_error *error);
@@ -328,9 +317,6 @@ uint32_t noh_clip_cache_work(noh_clip_cache *cache, uint32_t budget);
  * ranges  clip below clip_count; joint_count up to the clip's: only these first joints are decoded and sampled */
 void noh_clip_sample(noh_clip_cache *cache, uint32_t clip, int64_t ticks, uint32_t joint_count, noh_transform *out,
                      float *floats);
-
-/* Get the cache's own statistics; each view has its own. */
-noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
 
 /* ======== blend spaces ========
  * Weights of clips placed along one or two parameters.

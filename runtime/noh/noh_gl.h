@@ -183,7 +183,7 @@ typedef struct noh_gl_morph_binding {
     int layer_count;  /* 2: no layer of tangents: build your shader with NOH_TWO_LAYERS */
     /* Finished vertices, for noh_gl_mesh_bind. There is then no texture, and `touched` is 0 */
     unsigned vertex_buffer;                      /* 0 without finished vertices */
-    unsigned vertex_array;                       /* vertex array of noh_gl_morph_set_mesh; otherwise 0 */
+    unsigned vertex_array;                       /* of the buffers' own vertex array; otherwise 0 */
     uint32_t vertex_offset, vertex_stride;       /* bytes; a stride of 20 includes a tangent */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; count of vertices that any target
                                                   * moves */

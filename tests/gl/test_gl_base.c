@@ -26,6 +26,7 @@
 #include "gl/device/gl_quirks_internal.h"
 #include "gl/device/gl_timer_internal.h"
 #include "core/base/half_internal.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_core.h"

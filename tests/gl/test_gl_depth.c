@@ -7,6 +7,7 @@
 #include "support/skin_asset.h"
 #include "support/renderer.h"
 #include "gl/draw/gl_variants_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -7,6 +7,7 @@
 
 #include "gpu/gpu.h"
 #include "gl/device/gl_timer_internal.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"

@@ -1,6 +1,7 @@
 #include "gl_fixture.h"
 #include "deform/morph/morph_internal.h"
 #include "gl/device/gl_api_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,7 @@
 #include "support.h"
 
 #include "gpu/readback.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/pack.h"
 #include "noh/gl_device.h"
 #include "noh/noh_gl.h"

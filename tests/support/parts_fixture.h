@@ -12,6 +12,7 @@
 #include "draw/figure.h"
 #include "gpu/gpu.h"
 #include "renderer.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "noh/gl_device.h"

@@ -10,6 +10,7 @@
 #include "noh/low_gl.h"
 #include "gl/device/gl_names_internal.h"
 #include "gl/device/gl_table_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 #define SIDE_MAX 65536u
 

@@ -13,6 +13,7 @@
 #include "gl/light/sh_internal.h"
 #include "gl/device/gl_debug_internal.h"
 #include "gl/light/light_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 /* ---- uniforms ---- */
 

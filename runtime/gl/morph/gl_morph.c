@@ -19,6 +19,7 @@
 
 #include "gl/device/gl_names_internal.h"
 #include "gl/device/gl_debug_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 /* ---- making ---- */
 

@@ -17,6 +17,15 @@
 extern "C" {
 #endif
 
+/* With finished vertices: make a vertex array for each instance of a mesh and each buffer of the ring, so that draws
+ * need not set attribute pointers again, which is slow in drivers. Call it after init and after each restore; without
+ * it noh_gl_mesh_bind changes the pointers of the mesh's own array and restores them. Without finished vertices it does
+ * nothing.
+ * mesh    index in the desc
+ * drawn   the noh_gl_mesh that draws the mesh; its buffers must stay
+ * errors  GL the driver refused a vertex array; the mesh then has none */
+noh_result noh_gl_morph_set_mesh(noh_gl_morph *morph, uint32_t mesh, const struct noh_gl_mesh *drawn, noh_error *error);
+
 /* Get the targets that the path streams adds, in index order: those with nonzero weights, at most the four with the
  * largest |weight| x radius.
  * shapes   weights[target_count]

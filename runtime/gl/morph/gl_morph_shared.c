@@ -11,6 +11,7 @@
 #include "gl/morph/gl_morph_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
+#include "gl/device/gl_memory_internal.h"
 
 /* ---- positions ---- */
 

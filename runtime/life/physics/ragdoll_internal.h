@@ -13,6 +13,17 @@
 extern "C" {
 #endif
 
+typedef struct noh_ragdoll_measures {
+    float limit;           /* radians beyond the limits, worst joint */
+    float penetration;     /* metres of the deepest body inside the world */
+    float separation;      /* metres between the anchors of the worst joint; for sliding joints beyond their limits */
+    float separation_mean; /* mean over all joints */
+    float energy;          /* joules: kinetic, and potential above height 0 */
+} noh_ragdoll_measures;
+
+void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world *world,
+                         noh_ragdoll_measures *measures);
+
 /* Get the velocities of a doll's bodies.
  * shapes  motions[body_count] */
 void noh_ragdoll_motions(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_motion *motions);

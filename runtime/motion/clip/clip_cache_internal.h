@@ -13,6 +13,19 @@
 extern "C" {
 #endif
 
+/* Counts since init, to tune the cache size. A sample that jumps to a segment whose neighbours are not cached decodes
+ * two of its frames, and counts two per track. */
+typedef struct noh_clip_cache_stats {
+    uint64_t samples;
+    uint64_t misses; /* segments that a sample had to decode, partly or fully */
+    uint64_t evictions;
+    uint64_t decoded;      /* track-frames: each frame of each track of a segment counts as one */
+    uint64_t decoded_late; /* track-frames that a sample had to wait for */
+} noh_clip_cache_stats;
+
+/* Get the cache's own statistics; each view has its own. */
+noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache);
+
 void noh_clip_cache_needs_add(noh_clip_cache_needs *needs, const noh_clip_info *info);
 size_t noh_clip_cache_needs_size(const noh_clip_cache_needs *needs, uint32_t cached_segment_count, noh_error *error);
 

@@ -2,6 +2,7 @@
 #ifndef NOH_CLIP_CLIP_VIEW_INTERNAL_H
 #define NOH_CLIP_CLIP_VIEW_INTERNAL_H
 
+#include "motion/clip/clip_cache_internal.h"
 #include "noh/low_motion.h"
 
 #ifdef __cplusplus

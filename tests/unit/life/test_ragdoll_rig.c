@@ -1,5 +1,6 @@
 /* Tests of ragdoll_rig.c and ragdoll_names.c: real characters, and skeletons that are not characters. */
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

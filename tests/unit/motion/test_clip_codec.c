@@ -11,6 +11,7 @@
 #include <stdio.h>
 
 #include "motion/clip/clip_codec_internal.h"
+#include "motion/clip/clip_cache_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

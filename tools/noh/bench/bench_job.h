@@ -36,6 +36,7 @@
 #define NOH_NOH_BENCH_BENCH_JOB_H
 
 #include "gl/device/gl_timer_internal.h"
+#include "gl/device/gl_memory_internal.h"
 #include "noh/deform.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"

@@ -5,6 +5,7 @@
 
 #include "bench_job.h"
 #include "cli/message.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/deform.h"
 #include "noh/format.h"

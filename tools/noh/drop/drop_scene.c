@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

@@ -3,6 +3,7 @@
 #define NOH_NOH_DROP_DROP_SCENE_H
 
 #include "file/pack_file.h"
+#include "life/physics/ragdoll_internal.h"
 #include "noh/body.h"
 #include "noh/low_life.h"
 
