@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stddef.h>
 
-static const V3 fair = { 0.850, 0.565, 0.430 }, rose = { 0.820, 0.320, 0.250 }, lip = { 0.620, 0.205, 0.180 };
+static const V3 fair = { 0.870, 0.570, 0.430 }, rose = { 0.820, 0.320, 0.250 }, lip = { 0.620, 0.205, 0.180 };
 static const V3 brown = { 0.190, 0.064, 0.026 }, copper = { 0.500, 0.175, 0.060 }, dark = { 0.022, 0.010, 0.006 };
-static const V3 white = { 0.86, 0.85, 0.82 }, teal = { 0.050, 0.290, 0.320 };
+static const V3 white = { 0.92, 0.91, 0.89 }, teal = { 0.050, 0.290, 0.320 };
 static const V3 tooth = { 0.93, 0.90, 0.83 }, gum = { 0.50, 0.16, 0.14 };
 static const V3 tongue = { 0.55, 0.17, 0.16 }, throat = { 0.120, 0.020, 0.018 };
 static const V3 wool = { 0.070, 0.270, 0.320 };
@@ -29,7 +29,8 @@ static V3 skin_colour(const Seed *seed, double open)
     double blush = 0.62 * bump2(s - 0.043, t + 0.033, 0.029, 0.023) + 0.34 * bump2(s, t + 0.019, 0.014, 0.012) +
                    0.14 * bump2(s, t + 0.074, 0.020, 0.014) + 0.16 * bump2(s - EYE_S, t - 0.004, 0.028, 0.022);
     V3 base = v3_mix(fair, rose, clamp(blush, 0, 1));
-    base = shade(base, mix(open, 1, mix(0.5, 1, smooth(-0.026, -0.036, t))));
+    double fade = mix(0.74, 1, fmax(smooth(-0.026, -0.036, t), 0.8 * bump2(s, t + 0.025, 0.024, 0.014)));
+    base = shade(base, mix(open, 1, fade));
     base = v3_mix(base, v3(0.22, 0.06, 0.04), 0.75 * bump2(s - 0.0042, t + 0.0272, 0.0034, 0.0026));
     double from_line = t - lips_line(s), edge = red_edge(s, seed->mouth);
     if (s < MOUTH_REACH) {
@@ -93,8 +94,9 @@ static V3 mouth_colour(const Seed *seed)
 static V3 hair_colour(const Seed *seed, double open)
 {
     if (seed->region == ON_SCALP) {
-        double strand = 0.5 + 0.5 * sin(seed->s * 190 + 2.2 * sin(seed->t * 30));
-        return shade(v3_mix(v3_scale(brown, 0.8), brown, strand), mix(open, 1, 0.4));
+        double ridge = nell_hair_arch(seed);
+        double lit = 0.20 + 0.30 * smooth(0.5, 0, seed->t) + 0.22 * bump((seed->t - 0.56) / 0.22);
+        return shade(v3_scale(v3_mix(brown, copper, lit * ridge), mix(0.50, 1, ridge)), mix(open, 1, 0.4));
     }
     double a = cos(seed->t), tip = smooth(0.2, 1, seed->s);
     double strand = 0.55 + 0.45 * cos(5 * a + seed->k);

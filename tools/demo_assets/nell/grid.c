@@ -83,11 +83,11 @@ static int on_slit(const Grid *grid, int i, int j)
     return j == grid->row.anchor[MOUTH_ROW] && between(&grid->column, i, MOUTH_RIGHT, MOUTH_LEFT);
 }
 
-/* Deep below the hair or inside the collar. */
+/* Deep below the hair or inside the collar. Columns behind are wide: so is what is looked at. */
 static int hidden(const Grid *grid, int i, int j)
 {
-    double t = grid->row.at[j] + middle;
-    return t < -0.180 || nell_hair_past(grid->column.at[i], t) > 0.024;
+    double s = grid->column.at[i], t = grid->row.at[j] + middle, wide = 0.018 * smooth(0.060, 0.100, fabs(s));
+    return t < -0.180 || (nell_hair_past(s, t) > 0.024 && nell_hair_past(fabs(s) - wide, t) > 0.018);
 }
 
 static void add_vertices(Model *model, Grid *grid)

@@ -43,7 +43,7 @@ V3 nell_teeth_place(const Seed *seed, const Pose *pose)
     static const double back[] = { 2.6, 0.6, 0, 0, 0.3, 1.6, 3.2, 4.6 };
     int row = (int)seed->k, upper = seed->mouth > 0;
     double across = 2 * (seed->s - floor(seed->s)) - 1, corner = across * across * across * across;
-    double wide = upper ? 0.0220 : 0.0200, deep = upper ? 0.0230 : 0.0210, angle = seed->s / 5 * 1.35;
+    double wide = upper ? 0.0250 : 0.0225, deep = upper ? 0.0230 : 0.0210, angle = seed->s / 5 * 1.35;
     double in = back[row] * MM + 0.0004 * corner;
     double up = rise[row] * MM + (row >= 3 ? 0.0004 * corner : 0);
     double arc = 0.0016 * (1 - cos(angle));

@@ -33,7 +33,7 @@ static V3 nell_place(const Seed *seed, const Pose *pose)
 
 Figure nell_build(void)
 {
-    static const FigureMaterial materials[NELL_PARTS] = { { "skin", 0.48 },  { "hair", 0.55 },  { "eyes", 0.08 },
+    static const FigureMaterial materials[NELL_PARTS] = { { "skin", 0.48 },  { "hair", 0.62 },  { "eyes", 0.08 },
                                                           { "teeth", 0.22 }, { "mouth", 0.75 }, { "sweater", 0.90 } };
     double *open[PARTS_MAX];
     Figure nell = { .name = "nell",

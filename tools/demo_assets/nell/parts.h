@@ -21,6 +21,8 @@ V3 brow_place(const Seed *seed, const Pose *pose);
 void nell_hair_build(Model *model);
 V3 scalp_place(const Seed *seed);
 V3 lock_place(const Seed *seed);
+/* 0 in the valleys between clumps, 1 on their ridges; of a seed on the scalp. */
+double nell_hair_arch(const Seed *seed);
 /* Distance past the hairline, metres, roughly: negative on bare skin. */
 double nell_hair_past(double s, double t);
 

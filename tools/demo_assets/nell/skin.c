@@ -107,7 +107,7 @@ static double on_ball(SkinPoint p)
     if (up < 0) {
         return smooth(1, 0.50, across) * smooth(0.014, 0.0010, -up);
     }
-    return smooth(1, 0.45, sqrt(across * across + up * up / (0.032 * 0.032)));
+    return smooth(1, 0.45, sqrt(across * across + up * up / (0.027 * 0.027)));
 }
 
 /* ---- features ---- */
@@ -127,7 +127,7 @@ static const Hill hills[] = {
     { 0, -58, 17, 6, -0.5 },       /* hollow under the lip (twice) */
     { 25, -42, 9, 9, -1.0 },       /* corner of the mouth */
     { 8.6, -22.5, 6.5, 6.0, 3.4 }, /* wing of the nose */
-    { 4.2, -27.0, 3.4, 2.8, -1.4 } /* nostril */
+    { 4.2, -27.0, 3.4, 2.8, -1.0 } /* nostril */
 };
 
 static double nose(double s, double t)
@@ -195,9 +195,9 @@ static void drag_upper_face(V3 *d, double s, double t, int side, const Pose *p)
     drag(d, s, t, side, p->brow_inner_up, (Stroke){ 0.014, 0.036, 0.028, 0.034, 0, 0.0080, 0.0006 });
     drag(d, s, t, side, p->brow_outer_up[side], (Stroke){ 0.042, 0.036, 0.028, 0.034, 0, 0.0085, 0 });
     drag(d, s, t, side, p->brow_down[side], (Stroke){ 0.020, 0.032, 0.036, 0.032, -0.0028, -0.0068, 0.0014 });
-    drag(d, s, t, side, p->cheek_squint[side], (Stroke){ 0.040, -0.026, 0.030, 0.026, 0, 0.0016, 0.0012 });
+    drag(d, s, t, side, p->cheek_squint[side], (Stroke){ 0.040, -0.026, 0.034, 0.030, 0, 0.0014, 0.0010 });
     drag(d, s, t, side, p->squint[side], (Stroke){ 0.036, -0.020, 0.026, 0.016, 0, 0.0016, 0.0008 });
-    drag(d, s, t, side, p->smile[side], (Stroke){ 0.042, -0.034, 0.029, 0.028, 0.001, 0.0018, 0.0014 });
+    drag(d, s, t, side, p->smile[side], (Stroke){ 0.042, -0.034, 0.036, 0.036, 0.001, 0.0014, 0.0008 });
     drag(d, s, t, side, p->cheek_puff, (Stroke){ 0.040, -0.042, 0.030, 0.032, 0.0070, 0, 0.0090 });
     drag(d, s, t, side, p->sneer[side], (Stroke){ 0.012, -0.024, 0.016, 0.018, 0.0012, 0.0040, 0.0006 });
 }
@@ -205,7 +205,7 @@ static void drag_upper_face(V3 *d, double s, double t, int side, const Pose *p)
 static void drag_mouth(V3 *d, double s, double t, int side, const Pose *p)
 {
     const double x = MOUTH_REACH, y = MOUTH_T;
-    drag(d, s, t, side, p->smile[side], (Stroke){ x + 0.008, y + 0.003, 0.032, 0.032, 0.0066, 0.0082, -0.0032 });
+    drag(d, s, t, side, p->smile[side], (Stroke){ x + 0.006, y - 0.001, 0.034, 0.044, 0.0064, 0.0068, -0.0008 });
     drag(d, s, t, side, p->frown[side], (Stroke){ x + 0.006, y, 0.030, 0.030, -0.0004, -0.0082, -0.0004 });
     drag(d, s, t, side, p->dimple[side], (Stroke){ x + 0.002, y + 0.001, 0.018, 0.016, 0.0032, 0.0010, -0.0032 });
     drag(d, s, t, side, p->stretch[side], (Stroke){ x, y, 0.031, 0.026, 0.0065, -0.0014, -0.0026 });

@@ -6,7 +6,7 @@
 
 /* Rings from inside the collar down: height in front and behind, half width, depth in front and behind, how square.
  * Millimetres. */
-enum { PROFILE = 13, STEPS = 2, RINGS = (PROFILE - 1) * STEPS + 1, SEGMENTS = 32 };
+enum { PROFILE = 13, STEPS = 2, RINGS = (PROFILE - 1) * STEPS + 1, SEGMENTS = 40 };
 static const double profile[PROFILE][6] = {
     { -148, -128, 40, 12, -64, 0 },    { -124, -106, 41, 15, -66, 0 },    { -114, -96, 43, 19, -69, 0 },
     { -112, -94, 47, 24, -74, 0 },     { -116, -98, 51, 28, -78, 0 },     { -128, -108, 53, 30, -81, 0 },
