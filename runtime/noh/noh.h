@@ -82,7 +82,7 @@ typedef struct noh_lod_settings {
  *            noh_stage_stats_of
  *   names    noh_stage_find, noh_stage_name
  *   actors   noh_stage_spawn, noh_stage_despawn, noh_stage_actor_at, noh_actor_set_place, noh_actor_place,
- *            noh_actor_place_between, noh_actor_cut, noh_actor_set_appearance, noh_actor_attach
+ *            noh_actor_place_between, noh_actor_cut, noh_actor_set_appearance, noh_actor_attach, noh_actor_wear
  *   play     noh_actor_play, noh_actor_stop, noh_actor_track, noh_actor_controller, noh_actor_hold_float
  *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
  *            noh_actor_graph
@@ -197,6 +197,8 @@ typedef struct noh_kind_desc {
     int unpickable;              /* 1: noh_stage_pick passes through */
     const noh_texture_set *texture_sets; /* [texture_set_count] for noh_appearance.texture_set; borrowed */
     uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
+    uint32_t worn_by; /* bit k: actors of kind k may wear its actors (noh_actor_wear), at 2 bytes a joint and a float
+                       * for each such kind; its own actors then wear nothing. Default (0) none */
 } noh_kind_desc;
 
 struct noh_gl_light_desc;
@@ -377,9 +379,10 @@ typedef enum noh_name {
     NOH_NAME_FLOAT,
     NOH_NAME_JOINT,
     NOH_NAME_GRAPH,
-    NOH_NAME_PARAMETER,  /* of the kind's graphs */
-    NOH_NAME_MACHINE,    /* a machine, select or one-shot of its graphs */
-    NOH_NAME_TEXTURE_SET /* 0: the kind's own, "" */
+    NOH_NAME_PARAMETER,   /* of the kind's graphs */
+    NOH_NAME_MACHINE,     /* a machine, select or one-shot of its graphs */
+    NOH_NAME_TEXTURE_SET, /* 0: the kind's own, "" */
+    NOH_NAME_MESH         /* a drawn mesh: its bit in noh_appearance.hidden_meshes */
 } noh_name;
 
 /* Find the index of a name in a kind; NOH_NONE if there is none. Look names up once, not every frame. Floats are the
@@ -441,17 +444,18 @@ noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* An actor's appearance. All zeros: visible, with a shadow, within the stage's error, in its own colours. */
 typedef struct noh_appearance {
-    uint32_t hidden;      /* 1: neither drawn nor picked; clocks and callback keys go on */
-    uint32_t no_shadow;   /* 1: not drawn in depth passes of views without height_px */
-    uint32_t posed;       /* 1: posed every frame in full detail, visible or not: for noh_actor_joint on a server */
-    float pixels;         /* its own largest error; 0: the stage's */
-    uint32_t level;       /* 1 + the level to show, in full detail otherwise; 0: chosen by error */
+    uint8_t hidden;         /* 1: neither drawn nor picked; clocks and callback keys go on */
+    uint8_t no_shadow;      /* 1: not drawn in depth passes of views without height_px */
+    uint8_t posed;          /* 1: posed every frame in full detail, visible or not: for noh_actor_joint on a server */
+    uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: completely */
+    uint32_t hidden_meshes; /* bit i: mesh i of its kind (NOH_NAME_MESH) is neither drawn nor picked */
+    float pixels;           /* its own largest error; 0: the stage's */
+    uint32_t level;         /* 1 + the level to show, in full detail otherwise; 0: chosen by error */
     uint8_t tint[4];      /* sRGB and alpha, multiplied with the colours of materials that accept a tint; alpha is used
                            * only by blended materials. All 0: white */
     uint32_t texture_set; /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
     uint8_t wrinkle_models; /* NOH_WRINKLE_BY_* (format.h); 0: as its materials have them */
-    uint8_t smoothed;       /* how far its wrinkles are smoothed out; 255: completely */
-    uint8_t reserved[2];    /* 0 */
+    uint8_t reserved[3];    /* 0 */
     float user[4];          /* noh_user() in your own vertex shaders, with noh_stage_desc.user_values */
 } noh_appearance;
 
@@ -468,6 +472,15 @@ noh_result noh_actor_set_appearance(noh_stage *stage, noh_actor actor, const noh
  *         attached to it; LIMIT the chain of attachments would be longer than NOH_ATTACH_DEPTH_MAX (need: its
  *         length) */
 noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error);
+
+/* Put a garment on: an actor of a kind whose worn_by has the wearer's kind. It stands where the wearer stands. Each of
+ * its joints is posed as the wearer's joint of the same name, and each of its targets has the weight of the wearer's
+ * target of the same name, unless the game holds it; other joints, as of a skirt, move by the garment's own clips and
+ * springs. Model both packs in the same bind pose. It is posed with the wearer, in the same job. A hidden wearer hides
+ * it. noh_actor_attach with parent id 0 takes it off. The next frame shows the change.
+ * errors  NOT_FOUND either actor is gone, or no joint of the garment has the name of a joint of the wearer; ARG worn_by
+ *         of the garment's kind lacks the wearer's kind; LIMIT as noh_actor_attach */
+noh_result noh_actor_wear(noh_stage *stage, noh_actor garment, noh_actor wearer, noh_error *error);
 
 /* ---- play ---- */
 

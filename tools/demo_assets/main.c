@@ -1,6 +1,7 @@
 /* demo_assets OUT.glb: models a Noh mask and writes it as a glTF binary.
  * demo_assets --nell OUT.glb: a head and shoulders like a figure of an animated film.
  * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
+ * demo_assets --coat OUT.glb: a coat for the puppet.
  * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
  * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning.
  * demo_assets --festival OUT: a festival's square, as OUT.obj and OUT.mtl. */
@@ -66,13 +67,15 @@ static int make_puppet(const char *path)
     return good;
 }
 
-static int make_get_up(const char *path)
+/* What belongs to the puppet: clips that get up, or a coat. */
+static int make_part(const char *path, PuppetCensus (*write)(Buffer *file))
 {
     Buffer file = { 0 };
-    PuppetCensus census = get_up_write(&file);
+    PuppetCensus census = write(&file);
     int good = save(path, &file);
     if (good) {
-        printf("%s: %d joints, %d animations, %d bytes\n", path, census.joints, census.animations, file.count);
+        printf("%s: %d vertices, %d joints, %d animations, %d bytes\n", path, census.body_vertices, census.joints,
+               census.animations, file.count);
     }
     buffer_free(&file);
     return good;
@@ -124,7 +127,10 @@ int main(int argc, char **argv)
         return make_puppet(argv[2]) ? 0 : 1;
     }
     if (argc == 3 && !strcmp(argv[1], "--get-up")) {
-        return make_get_up(argv[2]) ? 0 : 1;
+        return make_part(argv[2], get_up_write) ? 0 : 1;
+    }
+    if (argc == 3 && !strcmp(argv[1], "--coat")) {
+        return make_part(argv[2], coat_write) ? 0 : 1;
     }
     if (argc == 3 && !strcmp(argv[1], "--arm")) {
         return make_arm(argv[2]) ? 0 : 1;
@@ -132,6 +138,7 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--festival")) {
         return make_festival(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr, "usage: demo_assets [--nell|--puppet|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
+    fprintf(stderr,
+            "usage: demo_assets [--nell|--puppet|--coat|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
     return 2;
 }

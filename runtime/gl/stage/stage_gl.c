@@ -503,7 +503,7 @@ static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrice
     const noh_skin_header *ready = NULL;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        if (!mesh->skinned) continue;
+        if (!mesh->skinned || k->actors[index].look.hidden_meshes >> m & 1u) continue;
         if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, matrices);
         ready = mesh->skin.header;
         if (noh_gl_skin_write_matrices(items[m].skin, shown->place, matrices)) shown->updates |= NOH_STAGE_MOVED;
@@ -516,6 +516,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
     const float *weights = k->weights + (size_t)index * k->weight_count;
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
+        if (k->actors[index].look.hidden_meshes >> m & 1u) continue;
         upload_place(mesh, &items[m], &k->actors[index], shown, s->desc.user_values, weights + mesh->first_weight);
         if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }

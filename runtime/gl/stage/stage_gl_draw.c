@@ -42,6 +42,12 @@ static int is_seen(const drawing *d, uint32_t place)
     return (int)(shown_at(d, place)->views >> d->view & 1u);
 }
 
+/* Whether the view sees an actor and the actor has the mesh on. */
+static int shows(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    return is_seen(d, place) && !(actor_at(d, place)->look.hidden_meshes >> mesh & 1u);
+}
+
 static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint32_t influences)
 {
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(item->skin, place);
@@ -159,9 +165,9 @@ static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
     uint32_t at = d->k->runs[run];
     while (at < end) {
         uint32_t first;
-        while (at < end && !is_seen(d, at)) at++;
+        while (at < end && !shows(d, mesh, at)) at++;
         first = at;
-        while (at < end && is_seen(d, at) && wears(d, at) == wears(d, first) && !is_mirrored(d, mesh, at)) at++;
+        while (at < end && shows(d, mesh, at) && wears(d, at) == wears(d, first) && !is_mirrored(d, mesh, at)) at++;
         if (at > first) {
             draw_together(d, mesh, run, first, at - first);
         } else if (at < end) {
@@ -233,6 +239,7 @@ static void draw_sorted(const drawing *d, const uint8_t *meshes, uint32_t count,
         sorted[at] = meshes[i];
     }
     for (uint32_t i = 0; i < count; i++) {
+        if (!shows(d, sorted[i], place)) continue;
         if (run == NOH_NONE) {
             draw_fading(d, sorted[i], place);
         } else {
@@ -288,7 +295,7 @@ static void draw_kind(const drawing *d)
     for (uint32_t m = 0; m < d->k->plan->mesh_count; m++) {
         for (uint32_t run = 0; run < runs; run++) draw_run(d, m, run);
         for (uint32_t p = d->k->runs[runs]; p < d->k->runs[runs + 1u]; p++) {
-            if (is_seen(d, p)) draw_fading(d, m, p);
+            if (shows(d, m, p)) draw_fading(d, m, p);
         }
     }
 }
@@ -411,6 +418,7 @@ noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t 
 
 void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share)
 {
+    if (!shows(&alone->drawing, index, alone->place)) return;
     draw_alone(&alone->drawing, index, alone->place, share->level, share->from, share->to);
 }
 

@@ -44,6 +44,7 @@ static noh_result open_views(noh_stage *s, const noh_stage_blocks *b, noh_error 
         memset(&s->jobs[j], 0, sizeof s->jobs[j]);
         s->jobs[j].scratch = b->scratch + j * b->scratch_bytes;
         s->jobs[j].matrices = b->matrices + j * b->matrices_floats;
+        s->jobs[j].wearer = b->wearers + j * (size_t)b->wearer_joints;
         s->jobs[j].module_scratch = b->module_scratch_bytes ? b->module_scratch + j * b->module_scratch_bytes : NULL;
         for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
             if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
@@ -77,6 +78,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->jobs = b->jobs;
     s->scratch_bytes = b->scratch_bytes;
     s->module_scratch_bytes = b->module_scratch_bytes;
+    s->wearer_joints = b->wearer_joints;
     s->pick_scratch = b->pick_scratch;
     s->pick_bytes = b->pick_bytes;
     s->inertia_scratch = b->inertia_scratch;
@@ -111,6 +113,7 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     adopt(desc, plan, b);
     result = open_kinds(s, desc, b, error);
     s->desc.kinds = s->kind_descs;
+    if (result == NOH_OK) noh_stage_open_worn(s);
     if (result == NOH_OK) result = open_views(s, b, error);
     if (result == NOH_OK) {
         result = noh_schedule_init(b->schedule, noh_schedule_size(s->actor_count), s->actor_count, &s->schedule, error);

@@ -468,7 +468,7 @@ noh_result noh_actor_set_appearance(noh_stage *stage, noh_actor actor, const noh
                         look->wrinkle_models);
     }
     a->look = *look;
-    a->look.reserved[0] = a->look.reserved[1] = 0; /* states are compared as bytes */
+    memset(a->look.reserved, 0, sizeof a->look.reserved); /* states are compared as bytes */
     return NOH_OK;
 }
 
@@ -490,12 +490,34 @@ static uint32_t steps_below(const noh_stage *s, const noh_stage_actor *a)
     return most;
 }
 
+/* From now on its place is relative to the joint, or to the place of the one that wears it. */
+static noh_result attach(const noh_stage *stage, noh_stage_actor *a, noh_actor parent, uint32_t joint, noh_error *error)
+{
+    const noh_stage_actor *p = noh_stage_actor_of(stage, parent, NULL);
+    const uint32_t index = (uint32_t)(a - stage->actors);
+    uint32_t depth;
+    if (noh_stage_steps_to(stage, p, a) != NOH_NONE) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "an actor would be attached to itself: the parent is the actor, or is attached to it; let that "
+                        "go first",
+                        index, 0);
+    }
+    depth = noh_stage_steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);
+    if (depth > NOH_ATTACH_DEPTH_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "more than NOH_ATTACH_DEPTH_MAX attachments follow on each other", index,
+                        depth);
+    }
+    a->parent = parent.id;
+    a->joint = joint;
+    return NOH_OK;
+}
+
 noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent, uint32_t joint, noh_error *error)
 {
-    noh_stage_actor *a = NULL, *p;
+    noh_stage_actor *a = NULL;
+    const noh_stage_actor *p;
     noh_stage_kind *k = NULL, *of_parent = NULL;
-    uint32_t depth;
-    const noh_result result = noh_stage_change(stage, actor, &a, &k, error);
+    noh_result result = noh_stage_change(stage, actor, &a, &k, error);
     if (result != NOH_OK) {
         return result;
     }
@@ -513,19 +535,40 @@ noh_result noh_actor_attach(noh_stage *stage, noh_actor actor, noh_actor parent,
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the parent has no such joint", joint,
                         of_parent->skeleton.joint_count);
     }
-    if (noh_stage_steps_to(stage, p, a) != NOH_NONE) {
+    result = attach(stage, a, parent, joint, error);
+    if (result == NOH_OK) noh_stage_keep_before(a);
+    return result;
+}
+
+noh_result noh_actor_wear(noh_stage *stage, noh_actor garment, noh_actor wearer, noh_error *error)
+{
+    static const noh_place here = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f };
+    noh_stage_actor *a = NULL;
+    const noh_stage_actor *p;
+    noh_stage_kind *k = NULL, *of_wearer = NULL;
+    noh_result result = noh_stage_change(stage, garment, &a, &k, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    p = noh_stage_actor_of(stage, wearer, &of_wearer);
+    if (!p) {
+        return noh_stage_gone(error, wearer);
+    }
+    if (!noh_stage_can_wear(k, (uint32_t)(of_wearer - stage->kinds))) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "an actor would be attached to itself: the parent is the actor, or is attached to it; let that "
-                        "go first",
-                        actor.id & 0xffffu, 0);
+                        "the actor cannot wear this garment: set the bit of its kind in worn_by of the garment's kind",
+                        garment.id & 0xffffu, (uint32_t)(of_wearer - stage->kinds));
     }
-    depth = noh_stage_steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);
-    if (depth > NOH_ATTACH_DEPTH_MAX) {
-        return noh_fail(error, NOH_ERR_LIMIT, "more than NOH_ATTACH_DEPTH_MAX attachments follow on each other",
-                        actor.id & 0xffffu, depth);
+    if (!noh_stage_fits(stage, k, of_wearer)) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "no joint of the garment has the name of a joint of the wearer: rename its joints",
+                        garment.id & 0xffffu, 0);
     }
-    a->parent = parent.id;
-    a->joint = joint;
-    noh_stage_keep_before(a); /* from now on relative to the joint */
+    result = attach(stage, a, wearer, NOH_STAGE_WORN, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    be_at(a, &here);
+    noh_character_cut(noh_stage_character(k, noh_stage_index(k, a)));
     return NOH_OK;
 }

@@ -217,7 +217,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
     size_t scratch_bytes, module_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
-    uint32_t skin_joints, actors;
+    uint32_t skin_joints, wearer_joints, actors;
 } widest;
 
 static size_t aligned(size_t bytes)
@@ -232,6 +232,10 @@ static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        if (desc->kinds[i].worn_by >> kind & 1u && n->shape.joint_count > most->wearer_joints)
+            most->wearer_joints = n->shape.joint_count;
+    }
     most->views_bytes += aligned(n->view_bytes);
     most->actors += desc->kinds[kind].actor_count;
 }
@@ -263,6 +267,7 @@ static void carve_shared(noh_arena *arena, const noh_kind_desc *d, const noh_kin
     k->target_radii = CARVE(arena, n->weight_count, float);
     k->targets.correctives = CARVE(arena, n->corrective_count, noh_corrective_term);
     k->targets.weight_rules = CARVE(arena, n->weight_rule_count, noh_weight_rule);
+    k->worn_maps = CARVE(arena, noh_stage_worn_maps(d) * (n->shape.joint_count + n->float_count), uint16_t);
     k->masks = CARVE(arena, n->mask_count * (size_t)(n->shape.joint_count + n->shape.float_count), uint8_t);
     k->levels = CARVE(arena, plan->level_count, noh_lod_mesh);
     k->joint_radii = CARVE(arena, n->shape.joint_count, float);
@@ -301,6 +306,8 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->module_scratch = noh_arena_carve(arena, filled->job_count * b->module_scratch_bytes, 16);
     b->matrices_floats = 12u * (size_t)most->skin_joints;
     b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
+    b->wearer_joints = most->wearer_joints;
+    b->wearers = CARVE(arena, filled->job_count * (size_t)most->wearer_joints, noh_transform);
 }
 
 /* The state of one kind, whose pointers are not wanted yet. Not inlined: what measures a kind has deep stacks, and a

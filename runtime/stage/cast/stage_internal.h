@@ -11,6 +11,7 @@
  *   stage_actor.c    actors come and go, and stand somewhere
  *   stage_play.c     layers
  *   stage_module.c   the slots of a kind's modules (module_internal.h)
+ *   stage_wear.c     garments
  *   stage_modifier.c what changes a pose before it is shown
  *   stage_step.c     time, callback keys, root motion
  *   stage_bounds.c   possible and present bounds of an actor, and its distance
@@ -66,14 +67,17 @@ typedef struct noh_stage_actor {
     uint32_t alive;
     uint32_t next_free;  /* index + 1; 0: the last */
     uint32_t parent;     /* id; 0: not attached */
-    uint32_t joint;      /* of the parent */
+    uint32_t joint;      /* of the parent; NOH_STAGE_WORN: the actor is worn, and has no joint of it */
     uint16_t was_seen;   /* in how many of the last frames, at most 3 */
     uint16_t on_its_way; /* 1: `before` belongs to the current or the next step */
     uint32_t started[2]; /* for each layer four bits: the track that was started last, of the layer's own */
+    uint32_t reserved;
     /* What the floats of `place` and `before` are short of: without it an actor a million units out stands still */
     float rest[3], rest_before[3], rotation_rest[4];
     double home[3]; /* near it: what its parts keep of the world counts from there */
 } noh_stage_actor;
+
+#define NOH_STAGE_WORN NOH_NONE
 
 /* [4] as it is drawn; NULL: white. */
 static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
@@ -104,7 +108,7 @@ typedef struct noh_stage_head {
 } noh_stage_head;
 
 NOH_STATIC_ASSERT(sizeof(noh_place) == 32, place);
-NOH_STATIC_ASSERT(sizeof(noh_appearance) == 48, look);
+NOH_STATIC_ASSERT(sizeof(noh_appearance) == 44, look);
 NOH_STATIC_ASSERT(sizeof(noh_stage_actor) == 240, stage_actor);
 NOH_STATIC_ASSERT(sizeof(noh_stage_modifier_head) == 16, stage_modifier_head);
 NOH_STATIC_ASSERT(sizeof(noh_stage_head) == 24 + 16 * NOH_STAGE_KINDS_MAX, stage_head);
@@ -192,8 +196,10 @@ typedef struct noh_stage_kind {
     uint32_t float_count, weight_count; /* weights: targets of all meshes */
     noh_stage_floats named;
     noh_stage_targets targets;
-    float *target_radii;  /* [weight_count] */
-    uint8_t *masks;       /* [set.mask_count][joints + floats of the set] */
+    float *target_radii; /* [weight_count] */
+    uint8_t *masks;      /* [set.mask_count][joints + floats of the set] */
+    /* [kinds in desc->worn_by][joints, then floats]: what each follows of the wearer, or NOH_JOINT_ROOT */
+    uint16_t *worn_maps;
     noh_lod_pack lod;     /* of the first skinned mesh */
     noh_lod_mesh *levels; /* [plan->level_count] */
     noh_lod_table table;
@@ -233,6 +239,8 @@ typedef struct noh_stage_shown {
     uint8_t due;                 /* noh_due, or NOH_STAGE_DUE_LONG */
     uint8_t updates;             /* 1: is posed in this frame; NOH_STAGE_MOVED: its palettes changed */
     uint8_t level, level_before; /* drawn */
+    uint16_t worn;               /* 1 + the first garment on it that is posed or shown in this frame; 0: none */
+    uint16_t next_worn;          /* of a garment: 1 + the next one on its wearer; 0: the last */
 } noh_stage_shown;
 
 #define NOH_STAGE_MOVED 2u
@@ -242,7 +250,8 @@ typedef struct noh_stage_shown {
 typedef struct noh_stage_job_part {
     noh_clip_bank_view *views[NOH_STAGE_KINDS_MAX]; /* of the kinds that have a bank of their own */
     void *scratch, *module_scratch;
-    float *matrices; /* [joints of the largest skin][12] */
+    float *matrices;       /* [joints of the largest skin][12] */
+    noh_transform *wearer; /* [joints of the largest kind that wears something] the local pose of a wearer */
     uint64_t decoded_late;
     uint32_t updated;
     float error_pixels;
@@ -272,8 +281,9 @@ struct noh_stage {
     noh_stage_desc desc;       /* defaults filled in; `kinds` are those below */
     noh_kind_desc *kind_descs; /* [desc.kind_count] */
     const noh_stage_plan *plan;
-    noh_stage_kind *kinds; /* [desc.kind_count] */
-    uint32_t actor_count;  /* of all kinds */
+    noh_stage_kind *kinds;  /* [desc.kind_count] */
+    uint32_t actor_count;   /* of all kinds */
+    uint32_t wearer_joints; /* of the largest kind that wears something; 0: none does */
     /* state */
     noh_stage_head *head;
     uint8_t *state;
@@ -413,6 +423,8 @@ typedef struct noh_stage_blocks {
     size_t module_scratch_bytes, scratch_bytes, views_bytes, pick_bytes, inertia_bytes;
     float *matrices; /* of all jobs */
     size_t matrices_floats;
+    noh_transform *wearers; /* of all jobs */
+    uint32_t wearer_joints;
     void *pick_scratch, *inertia_scratch, *schedule;
     void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
@@ -465,6 +477,25 @@ void noh_stage_world(const noh_stage *s, uint32_t index, float matrix[12]);
 /* noh_actor_joint and noh_actor_sphere, less the stage's origin. */
 noh_result noh_stage_joint(const noh_stage *stage, noh_actor actor, uint32_t joint, float matrix[12], noh_error *error);
 noh_result noh_stage_actor_sphere(const noh_stage *stage, noh_actor actor, float sphere[4], noh_error *error);
+/* ---- garments ---- */
+
+/* What an actor is worn by; NULL: it is not worn. */
+noh_stage_actor *noh_stage_wearer_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind);
+const char *noh_stage_bad_worn(const noh_stage_desc *desc, uint32_t kind);
+size_t noh_stage_worn_maps(const noh_kind_desc *kind); /* how many maps it has */
+void noh_stage_open_worn(noh_stage *s);                /* once all kinds are there */
+int noh_stage_can_wear(const noh_stage_kind *garment, uint32_t wearer_kind);
+/* Whether a joint of the garment follows one of the wearer. */
+int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_stage_kind *wearer);
+/* Before updates are chosen: list the garments of each wearer that are posed or shown. */
+void noh_stage_link_worn(noh_stage *s);
+void noh_stage_update_worn(noh_stage *s); /* and after: they are updated when their wearers are */
+/* In a job: the local pose of a garment from job->wearer; its floats after the wearer's. */
+void noh_stage_wear_pose(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
+                         noh_transform *local);
+void noh_stage_wear_palette(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
+void noh_stage_wear_floats(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
+
 noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
 noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */

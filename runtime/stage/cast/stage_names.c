@@ -71,6 +71,7 @@ const char *noh_stage_name(const noh_stage *stage, uint32_t kind, noh_name what,
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return source ? source->name(k, what, index) : NULL;
     case NOH_NAME_TEXTURE_SET: return set_name(k, index);
+    case NOH_NAME_MESH: return index < k->plan->mesh_count ? k->meshes[index].mesh.name : NULL;
     }
     return NULL;
 }
@@ -89,6 +90,7 @@ static uint32_t count_of(const noh_stage_kind *k, noh_name what)
     case NOH_NAME_PARAMETER:
     case NOH_NAME_MACHINE: return source ? source->name_count(k, what) : 0;
     case NOH_NAME_TEXTURE_SET: return k->desc->texture_set_count + 1u;
+    case NOH_NAME_MESH: return k->plan->mesh_count;
     }
     return 0;
 }

@@ -98,6 +98,7 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
         const noh_mesh level = noh_mesh_at_lod(&mesh->mesh, k->plan->levels[shown->level].mesh_levels[m]);
         noh_pick_surface surface;
         noh_pick_hit own;
+        if (s->actors[index].look.hidden_meshes >> m & 1u) continue;
         if (mesh->skinned && !ch->time.posed) continue; /* it was cut since that frame */
         memset(&surface, 0, sizeof surface);
         surface.mesh = &level;

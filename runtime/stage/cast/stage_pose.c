@@ -125,7 +125,7 @@ static void modify(const noh_stage_kind *k, uint32_t index, noh_modifier_work *w
     }
 }
 
-/* The pose: joints and the floats that go with them. */
+/* The pose: joints and the floats that go with them. Of a wearer, what its garments follow is kept. */
 static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, uint32_t i)
 {
     noh_stage_kind *k = p->k;
@@ -135,14 +135,19 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
     noh_clip_set set = p->set;
     noh_stage_sampler sampler;
+    const int worn = noh_stage_wearer_of(s, &k->actors[i], NULL) != NULL;
     if (type) type->source->sample(s, job, k, i, ahead, 0, &set, &sampler);
     noh_character_update_begin(ch, &set, &p->scratch); /* local poses, blended */
+    if (worn) noh_stage_wear_pose(s, job, k, i, p->scratch.local);
     if (k->modifier_bytes) {
         noh_modifier_work w;
         noh_stage_begin_modifiers(s, job, k, i, clock, &p->scratch, &w);
         modify(k, i, &w);
     }
+    if (s->shown[k->first_actor + i].worn)
+        memcpy(job->wearer, p->scratch.local, k->skeleton.joint_count * sizeof *job->wearer);
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
+    if (worn) noh_stage_wear_palette(s, k, i);
 }
 
 /* Write weights of targets and palettes, blended from the two latest poses if the actor updates below frame rate. */
@@ -156,6 +161,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
         return; /* over budget: not shown yet */
     }
     noh_stage_take_floats(k, i);
+    if (noh_stage_wearer_of(s, a, NULL)) noh_stage_wear_floats(s, k, i);
     if (!a->parent && noh_stage_turns(k)) noh_stage_own_matrix(s, k, a, shown->world);
     if (!a->parent && shown->updates) noh_stage_measure_shown(s, k, i, job->matrices);
     take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);
@@ -163,6 +169,28 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes */
     error_pixels = a->parent ? 0.0f : noh_stage_error_pixels(s, k, i);
     if (error_pixels > job->error_pixels) job->error_pixels = error_pixels;
+}
+
+/* Pose an actor if it is due, and show it. */
+static void pose_and_show(noh_stage *s, noh_stage_job_part *job, poser *p, uint32_t index)
+{
+    noh_stage_kind *of = noh_stage_kind_of(s, index);
+    const noh_stage_shown *shown = &s->shown[index];
+    if (of != p->k) {
+        open_poser(s, job, of, p);
+    }
+    if (shown->updates) {
+        pose(s, job, p, index - of->first_actor);
+        job->updated++;
+    }
+    if (shown->views || shown->updates || s->actors[index].look.posed) show(s, job, of, index - of->first_actor);
+}
+
+static void keep_time(const noh_stage *s, uint32_t garment, uint32_t wearer)
+{
+    const noh_stage_kind *k = noh_stage_kind_of(s, garment), *of = noh_stage_kind_of(s, wearer);
+    noh_character_keep_time(noh_stage_character(k, garment - k->first_actor),
+                            noh_stage_character(of, wearer - of->first_actor));
 }
 
 void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t end)
@@ -174,15 +202,10 @@ void noh_stage_pose_todo(noh_stage *s, uint32_t number, uint32_t first, uint32_t
     job->updated = 0;
     job->error_pixels = 0.0f;
     for (uint32_t t = first; t < end; t++) {
-        noh_stage_kind *of = noh_stage_kind_of(s, s->todo[t]);
-        if (of != p.k) {
-            open_poser(s, job, of, &p);
-        }
-        if (s->shown[s->todo[t]].updates) {
-            pose(s, job, &p, s->todo[t] - of->first_actor);
-            job->updated++;
-        }
-        show(s, job, of, s->todo[t] - of->first_actor);
+        const uint32_t index = s->todo[t], worn = s->shown[index].worn;
+        for (uint32_t g = worn; g; g = s->shown[g - 1u].next_worn) keep_time(s, g - 1u, index);
+        pose_and_show(s, job, &p, index);
+        for (uint32_t g = worn; g; g = s->shown[g - 1u].next_worn) pose_and_show(s, job, &p, g - 1u);
     }
     job->decoded_late = late_of(s, job) - late;
 }

@@ -149,15 +149,22 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
 static void choose_updates(noh_stage *s)
 {
     uint32_t index;
+    noh_stage_link_worn(s);
     noh_schedule_begin(&s->schedule, s->head->step_ticks, s->desc.update_budget_ns);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        for (uint32_t a = 0; a < s->kinds[i].desc->actor_count; a++) offer(s, &s->kinds[i], a);
+        const noh_stage_kind *k = &s->kinds[i];
+        for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+            if (!noh_stage_wearer_of(s, &k->actors[a], NULL)) offer(s, &s->kinds[i], a);
+        }
     }
     while (noh_schedule_next(&s->schedule, &index)) s->shown[index].updates = 1;
+    noh_stage_update_worn(s);
     s->todo_count = 0;
     for (uint32_t i = 0; i < s->actor_count; i++) {
         const noh_stage_actor *at = &s->actors[i];
-        if (s->shown[i].views || s->shown[i].updates || (at->alive && at->look.posed)) s->todo[s->todo_count++] = i;
+        if (noh_stage_wearer_of(s, at, NULL)) continue; /* it is posed with its wearer */
+        if (s->shown[i].views || s->shown[i].updates || s->shown[i].worn || (at->alive && at->look.posed))
+            s->todo[s->todo_count++] = i;
     }
 }
 
@@ -178,14 +185,19 @@ static void want_clips(noh_stage *s, const noh_stage_kind *k, uint32_t i, int no
     if (inner) (void)noh_clip_bank_prefetch(k->bank, inner, ahead);
 }
 
+static void want_one(noh_stage *s, uint32_t index, int now)
+{
+    const noh_stage_kind *k = noh_stage_kind_of(s, index);
+    if (k->bank && !s->kinds[k->bank_kind].holds_all && (s->shown[index].updates || !now)) {
+        want_clips(s, k, index - k->first_actor, now);
+    }
+}
+
 static void want(noh_stage *s, int now)
 {
     for (uint32_t t = 0; t < s->todo_count; t++) {
-        const uint32_t index = s->todo[t];
-        const noh_stage_kind *k = noh_stage_kind_of(s, index);
-        if (k->bank && !s->kinds[k->bank_kind].holds_all && (s->shown[index].updates || !now)) {
-            want_clips(s, k, index - k->first_actor, now);
-        }
+        want_one(s, s->todo[t], now);
+        for (uint32_t g = s->shown[s->todo[t]].worn; g; g = s->shown[g - 1u].next_worn) want_one(s, g - 1u, now);
     }
 }
 

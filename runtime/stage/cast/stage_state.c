@@ -88,6 +88,9 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (a->look.wrinkle_models > 7u) return "state: unknown models of wrinkles";
     if (a->look.texture_set > k->desc->texture_set_count) return "state: a texture set out of range";
     if (a->parent && (a->parent & 0xffffu) >= r->s->actor_count) return "state: a parent out of range";
+    if (a->parent && a->joint == NOH_STAGE_WORN &&
+        !noh_stage_can_wear(k, (uint32_t)(noh_stage_kind_of(r->s, a->parent & 0xffffu) - r->s->kinds)))
+        return "state: an actor is worn by one of another kind than worn_by has";
     if (is_too_deep(r, a)) return "state: an actor is attached to itself, or over too many others";
     for (uint32_t l = 0; l < k->layer_count; l++) {
         if ((a->started[l / 8u] >> 4u * (l % 8u) & 15u) >= k->layers[l].track_count)

@@ -360,6 +360,33 @@ void noh_character_update(noh_character *ch, const noh_clip_set *set, const noh_
     noh_character_update_end(ch, skeleton, joint_radius_m, scratch);
 }
 
+void noh_character_keep_time(noh_character *ch, const noh_character *on)
+{
+    NOH_ASSERT(ch && on);
+    ch->time = on->time;
+}
+
+void noh_character_follow(noh_character *ch, const noh_character *on, const uint16_t *joints, int fresh)
+{
+    NOH_ASSERT(ch && on && joints && !ch->multiplied && !on->multiplied);
+    const uint32_t to = ch->time.to_pose, from = to ^ 1u;
+    if (fresh) { /* what does not follow is at rest until the next update */
+        memcpy(palette_of(ch, from), palette_of(ch, to), 12u * sizeof(float) * (size_t)ch->joint_count);
+        memcpy(floats_of(ch, from), floats_of(ch, to), ch->float_count * sizeof(float));
+        memcpy(ch->spheres[from], ch->spheres[to], sizeof ch->spheres[to]);
+        ch->stretches[from] = ch->stretches[to];
+    }
+    for (size_t j = 0; j < ch->joint_count; j++) {
+        if (joints[j] == NOH_JOINT_ROOT) continue;
+        NOH_ASSERT(joints[j] < on->joint_count);
+        for (uint32_t pose = 0; pose < 2u; pose++) {
+            memcpy(palette_of(ch, pose) + 12u * j, noh_character_pose_palette(on, pose) + 12u * (size_t)joints[j],
+                   12u * sizeof(float));
+        }
+    }
+    ch->updates = on->updates;
+}
+
 const float *noh_character_palette(const noh_character *ch, float *mixed, uint32_t joint_count)
 {
     NOH_ASSERT(ch->time.posed && joint_count <= ch->joint_count);

@@ -188,6 +188,15 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
 void noh_character_update_end(noh_character *ch, const noh_skeleton *skeleton, const float *joint_radius_m,
                               noh_character_scratch *scratch);
 
+/* Before an update of `on`, or in a frame without one: `ch` is posed and shown at the same times. */
+void noh_character_keep_time(noh_character *ch, const noh_character *on);
+
+/* After the updates of both: the joints of `ch` that follow others have their matrices, and those that do not follow
+ * have stayed with `ch`.
+ * shapes  joints[joint_count of ch]: of `on`, or NOH_JOINT_ROOT; both skeletons without inverse bind matrices
+ * ranges  fresh: 1: `ch` was not posed when `on` was posed before */
+void noh_character_follow(noh_character *ch, const noh_character *on, const uint16_t *joints, int fresh);
+
 #ifdef __cplusplus
 }
 #endif

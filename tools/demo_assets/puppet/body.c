@@ -26,7 +26,7 @@ static Cage build_cage(void)
     return cage;
 }
 
-static Cage build_surface(void)
+Cage body_surface(void)
 {
     Cage cage = build_cage(), once = subdivide(&cage), twice = subdivide(&once);
     cage_free(&cage);
@@ -39,7 +39,7 @@ static Cage build_surface(void)
 }
 
 /* Each corner adds its face's direction there, times the corner's area. */
-static V3 *find_normals(const Cage *surface)
+V3 *surface_normals(const Cage *surface)
 {
     V3 *normals = grab(NULL, surface->vertex_count, (int)sizeof *normals);
     for (int i = 0; i < surface->vertex_count; i++) {
@@ -147,7 +147,7 @@ static int collect_corners(const Cage *surface, int material, Corner *corners)
     return count;
 }
 
-static void piece_grab(Piece *piece, int corners)
+void piece_grab(Piece *piece, int corners)
 {
     piece->position = grab(NULL, corners, (int)sizeof(V3));
     piece->normal = grab(NULL, corners, (int)sizeof(V3));
@@ -177,7 +177,7 @@ static void add_face(Piece *piece, const uint32_t corner[4])
     }
 }
 
-static Piece build_piece(const Cage *surface, const V3 *normals, const double *open, int material)
+Piece piece_build(const Cage *surface, const V3 *normals, const double *open, int material)
 {
     Piece piece = { 0 };
     Corner *corners = grab(NULL, 4 * surface->face_count, (int)sizeof *corners);
@@ -203,11 +203,11 @@ static Piece build_piece(const Cage *surface, const V3 *normals, const double *o
 Body body_build(void)
 {
     Body body;
-    Cage surface = build_surface();
-    V3 *normals = find_normals(&surface);
+    Cage surface = body_surface();
+    V3 *normals = surface_normals(&surface);
     double *open = ambient_bake(&surface, normals);
     for (int i = 0; i < MATERIAL_COUNT; i++) {
-        body.pieces[i] = build_piece(&surface, normals, open, i);
+        body.pieces[i] = piece_build(&surface, normals, open, i);
     }
     free(normals);
     free(open);
@@ -215,15 +215,19 @@ Body body_build(void)
     return body;
 }
 
+void piece_free(Piece *piece)
+{
+    free(piece->position);
+    free(piece->normal);
+    free(piece->colour);
+    free(piece->texture);
+    free(piece->grip);
+    free(piece->indices);
+}
+
 void body_free(Body *body)
 {
     for (int i = 0; i < MATERIAL_COUNT; i++) {
-        Piece *piece = &body->pieces[i];
-        free(piece->position);
-        free(piece->normal);
-        free(piece->colour);
-        free(piece->texture);
-        free(piece->grip);
-        free(piece->indices);
+        piece_free(&body->pieces[i]);
     }
 }

@@ -32,4 +32,12 @@ Body body_build(void);
 void body_free(Body *body);
 Grip grip_of(const Hold *hold);
 
+/* The subdivided surface before it is cut; directions of its vertices; a piece of it; room for one of four-sided faces
+ * with this many corners. */
+Cage body_surface(void);
+V3 *surface_normals(const Cage *surface);
+Piece piece_build(const Cage *surface, const V3 *normals, const double *open, int material);
+void piece_grab(Piece *piece, int corners);
+void piece_free(Piece *piece);
+
 #endif

@@ -27,6 +27,7 @@ static V3 base_colour(Paint paint)
     case PAINT_SKIRT_INSIDE: return v3_scale(indigo, 0.6);
     case PAINT_SKIN: return skin;
     case PAINT_HAIR: return ink;
+    case PAINT_COAT: return v3(0.020, 0.150, 0.120);
     }
     return ink;
 }

@@ -21,7 +21,8 @@ typedef enum {
     PAINT_SOCK,
     PAINT_BAND, /* about the hair */
     PAINT_SKIN,
-    PAINT_HAIR
+    PAINT_HAIR,
+    PAINT_COAT /* of coat.c */
 } Paint;
 
 int paint_material(Paint paint);

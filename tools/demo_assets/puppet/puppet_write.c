@@ -81,20 +81,25 @@ static void write_grips(Writer *w, Buffer *json, const Piece *piece)
     free(weights);
 }
 
+void piece_write(Writer *w, Buffer *json, const Piece *piece, int material)
+{
+    int position = write_vectors(w, piece->position, piece->count, 1);
+    int normal = write_vectors(w, piece->normal, piece->count, 0);
+    int texture = write_floats(w, piece->texture, piece->count, "VEC2", 2, TARGET_ARRAY);
+    int colour = write_vectors(w, piece->colour, piece->count, 0);
+    int indices = write_indices(w, piece->indices, piece->index_count);
+    buffer_print(json, "{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"TEXCOORD_0\":%d,\"COLOR_0\":%d", position,
+                 normal, texture, colour);
+    write_grips(w, json, piece);
+    buffer_print(json, ",\"indices\":%d,\"material\":%d}", indices, material);
+}
+
 static void write_body(Writer *w, Buffer *json, const Body *body)
 {
     buffer_print(json, "{\"name\":\"body\",\"primitives\":[\n");
     for (int i = 0; i < MATERIAL_COUNT; i++) {
-        const Piece *piece = &body->pieces[i];
-        int position = write_vectors(w, piece->position, piece->count, 1);
-        int normal = write_vectors(w, piece->normal, piece->count, 0);
-        int texture = write_floats(w, piece->texture, piece->count, "VEC2", 2, TARGET_ARRAY);
-        int colour = write_vectors(w, piece->colour, piece->count, 0);
-        int indices = write_indices(w, piece->indices, piece->index_count);
-        buffer_print(json, "%s{\"attributes\":{\"POSITION\":%d,\"NORMAL\":%d,\"TEXCOORD_0\":%d,\"COLOR_0\":%d",
-                     i ? ",\n" : "", position, normal, texture, colour);
-        write_grips(w, json, piece);
-        buffer_print(json, ",\"indices\":%d,\"material\":%d}", indices, PART_COUNT + i);
+        buffer_print(json, i ? ",\n" : "");
+        piece_write(w, json, &body->pieces[i], PART_COUNT + i);
     }
     buffer_print(json, "]}");
 }

@@ -2,7 +2,9 @@
 #ifndef PUPPET_WRITE_H
 #define PUPPET_WRITE_H
 
+#include "body.h"
 #include "shared/buffer.h"
+#include "shared/writer.h"
 
 /* What went into the file, for the summary. */
 typedef struct {
@@ -12,5 +14,11 @@ typedef struct {
 /* The buffer receives the file: all of it; its skeleton with the clips that get up. */
 PuppetCensus puppet_write(Buffer *file);
 PuppetCensus get_up_write(Buffer *file);
+
+/* A coat that the puppet can wear: it has some of the puppet's joints, and a tail with two joints of its own. */
+PuppetCensus coat_write(Buffer *file);
+
+/* Prints a primitive. */
+void piece_write(Writer *w, Buffer *json, const Piece *piece, int material);
 
 #endif
