@@ -1,9 +1,11 @@
 /* A driver that refuses one call of a create: for every create of the library and every GL function, the first call of
  * that function fails, then the second, until a create passes without a refusal. Until then none may return NOH_OK,
  * nothing is left behind in GL or in the ledger, and a second attempt in the same memory succeeds. Runs on the null
- * platform, which counts the objects that exist. */
-#include "support/support.h"
+ * platform, which counts the objects that exist. For a stage and what is made with it, calls 0, 1, 2, 4, 8 and so on of
+ * each function, all with NOH_LONG set. */
 #include "support/renderer.h"
+#include "support/stage_fixture.h"
+#include "support/support.h"
 
 #include "gpu/gpu.h"
 #include "gl/device/gl_timer_internal.h"
@@ -45,8 +47,28 @@ typedef struct maker {
         noh_gl_variant variant;
         noh_gl_morph *morph;
         noh_gl_skin *skin;
+        noh_gl_light light;
+        noh_backdrop backdrop;
+        noh_stage_floor floor;
+        noh_stage_blob blob;
+        noh_stage_terrain terrain;
+        noh_stage_shader *shader;
+        noh_stage_decals decals;
+        noh_stage_patches patches;
     } made;
+    const noh_reflection *reflection;
+    /* a stage with what is made on it; NULL: nothing */
+    cast *cast;
+    noh_stage_decals decals; /* of patches */
+    void *decal_memory;
+    noh_null_report rest; /* what the stage itself has */
+    noh_gl_ledger rest_ledger;
 } maker;
+
+static noh_gl_device device_of(maker *m)
+{
+    return (noh_gl_device){ &m->g.gl, &m->g.caps, &m->g.ledger, NULL, 0 };
+}
 
 typedef struct create_case {
     const char *name;
@@ -56,6 +78,7 @@ typedef struct create_case {
     noh_morph_path path;
     noh_accumulate accumulate;
     noh_palette_mode mode;
+    enum { ALONE, A_STAGE, ON_A_STAGE, ON_DECALS } where;
 } create_case;
 
 static noh_result make_buffer(maker *m, noh_error *error)
@@ -181,6 +204,110 @@ static void unmake_skin(maker *m)
     noh_gl_skin_delete(m->made.skin);
 }
 
+static noh_result make_light(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    const noh_gl_light_desc desc = { m->reflection, 64 };
+    return noh_gl_light_create(&d, &desc, &m->made.light, error);
+}
+
+static void unmake_light(maker *m)
+{
+    noh_gl_light_delete(&m->made.light);
+}
+
+static noh_result make_backdrop(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    return noh_backdrop_create(&d, 0, &m->made.backdrop, error);
+}
+
+static void unmake_backdrop(maker *m)
+{
+    noh_backdrop_delete(&m->made.backdrop);
+}
+
+static noh_result make_floor(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    return noh_stage_floor_create(&d, 1, &m->made.floor, error);
+}
+
+static void unmake_floor(maker *m)
+{
+    noh_stage_floor_delete(&m->made.floor);
+}
+
+static noh_result make_blob(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    return noh_stage_blob_create(&d, &m->made.blob, error);
+}
+
+static void unmake_blob(maker *m)
+{
+    noh_stage_blob_delete(&m->made.blob);
+}
+
+static noh_result make_terrain(maker *m, noh_error *error)
+{
+    static const uint16_t heights[9];
+    const noh_field field = { heights, 3, 3, { 0.0f, 0.0f, 0.0f }, 1.0f, 1.0f };
+    const noh_gl_device d = device_of(m);
+    return noh_stage_terrain_create(&d, &field, NULL, m->room, sizeof m->room, &m->made.terrain, error);
+}
+
+static void unmake_terrain(maker *m)
+{
+    noh_stage_terrain_delete(&m->made.terrain);
+}
+
+static noh_result make_stage(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    cast *c = m->cast;
+    return noh_stage_init(c->memory, (size_t)c->plan.cpu_bytes, &d, &c->desc, &c->plan, &c->stage, error);
+}
+
+static void unmake_stage(maker *m)
+{
+    noh_stage_delete(m->cast->stage);
+}
+
+static noh_result make_shader(maker *m, noh_error *error)
+{
+    const noh_gl_shader_desc desc = { .name = "plain",
+                                      .vertex = "void main() { gl_Position = vec4(noh_fetch().position, 1.0); }\n",
+                                      .fragment = "out vec4 color;\nvoid main() { noh_fade(); color = vec4(1.0); }\n" };
+    return noh_stage_shader_create(m->cast->stage, m->room, sizeof m->room, &desc, NULL, 0, &m->made.shader, error);
+}
+
+static void unmake_shader(maker *m)
+{
+    noh_stage_shader_delete(m->made.shader);
+}
+
+static noh_result make_decals(maker *m, noh_error *error)
+{
+    const noh_gl_device d = device_of(m);
+    return noh_stage_decals_create(m->cast->stage, &d, m->room, sizeof m->room, NULL, &m->made.decals, error);
+}
+
+static void unmake_decals(maker *m)
+{
+    noh_stage_decals_delete(&m->made.decals);
+}
+
+static noh_result make_patches(maker *m, noh_error *error)
+{
+    return noh_stage_patches_create(&m->decals, 4, 256, m->room, sizeof m->room, &m->made.patches, error);
+}
+
+static void unmake_patches(maker *m)
+{
+    noh_stage_patches_delete(&m->made.patches);
+}
+
 /* ---- made again ---- */
 
 static noh_result restore_picture(maker *m, noh_error *error)
@@ -210,22 +337,71 @@ static noh_result restore_skin(maker *m, noh_error *error)
     return noh_gl_skin_restore(m->made.skin, error);
 }
 
+static noh_result restore_light(maker *m, noh_error *error)
+{
+    return noh_gl_light_restore(&m->made.light, error);
+}
+
+static noh_result restore_backdrop(maker *m, noh_error *error)
+{
+    return noh_backdrop_restore(&m->made.backdrop, NULL, 0, error);
+}
+
+static noh_result restore_floor(maker *m, noh_error *error)
+{
+    return noh_stage_floor_restore(&m->made.floor, NULL, 0, error);
+}
+
+static noh_result restore_blob(maker *m, noh_error *error)
+{
+    return noh_stage_blob_restore(&m->made.blob, NULL, 0, error);
+}
+
+static noh_result restore_terrain(maker *m, noh_error *error)
+{
+    return noh_stage_terrain_restore(&m->made.terrain, NULL, 0, error);
+}
+
+static noh_result restore_stage(maker *m, noh_error *error)
+{
+    return noh_stage_restore(m->cast->stage, error);
+}
+
+static noh_result restore_shader(maker *m, noh_error *error)
+{
+    return noh_stage_shader_restore(m->made.shader, NULL, 0, error);
+}
+
+static noh_result restore_decals(maker *m, noh_error *error)
+{
+    return noh_stage_decals_restore(&m->made.decals, NULL, NULL, 0, error);
+}
+
+static noh_result restore_patches(maker *m, noh_error *error)
+{
+    return noh_stage_patches_restore(&m->made.patches, error);
+}
+
 #define MORPH(path, format)                                                                    \
     {                                                                                          \
         "morph " #path " " #format, make_morph, unmake_morph, restore_morph, NOH_MORPH_##path, \
-            NOH_ACCUMULATE_##format, 0                                                         \
+            NOH_ACCUMULATE_##format, 0, ALONE                                                  \
+    }
+#define CASE(name, where)                                                 \
+    {                                                                     \
+#name, make_##name, unmake_##name, restore_##name, 0, 0, 0, where \
     }
 static const create_case cases[] = {
-    { "buffer", make_buffer, unmake_buffer, NULL, 0, 0, 0 },
-    { "texture", make_texture, unmake_texture, NULL, 0, 0, 0 },
-    { "picture", make_picture, unmake_texture, restore_picture, 0, 0, 0 },
-    { "renderbuffer", make_renderbuffer, unmake_renderbuffer, NULL, 0, 0, 0 },
-    { "framebuffer", make_framebuffer, unmake_framebuffer, NULL, 0, 0, 0 },
-    { "mesh", make_mesh, unmake_mesh, restore_mesh, 0, 0, 0 },
-    { "renderer", make_renderer, unmake_renderer, restore_renderer, 0, 0, 0 },
-    { "variant", make_variant, unmake_variant, NULL, 0, 0, 0 },
-    { "skin uniform", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_UNIFORM },
-    { "skin texture", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_TEXTURE },
+    { "buffer", make_buffer, unmake_buffer, NULL, 0, 0, 0, ALONE },
+    { "texture", make_texture, unmake_texture, NULL, 0, 0, 0, ALONE },
+    { "picture", make_picture, unmake_texture, restore_picture, 0, 0, 0, ALONE },
+    { "renderbuffer", make_renderbuffer, unmake_renderbuffer, NULL, 0, 0, 0, ALONE },
+    { "framebuffer", make_framebuffer, unmake_framebuffer, NULL, 0, 0, 0, ALONE },
+    { "mesh", make_mesh, unmake_mesh, restore_mesh, 0, 0, 0, ALONE },
+    { "renderer", make_renderer, unmake_renderer, restore_renderer, 0, 0, 0, ALONE },
+    { "variant", make_variant, unmake_variant, NULL, 0, 0, 0, ALONE },
+    { "skin uniform", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_UNIFORM, ALONE },
+    { "skin texture", make_skin, unmake_skin, restore_skin, 0, 0, NOH_PALETTE_TEXTURE, ALONE },
     MORPH(LAYERED, F32),
     MORPH(LAYERED, F16),
     MORPH(MRT, F32),
@@ -235,7 +411,16 @@ static const create_case cases[] = {
     MORPH(GATHER, F32),
     MORPH(GATHER, F16),
     MORPH(CPU, F32),
-    MORPH(CPU, F16)
+    MORPH(CPU, F16),
+    CASE(light, ALONE),
+    CASE(backdrop, ALONE),
+    CASE(floor, ALONE),
+    CASE(blob, ALONE),
+    CASE(terrain, ALONE),
+    CASE(stage, A_STAGE),
+    CASE(shader, ON_A_STAGE),
+    CASE(decals, ON_A_STAGE),
+    CASE(patches, ON_DECALS),
 };
 
 /* ---- the platform ---- */
@@ -258,17 +443,56 @@ static void maker_open(maker *m)
     }
 }
 
+/* The stage, or the stage and the decals, that a case is made on. */
+static void place_open(maker *m, const create_case *c, cast *on)
+{
+    const noh_gl_device d = device_of(m);
+    noh_error error;
+    m->cast = on;
+    if (noh_stage_plan_make(&on->desc, &m->g.caps, &on->plan, &error)) fail_msg("plan: %s", error.what);
+    on->memory = test_aligned(NULL, (size_t)on->plan.cpu_bytes);
+    if (c->where >= ON_A_STAGE) assert_int_equal(make_stage(m, &error), NOH_OK);
+    if (c->where == ON_DECALS) {
+        const size_t bytes = noh_stage_decals_size(on->stage);
+        m->decal_memory = test_aligned(NULL, bytes);
+        assert_int_equal(noh_stage_decals_create(on->stage, &d, m->decal_memory, bytes, NULL, &m->decals, NULL),
+                         NOH_OK);
+    }
+    noh_null_report_of(m->g.context, &m->rest);
+    m->rest_ledger = m->g.ledger;
+}
+
+static void place_close(maker *m, const create_case *c)
+{
+    if (c->where == ON_DECALS) noh_stage_decals_delete(&m->decals);
+    if (c->where >= ON_A_STAGE) noh_stage_delete(m->cast->stage);
+    free(m->decal_memory);
+    free(m->cast->memory);
+    m->cast->stage = NULL;
+    m->cast->memory = NULL;
+}
+
+static void place_restore(maker *m, const create_case *c)
+{
+    if (c->where >= ON_A_STAGE) assert_int_equal(noh_stage_restore(m->cast->stage, NULL), NOH_OK);
+    if (c->where == ON_DECALS) assert_int_equal(noh_stage_decals_restore(&m->decals, NULL, NULL, 0, NULL), NOH_OK);
+}
+
+static uint32_t next_call(const create_case *c, uint32_t k)
+{
+    return c->where == ALONE || k < 2u || getenv("NOH_LONG") ? k + 1u : 2u * k;
+}
+
 static void expect_nothing(maker *m, const char *name, const char *function, uint32_t k)
 {
     noh_null_report report;
-    noh_gl_ledger nothing;
-    memset(&nothing, 0, sizeof nothing);
     noh_null_report_of(m->g.context, &report);
     for (int kind = 0; kind < NOH_NULL_KINDS; kind++) {
-        if (report.live[kind])
-            fail_msg("%s, %s %u: %u objects of kind %d are left", name, function, k, report.live[kind], kind);
+        if (report.live[kind] != m->rest.live[kind])
+            fail_msg("%s, %s %u: %u objects of kind %d are left, of %u", name, function, k, report.live[kind], kind,
+                     m->rest.live[kind]);
     }
-    if (memcmp(&m->g.ledger, &nothing, sizeof nothing) != 0)
+    if (memcmp(&m->g.ledger, &m->rest_ledger, sizeof m->rest_ledger) != 0)
         fail_msg("%s, %s %u: the ledger still counts", name, function, k);
 }
 
@@ -276,7 +500,8 @@ static void expect_nothing(maker *m, const char *name, const char *function, uin
 static uint32_t refuse_each(const create_case *c, maker *m, const char *function, GLenum code)
 {
     const noh_result expected = code == GL_OUT_OF_MEMORY ? NOH_ERR_MEMORY : NOH_ERR_GL;
-    for (uint32_t k = 0;; k++) {
+    uint32_t refused = 0;
+    for (uint32_t k = 0;; k = next_call(c, k), refused++) {
         noh_error error = { NOH_OK, NULL, 0, 0 };
         noh_result result;
         memset(&m->made, 0, sizeof m->made);
@@ -287,7 +512,7 @@ static uint32_t refuse_each(const create_case *c, maker *m, const char *function
             if (result) fail_msg("%s fails without a refusal: %s", c->name, error.what);
             c->unmake(m);
             expect_nothing(m, c->name, function, k);
-            return k;
+            return refused;
         }
         if (!result) fail_msg("%s says OK though call %u of %s was refused", c->name, k, function);
         if (result != expected || error.where != code || !error.what) {
@@ -313,13 +538,15 @@ static void lose(maker *m)
 
 static uint32_t refuse_each_restore(const create_case *c, maker *m, const char *function, GLenum code)
 {
-    for (uint32_t k = 0;; k++) {
+    uint32_t count = 0;
+    for (uint32_t k = 0;; k = next_call(c, k), count++) {
         noh_error error = { NOH_OK, NULL, 0, 0 };
         noh_result result;
         int refused;
         memset(&m->made, 0, sizeof m->made);
         assert_int_equal(c->make(m, &error), NOH_OK);
         lose(m);
+        place_restore(m, c);
         assert_true(noh_null_refuse(m->g.context, function, k, code));
         result = c->restore(m, &error);
         refused = noh_null_refused(m->g.context);
@@ -332,7 +559,7 @@ static uint32_t refuse_each_restore(const create_case *c, maker *m, const char *
         if (result) fail_msg("%s is not restored: %s", c->name, error.what);
         c->unmake(m);
         expect_nothing(m, c->name, function, k);
-        if (!refused) return k;
+        if (!refused) return count;
     }
 }
 
@@ -352,6 +579,17 @@ static int may_be_refused(const char *function)
     return strcmp(function, "glGetError") != 0;
 }
 
+static void *reflection_open(noh_reflection *reflection)
+{
+    const noh_environment *room = noh_environment_at(noh_environment_find("room"));
+    const noh_reflection_desc desc = { 0, noh_reflection_of_environment, room };
+    const size_t bytes = noh_reflection_size(0), scratch_bytes = noh_reflection_scratch_size(0);
+    void *texels = malloc(bytes), *scratch = malloc(scratch_bytes);
+    assert_int_equal(noh_reflection_init(texels, bytes, scratch, scratch_bytes, &desc, reflection, NULL), NOH_OK);
+    free(scratch);
+    return texels;
+}
+
 static void no_create_hides_a_refusal(void **state)
 {
     const test_model_desc desc = { 2, 7, 5, TEST_TANGENTS | TEST_UVS | TEST_COLORS | TEST_SCENE, 3 };
@@ -359,24 +597,37 @@ static void no_create_hides_a_refusal(void **state)
     uint8_t *bytes = test_pack(&desc, &count);
     const noh_pack pack = test_open(bytes, count);
     uint32_t refusals = 0, restored = 0;
+    noh_reflection reflection;
+    void *texels = reflection_open(&reflection);
+    cast on;
     (void)state;
+    cast_open(&on);
+    on.kinds[0] = on.kinds[MASKS];
+    on.kinds[1] = on.kinds[TUBES];
+    on.kinds[0].actor_count = on.kinds[1].actor_count = 1;
+    on.desc.kind_count = 2;
+    on.desc.gpu = &noh_stage_on_gl;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        maker *m = test_zeros(sizeof *m);
+        m->pack = pack;
+        m->path = cases[i].path;
+        m->accumulate = cases[i].accumulate;
+        m->mode = cases[i].mode;
+        m->reflection = &reflection;
+        maker_open(m);
+        if (cases[i].where) place_open(m, &cases[i], &on);
         for (size_t f = 0; f < TEST_COUNT(functions); f++) {
-            maker *m = may_be_refused(functions[f]) ? test_zeros(sizeof *m) : NULL;
-            if (!m) continue;
-            m->pack = pack;
-            m->path = cases[i].path;
-            m->accumulate = cases[i].accumulate;
-            m->mode = cases[i].mode;
-            maker_open(m);
-            refusals += refuse_each(&cases[i], m, functions[f], f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
-            if (cases[i].restore)
-                restored += refuse_each_restore(&cases[i], m, functions[f],
-                                                f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE);
-            gpu_close(&m->g);
-            free(m);
+            const GLenum code = f % 2 ? GL_OUT_OF_MEMORY : GL_INVALID_VALUE;
+            const uint32_t refused = may_be_refused(functions[f]) ? refuse_each(&cases[i], m, functions[f], code) : 0;
+            refusals += refused;
+            if (refused && cases[i].restore) restored += refuse_each_restore(&cases[i], m, functions[f], code);
         }
+        if (cases[i].where) place_close(m, &cases[i]);
+        gpu_close(&m->g);
+        free(m);
     }
+    cast_close(&on);
+    free(texels);
     print_message("# %u refused calls in %u creates, %u in their restores\n", refusals, (unsigned)TEST_COUNT(cases),
                   restored);
     assert_true(restored > 500);

@@ -135,19 +135,14 @@ static noh_result create_shadow(noh_gl_light *l, noh_error *error)
     const GLenum none = GL_NONE;
     int kept[2];
     noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->shadow, error);
-    if (result != NOH_OK) {
-        return result;
-    }
+    if (!result && l->desc.shadow_px) result = noh_gl_framebuffer_create(l->gl, l->ledger, &l->framebuffer, error);
+    if (result) return result;
     l->gl->BindTexture(GL_TEXTURE_2D, l->shadow.name);
     noh_gl_label(l->gl, GL_TEXTURE, l->shadow.name, "shadow map", NULL);
     l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
     l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
     l->gl->BindTexture(GL_TEXTURE_2D, 0);
     if (l->desc.shadow_px) {
-        result = noh_gl_framebuffer_create(l->gl, l->ledger, &l->framebuffer, error);
-        if (result != NOH_OK) {
-            return result;
-        }
         noh_gl_framebuffers_keep(l->gl, kept);
         l->gl->BindFramebuffer(GL_FRAMEBUFFER, l->framebuffer);
         l->gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, l->shadow.name, 0);

@@ -410,14 +410,13 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     result = create_program(device, &v, own, &desc, &v.program, error);
     if (!result) {
         find_uniforms(device->api, &v);
+        if (own->made) tell_made(device->api, own, &v);
         result = noh_gl_error_check(device->api, "the driver refused to return the uniforms of a shader variant", 0,
                                     error);
-        if (result) {
+        if (result)
             noh_gl_variant_delete(device->api, device->ledger, &v);
-        } else {
-            if (own->made) tell_made(device->api, own, &v);
+        else
             *out = v;
-        }
     }
     return result;
 }

@@ -31,8 +31,9 @@ noh_result noh_gl_morph_init_direct(noh_gl_morph *m, noh_error *error)
     noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, entries, &m->record_table, error);
     if (last->mesh.header->touched_count) starts += last->instance_count * noh_gl_morph_positions(last->mesh.header);
     if (!result) result = noh_gl_table_create(m->gl, m->ledger, GL_R32UI, starts ? starts : 1u, &m->starts, error);
-    if (!result) upload_empty(m);
-    return result;
+    if (result) return result;
+    upload_empty(m);
+    return noh_gl_error_check(m->gl, "the driver refused the empty list of the accumulator", 0, error);
 }
 
 /* Where an instance's starts begin, and its lists. Blocks of its mesh: as of the finest level that it may have. */

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_light_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
@@ -62,7 +63,7 @@ static noh_result create_program(noh_gl_drawable *d, const noh_gl_device *device
     noh_gl_find_uniforms(d->gl, d->programs[which], light, NOH_DRAWABLE_OWN, d->uniforms[which]);
     noh_gl_find_uniforms(d->gl, d->programs[which], desc->uniforms, desc->uniform_count,
                          d->uniforms[which] + NOH_DRAWABLE_OWN);
-    return NOH_OK;
+    return noh_gl_error_check(d->gl, "the driver refused to return the uniforms of a program", 0, error);
 }
 
 /* ---- objects ---- */
@@ -87,7 +88,11 @@ noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_draw
     out->ledger = device->ledger;
     if (desc->texture.width) result = noh_gl_texture_create(gl, out->ledger, &desc->texture, &out->texture, error);
     if (!result && desc->index_bytes) {
+        noh_gl_error_take(gl);
         gl->BindVertexArray(0);
+        result = noh_gl_drawable_check(out, error);
+    }
+    if (!result && desc->index_bytes) {
         result = noh_gl_buffer_create(gl, out->ledger, GL_ELEMENT_ARRAY_BUFFER, desc->index_bytes, NULL,
                                       GL_DYNAMIC_DRAW, &out->buffer, error);
     }
@@ -96,9 +101,16 @@ noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_draw
     }
     if (result) {
         delete_objects(out, gl);
-    } else if (desc->name[0]) {
-        gl->GenVertexArrays(1, &out->vertex_array);
+        return result;
     }
+    if (desc->name[0]) gl->GenVertexArrays(1, &out->vertex_array);
+    return noh_gl_drawable_check(out, error);
+}
+
+noh_result noh_gl_drawable_check(noh_gl_drawable *d, noh_error *error)
+{
+    const noh_result result = noh_gl_error_check(d->gl, "the driver refused a call while making a drawable", 0, error);
+    if (result) delete_objects(d, d->gl);
     return result;
 }
 

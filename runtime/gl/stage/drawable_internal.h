@@ -39,6 +39,8 @@ void noh_gl_find_uniforms(const noh_gl_api *gl, unsigned program, const char *co
 /* On error nothing is left behind but `gl` and `ledger`, for a later restore. */
 noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_drawable_desc *desc, noh_gl_drawable *out,
                                   noh_error *error);
+/* Last in a create that uploads more: the driver's error, after which nothing is left. */
+noh_result noh_gl_drawable_check(noh_gl_drawable *d, noh_error *error);
 void noh_gl_drawable_delete(noh_gl_drawable *d);
 /* After a lost context: take the old objects out of the ledger without calling GL, and create them again. */
 noh_result noh_gl_drawable_restore(noh_gl_drawable *d, const noh_gl_drawable_desc *desc, char *log, size_t log_bytes,

@@ -136,8 +136,14 @@ noh_result noh_stage_decals_restore(noh_stage_decals *decals, const noh_decal_pi
     memset(&decals->picture, 0, sizeof decals->picture);
     if (picture) decals->picture = *picture;
     decals->program_count = 0;
-    const noh_result result = noh_gl_drawable_restore(&decals->drawable, &rows_desc, log, log_bytes, error);
-    return result ? result : noh_stage_shader_restore(decals->shader, log, log_bytes, error);
+    noh_gl_renderer_forget(&decals->shader->renderer);
+    noh_result result = noh_gl_drawable_restore(&decals->drawable, &rows_desc, log, log_bytes, error);
+    if (!result) result = noh_stage_shader_restore(decals->shader, log, log_bytes, error);
+    if (result) { /* nothing is left, and it may be restored again */
+        noh_stage_shader_delete(decals->shader);
+        noh_gl_drawable_delete(&decals->drawable);
+    }
+    return result;
 }
 
 /* ---- drawing ---- */

@@ -5,6 +5,7 @@
  * its own, and the accumulators switch to the fine tables once these are complete. */
 #include <string.h>
 
+#include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
@@ -63,8 +64,9 @@ noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *mod
 {
     const noh_result result = noh_gl_mesh_create_empty(device->api, device->ledger, &model->room, &model->coarse,
                                                        &model->mesh, error);
-    if (result == NOH_OK) fill_mesh(device, model, &model->coarse);
-    return result;
+    if (result) return result;
+    fill_mesh(device, model, &model->coarse);
+    return noh_gl_error_check(device->api, "the driver refused the buffers of a mesh", 0, error);
 }
 
 /* The finest level of the plan in the pack that was loaded later, with the materials and skin of the kind's pack. */

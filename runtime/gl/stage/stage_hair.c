@@ -180,7 +180,7 @@ static noh_gl_drawable_desc desc_of(const noh_stage_hair *h)
 }
 
 /* What stays in the texture. */
-static void fill(const noh_stage_hair *h)
+static noh_result fill(noh_stage_hair *h, noh_error *error)
 {
     const noh_actor_hair_desc *d = noh_actor_hair_desc_of(h->hair);
     const layout l = layout_of(d);
@@ -189,6 +189,7 @@ static void fill(const noh_stage_hair *h)
     if (l.rest != NOH_NONE) upload_set(h, &l, l.rest, d->cut->desc.rest);
     upload_patches(h, &l);
     end_uploads(h, &kept);
+    return noh_gl_drawable_check(&h->drawable, error);
 }
 
 noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_actor_hair *hair, void *memory, size_t bytes,
@@ -206,8 +207,7 @@ noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_actor_ha
     out->encode_srgb = encode_srgb;
     const noh_gl_drawable_desc desc = desc_of(out);
     result = noh_gl_drawable_create(device, &desc, &out->drawable, error);
-    if (!result) fill(out);
-    return result;
+    return result ? result : fill(out, error);
 }
 
 void noh_stage_hair_delete(noh_stage_hair *hair)
@@ -222,8 +222,7 @@ noh_result noh_stage_hair_restore(noh_stage_hair *hair, char *log, size_t log_by
     const noh_gl_drawable_desc desc = desc_of(hair);
     const noh_result result = noh_gl_drawable_restore(&hair->drawable, &desc, log, log_bytes, error);
     hair->views = 0; /* until the next update */
-    if (!result) fill(hair);
-    return result;
+    return result ? result : fill(hair, error);
 }
 
 /* ---- a frame ---- */

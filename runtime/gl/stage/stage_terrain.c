@@ -58,7 +58,7 @@ static noh_gl_drawable_desc desc_of(const noh_stage_terrain *t)
                                    .texture = texture_desc(&t->lod.field) };
 }
 
-static void upload(const noh_stage_terrain *t)
+static noh_result upload(noh_stage_terrain *t, noh_error *error)
 {
     const noh_gl_api *gl = t->drawable.gl;
     const noh_field *f = &t->lod.field;
@@ -70,6 +70,7 @@ static void upload(const noh_stage_terrain *t)
                       f->heights);
     noh_gl_unpack_end(gl, &kept);
     gl->BindTexture(GL_TEXTURE_2D, 0);
+    return noh_gl_drawable_check(&t->drawable, error);
 }
 
 static void fill_colours(noh_stage_terrain_desc *d)
@@ -97,8 +98,7 @@ noh_result noh_stage_terrain_create(const noh_gl_device *device, const noh_field
     fill_colours(&out->desc);
     const noh_gl_drawable_desc drawable = desc_of(out);
     result = noh_gl_drawable_create(device, &drawable, &out->drawable, error);
-    if (!result) upload(out);
-    return result;
+    return result ? result : upload(out, error);
 }
 
 void noh_stage_terrain_delete(noh_stage_terrain *terrain)
@@ -112,8 +112,7 @@ noh_result noh_stage_terrain_restore(noh_stage_terrain *terrain, char *log, size
     NOH_ASSERT(terrain);
     const noh_gl_drawable_desc desc = desc_of(terrain);
     const noh_result result = noh_gl_drawable_restore(&terrain->drawable, &desc, log, log_bytes, error);
-    if (!result) upload(terrain);
-    return result;
+    return result ? result : upload(terrain, error);
 }
 
 /* ---- drawing ---- */
