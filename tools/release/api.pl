@@ -10,7 +10,9 @@ my @lines;
 while ($text =~ /^#define\s+(NOH_\w+(?:\([^)]*\))?)\s*(.*)$/mg) {
     my ($name, $value) = ($1, $2);
     next if $name =~ /_H$/;
+    $value =~ s/\s*##\s*/##/g; # compilers differ here, and in the blanks of parameters
     $value =~ s/\s+/ /g;
+    $name =~ s/\s+//g;
     push @lines, "macro $name $value";
 }
 $text =~ s/^#.*$//mg;
