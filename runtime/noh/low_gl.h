@@ -220,7 +220,8 @@ typedef struct noh_gl_morph_desc {
     float expected_active;           /* for auto: share of targets active at once, 0..1; 0: 0.5 */
     int without_tangents;            /* 1: two layers, a third less memory, if no shader reads morphed tangents */
     /* For levels loaded later: `meshes` are levels of one mesh, and only their headers are read, which must stay. Until
-     * they are, this coarser level of the same mesh, possibly of another pack, is the finest that is accumulated. Default (NULL) all of `meshes` is loaded */
+     * they are, this coarser level of the same mesh, possibly of another pack, is the finest that is accumulated.
+     * Default (NULL) all of `meshes` is loaded */
     const noh_mesh *coarse;
     /* 1: on the path cpu, writes finished vertices to vertex buffers (deform.h) instead of sums to a texture,
      * which is faster. Draw with noh_gl_draw_mesh or noh_gl_mesh_bind, with a binding taken after the last update, and

@@ -505,8 +505,9 @@ void noh_spring_rotations(const noh_spring_move *moves, uint32_t count);
  *
  *   noh_gaze_rig_make   find the joints that turn, by name
  *
- * The head turns towards a target outside its cone as far as it can. Spine and neck take their shares of the turn. Eyes are faster: they are on the target while the head still turns, and take a quarter
- * of the angle themselves. Animation of eye joints in clips is overwritten.
+ * The head turns towards a target outside its cone as far as it can. Spine and neck take their shares of the turn.
+ * Eyes are faster: they are on the target while the head still turns, and take a quarter of the angle themselves.
+ * Animation of eye joints in clips is overwritten.
  *
  * For bodies without an animated face: faces (face.h, modules.h) have their own gaze.
  * source   Granberg, Character Animation with Direct3D, 2009, chapter 11, "Look-At Inverse Kinematics", which turns

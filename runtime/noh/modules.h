@@ -338,7 +338,8 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
  *
  * The stage creates them, runs them after all modifiers, and plans, saves, forks and hashes their state. It has the
  * same bits for any number of jobs. A chain is a noh_spring (low_life.h), moved by the parent of its first joint as
- * posed by clips, faces and modifiers. Springs replace what clips do to the joints of a chain; chains rest in the bind pose.
+ * posed by clips, faces and modifiers. Springs replace what clips do to the joints of a chain; chains rest in the bind
+ * pose.
  *
  * A chain shorter than NOH_SPRINGS_FADE_PIXELS on the screen fades to its rest. Below half of that length it stays at
  * rest and costs nothing. Larger again, it starts from rest and fades in. All chains are at rest after a cut.
