@@ -1,5 +1,6 @@
 #!/bin/sh
-# noh render without options: the picture's name and size, how a figure stands, what the camera frames; refused input.
+# noh render without options: the picture's name and size, how a figure stands, what the camera frames, also in a sheet;
+# refused input.
 . "$(dirname "$0")/lib.sh"
 
 small='--size 64x64'
@@ -31,5 +32,24 @@ done
     check 'unless it is to stand as modelled' sh -c '! cmp -s auto.png rest.png'
     noh render "$build/demo/puppet.noh" -o x.png $small --pose sit
     expect 2 'no other pose'
+}
+
+# a sheet frames what moves, as a picture of the clip does
+tiles='--tiles 2 --tile 64'
+puppet=$build/demo/puppet.noh
+noh speak hello --face "$puppet" -o line.noh
+# shellcheck disable=SC2086
+{
+    noh sheet "$puppet" -o walk.png --clip walk $tiles
+    noh sheet "$puppet" -o walk_full.png --clip walk $tiles --camera full,15,6
+    check 'a sheet of a clip shows the body that it moves' cmp walk.png walk_full.png
+    noh sheet "$puppet" -o smile.png --target smile --tile 64
+    noh sheet "$puppet" -o smile_face.png --target smile --tile 64 --camera face
+    check 'a sheet of targets shows the face' cmp smile.png smile_face.png
+    for verb in 'sheet --tiles 2 --tile 64' 'render --size 64x64'; do
+        noh ${verb%% *} "$puppet" -o said.png --anim line.noh --clip speech ${verb#* }
+        noh ${verb%% *} "$puppet" -o said_face.png --anim line.noh --clip speech ${verb#* } --camera face,15,6
+        check "${verb%% *} of a clip that moves no joints shows the face" cmp said.png said_face.png
+    done
 }
 finish

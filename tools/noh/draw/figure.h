@@ -245,6 +245,10 @@ int figure_fall(figure *f, const float impulse[3], double seconds);
 bounds figure_bounds(const figure *f, view_frame frame);
 /* 1 where a face is most of it. */
 int figure_is_head(const figure *f);
+/* A clip of a kind; NULL: it has none of this name. */
+const noh_clip_entry *figure_clip(const figure *f, uint32_t kind, const char *name);
+/* FRAME_FACE for `auto` while clips play that move no joints; otherwise `frame`. */
+view_frame figure_framed(const figure *f, view_frame frame, const option_list *clips);
 /* The first joint's place over the ground, which a camera follows. 0 without joints. */
 void figure_anchor(const figure *f, double anchor[3]);
 /* The joints of a kind: matrices[joint_count][12], by malloc; NULL: it has none. */

@@ -230,3 +230,23 @@ bounds figure_bounds(const figure *f, view_frame frame)
     if (has_face && (frame == FRAME_FACE || is_head(&all, &face))) return around_face(f, &all, face);
     return frame == FRAME_UPPER ? upper_of(all) : all;
 }
+
+const noh_clip_entry *figure_clip(const figure *f, uint32_t kind, const char *name)
+{
+    const uint32_t index = noh_stage_find(f->stage, kind, NOH_NAME_CLIP, name);
+    const noh_clip_set *set = NULL;
+    if (index == NOH_NONE || !noh_actor_controller(f->stage, f->actors[kind], &set)) return NULL;
+    return &set->clips[index];
+}
+
+view_frame figure_framed(const figure *f, view_frame frame, const option_list *clips)
+{
+    if (frame != FRAME_AUTO || !clips->count) return frame;
+    for (int i = 0; i < clips->count; i++) {
+        for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
+            const noh_clip_entry *entry = figure_clip(f, k, clips->items[i]);
+            if (entry && !(entry->flags & NOH_CLIP_FLOATS_ONLY)) return FRAME_AUTO;
+        }
+    }
+    return FRAME_FACE;
+}

@@ -163,11 +163,10 @@ int framing_clip(framing *f, const char *clip, bounds *box)
     int moves = 0;
     *box = (bounds){ { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (uint32_t k = 0; k < f->figure.stage_desc.kind_count; k++) {
-        const uint32_t index = noh_stage_find(f->figure.stage, k, NOH_NAME_CLIP, clip);
-        const noh_clip_set *set = NULL;
-        if (index == NOH_NONE || !noh_actor_controller(f->figure.stage, f->figure.actors[k], &set)) continue;
-        moves |= !(set->clips[index].flags & NOH_CLIP_FLOATS_ONLY);
-        seconds = fmax(seconds, (double)set->clips[index].duration_ticks / (double)NOH_TICKS_PER_SECOND);
+        const noh_clip_entry *entry = figure_clip(&f->figure, k, clip);
+        if (!entry) continue;
+        moves |= !(entry->flags & NOH_CLIP_FLOATS_ONLY);
+        seconds = fmax(seconds, (double)entry->duration_ticks / (double)NOH_TICKS_PER_SECOND);
     }
     if (!moves || !f->mesh_count || figure_reset(&f->figure) || figure_play(&f->figure, clip, &play)) return 0;
     steps = (uint32_t)fmin(ceil(seconds * FRAMING_RATE_HZ), 3600.0);

@@ -120,7 +120,7 @@ static int strike(picture *p, const render_args *a)
     noh_gl_camera camera;
     int status = a->figure.mark_count ? figure_pose(&p->figure) : 0;
     if (status || !a->figure.mark_count) return status;
-    const bounds box = picture_bounds(p, view_frame_of(&a->view));
+    const bounds box = picture_bounds(p, figure_framed(&p->figure, view_frame_of(&a->view), &a->clips));
     status = view_camera(&a->view, &box, &camera);
     return status ? status : figure_strike(&p->figure, &camera, a->size[0], a->size[1]);
 }
@@ -138,7 +138,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
-        const bounds box = picture_bounds(p, view_frame_of(&a->view));
+        const bounds box = picture_bounds(p, figure_framed(&p->figure, view_frame_of(&a->view), &a->clips));
         if (p->figure.shows_floor) figure_fit_floor(&p->figure, figure_bounds(&p->figure, FRAME_FULL).low[1]);
         status = view_camera(&a->view, &box, &camera);
     }

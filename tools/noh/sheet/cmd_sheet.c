@@ -84,7 +84,7 @@ static int measure_tiles(sheet *s, picture *p, view_frame frame)
         box = move_box(box, anchor, -1.0);
         s->box = tile ? bounds_union(s->box, box) : box;
     }
-    if (frame == FRAME_FULL) figure_fit_floor(&p->figure, lowest);
+    if (frame == FRAME_FULL || frame == FRAME_AUTO) figure_fit_floor(&p->figure, lowest);
     return status;
 }
 
@@ -138,7 +138,7 @@ static int draw_sheet(sheet *s, const pack_file *file)
     status = picture_open(&p, &g, &s->figure, s->show_bones, s->tile, s->tile);
     if (!status) {
         status = sheet_tiles_measure(&s->tiles, &p.figure);
-        if (!status) status = measure_tiles(s, &p, view_frame_of(&o));
+        if (!status) status = measure_tiles(s, &p, figure_framed(&p.figure, view_frame_of(&o), &s->tiles.clips));
         if (!status) status = strike(s, &p);
         if (!status) status = draw_tiles(s, &p);
         picture_close(&p);
@@ -252,6 +252,8 @@ static int check_args(sheet_args *a)
     s->tiles.lives = s->figure.alive || s->body.has_ground;
     if (!status) status = tool_switch("--hair", a->hair, &s->figure.hair);
     if (!status) status = figure_read_marks(&a->decals, a->decal_kind, a->marks, &s->figure);
+    /* Targets are shown from the front. */
+    if (!s->tiles.clips.count && strcmp(s->camera, "auto") == 0) s->camera = "face";
     s->tiles.alive = s->figure.alive;
     s->tiles.life_s = lives_alone(a) ? a->time_s : 0.0;
     s->tiles.face_count = (uint32_t)a->faces;
@@ -459,7 +461,7 @@ static const option options[] = {
       .excludes = "--lods --blend" },
     OPTIONS_DECALS(sheet_args, decals, decal_kind, "--lods --data --bones"),
     OPTIONS_BODY(sheet_args, s.body_wants),
-    OPTION_CAMERA(sheet_args, s.camera, "face"),
+    OPTION_CAMERA(sheet_args, s.camera, "auto"),
     OPTIONS_LIGHT(sheet_args, s.light, "auto", .excludes = "--bones"),
     OPTION_PATH(sheet_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(sheet_args, accumulate, .initial = "auto", .excludes = "--bones"),
