@@ -167,10 +167,19 @@ static void lids_meet_in_a_blink(void **state)
     assert_true(pairs_that_part(target_named("eyeBlinkRight"), NULL, 0.005, NULL) >= 9);
 }
 
+/* Its triangles are few enough for a phone's hero, and it has a dozen clips. */
+static void it_is_small_and_has_clips(void **state)
+{
+    (void)state;
+    assert_true(head->index_count <= 3 * 25000);
+    assert_int_equal(nell->clip_count, 12);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(targets_move_what_they_name),
     cmocka_unit_test(lips_meet_at_rest),
     cmocka_unit_test(lids_meet_in_a_blink),
+    cmocka_unit_test(it_is_small_and_has_clips),
 };
 
 TEST_MAIN(tests, set_up, tear_down)

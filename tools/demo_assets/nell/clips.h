@@ -4,7 +4,7 @@
 
 #include "mask/animate.h"
 
-enum { NELL_CLIPS = 3 };
+enum { NELL_CLIPS = 12 };
 
 Animation nell_clip(int number);
 
