@@ -66,7 +66,7 @@ run() {
 echo "a bare $suite; its package manager is busy for $lock_s s"
 run demo make demo
 grep -q 'CPU bytes' "$root/demo.txt" || { echo 'make demo prints no table'; failed=$((failed + 1)); }
-[ -s "$root/root/noh/build/mask_faces.png" ] || { echo 'make demo makes no picture'; failed=$((failed + 1)); }
+[ -s "$root/root/noh/build/nell_faces.png" ] || { echo 'make demo makes no picture'; failed=$((failed + 1)); }
 if [ -n "${NOH_BARE_CHECK:-}" ]; then
     run check make check
     tail -n 1 "$root/check.txt"

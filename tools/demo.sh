@@ -1,9 +1,15 @@
 #!/bin/sh
-# demo.sh BUILD: convert the mask, draw it by additive blending into three render targets, and print what it costs.
+# demo.sh BUILD: convert Nell and the mask, draw them, and print what the mask costs.
 set -eu
 build=$1
 noh=$build/noh
 
+echo
+"$noh" build "$build/demo/nell.glb" -o "$build/demo/nell.noh"
+"$noh" render "$build/demo/nell.noh" -o "$build/nell.png"
+"$noh" sheet "$build/demo/nell.noh" -o "$build/nell_greet.png" --clip greet --tiles 8 --columns 4 --tile 256
+"$noh" sheet "$build/demo/nell.noh" -o "$build/nell_faces.png" --target smile --target surprise --target blink \
+    --target viseme_aa --columns 5 --tile 288
 echo
 "$noh" build "$build/mask.glb" -o "$build/mask.noh" --wrinkles auto
 echo
@@ -25,8 +31,11 @@ echo 'LOD levels (--lod-fast; without it their errors are smaller, and the build
 "$noh" budget "$build/mask_levels.noh" --path "$path" | sed -n '/^level/,$p'
 echo
 echo 'Pictures:'
-echo "  $build/mask.png           at rest"
+echo "  $build/nell.png           Nell, a head modelled by code"
+echo "  $build/nell_greet.png     --clip greet: she says hello and smiles"
+echo "  $build/nell_faces.png     the picture in the README"
+echo "  $build/mask.png           a mask at rest"
 echo "  $build/mask_smile.png     --weight smile=1"
 echo "  $build/mask_targets.png   every target"
-echo "  $build/mask_faces.png     the picture in the README"
+echo "  $build/mask_faces.png     a Noh mask's faces"
 echo "  $build/mask_levels.png    every LOD level: at rest, smiling, eyes shut, and at the size at which it is used"

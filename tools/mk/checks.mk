@@ -16,7 +16,7 @@ deps-fuzz:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check fuzz
 
 demo: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb $(BUILD)/demo/nell.glb
 	@sh tools/demo.sh $(BUILD)
 
 demo-body: deps-build
