@@ -94,7 +94,7 @@ static V3 mouth_colour(const Seed *seed)
 static V3 hair_colour(const Seed *seed, double open)
 {
     if (seed->region == ON_SCALP) {
-        double ridge = nell_hair_arch(seed);
+        double ridge = mix(nell_hair_arch(seed), 0.8, smooth(0.65, 0.95, seed->t));
         double lit = 0.20 + 0.30 * smooth(0.5, 0, seed->t) + 0.22 * bump((seed->t - 0.56) / 0.22);
         return shade(v3_scale(v3_mix(brown, copper, lit * ridge), mix(0.50, 1, ridge)), mix(open, 1, 0.4));
     }
