@@ -24,6 +24,10 @@ float noh_strand_alpha(vec4 color)
     return 1.0 - pow(1.0 - min(color.a, 1.0), 1.0 + 2.06 * dark * dark);
 }
 
+#ifdef NOH_TOON_SHADE
+vec3 noh_pixel_color = vec3(1.0); /* the vertex's, for the shade's own texture */
+#endif
+
 /* The material's colour times the vertex's, linear, with alpha. */
 vec4 noh_base(vec2 uv, vec4 color)
 {
@@ -32,6 +36,9 @@ vec4 noh_base(vec2 uv, vec4 color)
 #ifdef NOH_ALPHA_CUT
     if (fract(noh_material.w) > 0.125) texel.rgb /= max(texel.a, 0.002); /* transparent texels are black, so filtering
                                                                           * darkens edges by as much */
+#endif
+#ifdef NOH_TOON_SHADE
+    noh_pixel_color = color.rgb;
 #endif
     vec4 base = noh_base_color * color * texel;
 #if defined(NOH_ALPHA_CUT) && !defined(NOH_ENCODE_SRGB)

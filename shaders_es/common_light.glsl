@@ -4,16 +4,25 @@
  *   NOH_LIT   defined: by the light of common_environment.glsl. Else one key light with a wrapped edge and a highlight,
  *             a fill from sky and ground, and a soft rim */
 #ifndef NOH_DEPTH_ONLY
-#ifdef NOH_TOON
-uniform vec4 noh_surface_values; /* noh_material.surface_values */
-uniform vec3 noh_surface_more[2];
-
-/* The colour of a toon relative to the material: two tones and the edge between them, as in VRMC_materials_mtoon 1.0 of
- * the VRM Consortium. lit: 0 in shadow */
-vec3 noh_toon(vec3 normal, float lit)
+#ifdef NOH_OUTLINE
+vec3 noh_toon(noh_surface s, float lit)
 {
-    float hard = noh_surface_more[0].x, reach = dot(normal, noh_key) + noh_surface_values.w + 1.0 - hard;
-    return mix(noh_surface_values.rgb, vec3(1.0), clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit);
+    return noh_surface_more[2] * mix(vec3(1.0), s.albedo, noh_surface_more[3].y);
+}
+#elif defined(NOH_TOON)
+/* The colour of a toon in white light: two tones and the edge between them, a rim and a matcap, as in
+ * VRMC_materials_mtoon 1.0 of the VRM Consortium. lit: 0 in shadow */
+vec3 noh_toon(noh_surface s, float lit)
+{
+    float hard = noh_surface_more[0].x, reach = dot(s.normal, noh_key) + noh_surface_values.w + 1.0 - hard;
+    vec3 color = mix(s.shade, s.albedo, clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit);
+    float away = clamp(1.0 - dot(s.normal, s.view) + noh_surface_more[0].z, 1e-4, 1.0);
+    color += noh_surface_more[1] * pow(away, noh_surface_more[0].y);
+#ifdef NOH_MATCAP
+    vec3 right = normalize(vec3(s.view.z, 1e-6, -s.view.x)), up = cross(s.view, right);
+    color += texture(noh_wrinkle_weights_1, vec2(0.5) + 0.5 * vec2(dot(right, s.normal), -dot(up, s.normal))).rgb;
+#endif
+    return color;
 }
 #endif
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
@@ -192,12 +201,18 @@ float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 }
 
 #ifdef NOH_TOON
-/* Ambient light is the same for the whole figure: only the edge between the tones shows form. */
+/* Colours are the artist's: the light, the same for the whole figure, tints them by half of its hue, and darkens them
+ * where there is less than white; more does not bleach them, and no tone map changes them. */
 vec3 noh_light(noh_surface s)
 {
-    vec3 around = 0.5 * (noh_ambient(vec3(0.0, 1.0, 0.0)) + noh_ambient(vec3(0.0, -1.0, 0.0)));
-    vec3 tone = noh_toon(s.normal, noh_key_shadow(s.position, s.geometric));
-    return noh_expose(s.albedo * (around + noh_key_color * tone) + s.emissive);
+    vec3 light = noh_lighting[13].x * (noh_lighting[0].rgb + noh_key_color);
+    float most = max(light.r, max(light.g, light.b));
+#ifdef NOH_OUTLINE
+    vec3 color = noh_toon(s, 1.0);
+#else
+    vec3 color = noh_toon(s, noh_key_shadow(s.position, s.geometric));
+#endif
+    return color * mix(vec3(most), light, 0.5) / max(most, 1.0) + s.emissive;
 }
 #else
 vec3 noh_light(noh_surface s)
@@ -284,10 +299,9 @@ vec3 noh_key_matte(noh_surface s)
 }
 
 #ifdef NOH_TOON
-/* In light a toon has its own colour. */
 vec3 noh_light(noh_surface s)
 {
-    return s.albedo * (0.8 * noh_toon(s.normal, 1.0) + 0.2) + s.emissive;
+    return noh_toon(s, 1.0) + s.emissive;
 }
 #else
 vec3 noh_light(noh_surface s)

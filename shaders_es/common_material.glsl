@@ -6,6 +6,9 @@
  *   NOH_EMISSIVE      defined: it emits light
  *   NOH_SPECULAR_MAP  defined: it has a map of the reflectance at normal incidence, with its weight in alpha, or with
  *                     NOH_SPECULAR_ROUGHNESS its roughness
+ *   NOH_TOON          defined: it is a toon
+ *   NOH_TOON_SHADE    defined: and its shade has a texture
+ *   NOH_MATCAP        defined: and it has a matcap
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
 #ifndef NOH_DEPTH_ONLY
@@ -28,6 +31,18 @@ uniform vec3 noh_emissive;
 uniform mediump sampler2D noh_emissive_texture;
 #endif
 
+#ifdef NOH_TOON
+uniform vec4 noh_surface_values;  /* noh_material.surface_values */
+uniform vec3 noh_surface_more[4]; /* hardness of the edge, power and lift of the rim; colour of the rim, of the outline;
+                                   * width of the outline, 1 if the base colour multiplies its colour */
+#ifdef NOH_TOON_SHADE
+uniform mediump sampler2D noh_wrinkle_weights_0; /* the shade */
+#endif
+#ifdef NOH_MATCAP
+uniform mediump sampler2D noh_wrinkle_weights_1; /* the matcap */
+#endif
+#endif
+
 /* A pixel of a surface for lighting; in the world. */
 struct noh_surface {
     vec3 position;
@@ -43,6 +58,9 @@ struct noh_surface {
     vec3 emissive;   /* linear */
     vec3 wrinkles;   /* 0..1 by area, regions, channels; the largest counts */
     float f90;       /* of non-metals, at grazing angles */
+#ifdef NOH_TOON
+    vec3 shade;      /* linear colour where no light arrives */
+#endif
 };
 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
@@ -114,6 +132,11 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
 #endif
 #endif
     s.f0 = min(s.f0, vec3(s.f90)); /* KHR_materials_specular */
+#ifdef NOH_TOON_SHADE
+    s.shade = noh_surface_values.rgb * noh_pixel_color * texture(noh_wrinkle_weights_0, uv).rgb;
+#elif defined(NOH_TOON)
+    s.shade = noh_surface_values.rgb * s.albedo;
+#endif
 #ifdef NOH_EMISSIVE
     s.emissive = noh_emissive * texture(noh_emissive_texture, uv).rgb;
 #endif

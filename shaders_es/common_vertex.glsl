@@ -6,6 +6,7 @@
  *   NOH_DEPTH_ONLY   defined: only depth is drawn. Normals, tangents and their deltas are neither fetched nor
  *                    computed, and are 0; nor are colours and uv, except with
  *   NOH_ALPHA_CUT    defined: pixels are discarded by their alpha. Needs no define without NOH_DEPTH_ONLY
+ *   NOH_OUTLINE      defined: the hull of a toon's outline: positions are moved along the normals
  *   NOH_UV_TARGETS   defined: the mesh has NOH_MESH_UV_TARGETS, and its texture coordinates are fetched */
 uniform mat4 noh_view_projection;
 uniform vec4 noh_world[3];      /* rows of 3 x 4 */
@@ -117,6 +118,20 @@ void noh_wrinkle_vertex(vec2 uv)
     }
 }
 #endif
+#endif
+
+#ifdef NOH_OUTLINE
+uniform vec3 noh_surface_more[4];                /* common_material.glsl */
+uniform mediump sampler2D noh_wrinkle_weights_2; /* g: multiplies the width */
+
+/* From a surface to the hull of its outline. scale: of the world. Below 0 the width is in heights of the picture. */
+vec3 noh_outline_step(noh_vertex v, float scale)
+{
+    mat4 m = noh_view_projection;
+    float height = 2.0 * dot(vec4(m[0].w, m[1].w, m[2].w, m[3].w), vec4(v.position, 1.0)) / length(vec3(m[0].y, m[1].y, m[2].y));
+    float width = noh_surface_more[3].x * textureLod(noh_wrinkle_weights_2, v.uv, 0.0).g;
+    return normalize(v.normal) * max(width * scale, -width * height);
+}
 #endif
 
 vec4 noh_world_row(int i)
@@ -240,6 +255,9 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
+#endif
+#ifdef NOH_OUTLINE
+    v.position += noh_outline_step(v, length(x.xyz));
 #endif
     return v;
 }

@@ -82,6 +82,9 @@ void main()
 #elif NOH_DEBUG_VIEW == 5
     noh_cut(base.a);
     s.albedo = vec3(1.0);
+#ifdef NOH_TOON
+    s.shade = vec3(0.0);
+#endif
     s.metallic = 0.0;
     o_color = vec4(matte_light(s), 1.0);
 #elif NOH_DEBUG_VIEW == 6

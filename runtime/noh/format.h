@@ -270,7 +270,7 @@ typedef struct noh_influences_header {
 } noh_influences_header;
 
 /* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the matrix. How much each target
- * wrinkles each of twelve regions (pack.h); wrinkle_weights of a material place the regions on the skin. ---- */
+ * wrinkles each of twelve regions (pack.h); more_textures of a material place the regions on the skin. ---- */
 
 #define NOH_WRINKLE_REGIONS 12u
 
@@ -308,12 +308,14 @@ typedef struct noh_node {
 #define NOH_MATERIAL_DOUBLE_SIDED 4u
 #define NOH_MATERIAL_UNLIT 8u
 #define NOH_MATERIAL_UNTINTED 16u /* an instance's tint does not change its colour; the tint's alpha still applies */
-/* wrinkle_weights[0] is a mask of codes, NOH_TEXTURE_RGBA8 and `nearest`, and the others are NOH_NONE. A byte b of
+/* more_textures[0] is a mask of codes, NOH_TEXTURE_RGBA8 and `nearest`, and the others are NOH_NONE. A byte b of
  * channel c encodes region 3 * c + b / 90; its weight is b % 90 times 0.014, at most 1, and 0 if b % 90 is above 75 */
 #define NOH_MATERIAL_WRINKLE_CODES 32u
 /* The use of a specular_texture's alpha; with such a texture exactly one is set */
 #define NOH_MATERIAL_SPECULAR_WEIGHT 64u     /* multiplies f0 and the reflectance at grazing angles */
 #define NOH_MATERIAL_SPECULAR_ROUGHNESS 128u /* multiplies roughness */
+#define NOH_MATERIAL_TOON_SHADE 256u         /* a toon's shade has a texture of its own; without: the base colour's */
+#define NOH_MATERIAL_OUTLINE_LIT 512u        /* the base colour multiplies the colour of the outline */
 
 /* The lighting model of a material. noh_material.surface_values (x, y, z, w) and then surface_more hold, for
  *   skin   x millimetres per world unit, for scattering; 0: 1000. Then the inside of the mouth, in the bind pose and
@@ -326,20 +328,28 @@ typedef struct noh_node {
  *   teeth  nearness to the lips, 1 at the foremost teeth, 0 where no light arrives: dot(xyz, position in the bind pose)
  *          + w; zeros: unknown. surface_more x: by how much the half gap of the lips grows, in depths of the mouth, per
  *          unit that targets move the position; the rest zeros
- *   toon   xyz the colour in shade divided by the colour in light; w, -1 to 1, how far light extends past the
- *          terminator. surface_more x, 0 to 1: hardness of the edge; the rest zeros
+ *   toon   xyz the colour in shade divided by the base colour, or with NOH_MATERIAL_TOON_SHADE the factor of its
+ *          texture; w, -1 to 1, how far light extends past the terminator. surface_more, as in VRMC_materials_mtoon: 0,
+ *          0 to 1: hardness of the edge; 1 colour of the rim; 2, at least 0: its Fresnel power; 3 its lift; 4 width of
+ *          the outline, in world units, or below 0 in heights of the picture; 0: none; 5 colour of the outline. Colours
+ *          are r + 256 g + 65536 b, where 0 to 255 are 255 times the square roots of linear values
  * A plain surface has zeros. */
 #define NOH_SURFACE_PLAIN 0u
 #define NOH_SURFACE_SKIN 1u
 #define NOH_SURFACE_EYE 2u
 #define NOH_SURFACE_TEETH 3u /* also gums and tongue: lit only through the lips */
-#define NOH_SURFACE_TOON 4u  /* two tones with an edge between them, no gloss */
+#define NOH_SURFACE_TOON 4u  /* two tones with an edge between them, rim, matcap, outline; no gloss */
 
 /* The weight of a wrinkle map: by the surface's change of area in the pose; by twelve regions, weighted by the
  * expression; by the first weight map's red, always, and its green and blue as regions 3 and 6. */
 #define NOH_WRINKLE_BY_AREA 1u
 #define NOH_WRINKLE_BY_REGION 2u
 #define NOH_WRINKLE_BY_CHANNEL 4u
+
+/* noh_material.more_textures of a toon */
+#define NOH_TOON_SHADE 0u  /* rgb in shade, with NOH_MATERIAL_TOON_SHADE; NOH_NONE: white */
+#define NOH_TOON_MATCAP 1u /* rgb added, by the normal seen from the eye */
+#define NOH_TOON_WIDTH 2u  /* data: g multiplies the width of the outline, sampled at vertices */
 
 /* Textures are indices of texture chunks, or NOH_NONE; colour textures are sRGB, the others LINEAR. The mesh's texture
  * coordinates include any texture transform of the source. */
@@ -349,25 +359,26 @@ typedef struct noh_material {
     uint32_t base_color_texture; /* rgb colour, a alpha */
     float base_color[4];         /* linear */
     float metallic, roughness, alpha_cutoff;
-    float normal_scale;          /* of the normal map's x and y */
-    float occlusion_strength;    /* 0..1: strength of the map's occlusion */
-    float emissive[3];           /* linear, may be above 1 */
-    float f0[3];                 /* reflectance of non-metals at normal incidence; usually 0.04. May exceed 1 if maps
+    float normal_scale;        /* of the normal map's x and y */
+    float occlusion_strength;  /* 0..1: strength of the map's occlusion */
+    float emissive[3];         /* linear, may be above 1 */
+    float f0[3];               /* reflectance of non-metals at normal incidence; usually 0.04. May exceed 1 if maps
                                   * reduce it; the result is clamped to the reflectance at grazing angles */
-    uint32_t normal_texture;     /* tangent space, +y up: rgb = 0.5 + 0.5 * xyz. Needs a mesh with tangents */
-    uint32_t surface_texture;    /* r occlusion; g, b multiply roughness, metallic; a multiplies f0 and the reflectance
+    uint32_t normal_texture;   /* tangent space, +y up: rgb = 0.5 + 0.5 * xyz. Needs a mesh with tangents */
+    uint32_t surface_texture;  /* r occlusion; g, b multiply roughness, metallic; a multiplies f0 and the reflectance
                                   * at grazing angles */
-    uint32_t emissive_texture;   /* rgb multiplies `emissive` */
-    uint32_t wrinkle_texture;    /* a second normal map, with wrinkles */
-    uint32_t wrinkle_weights[3]; /* rgba of the three: coverage of a texel by each of twelve regions, sampled at
-                                  * vertices; or a mask sampled at pixels: NOH_MATERIAL_WRINKLE_CODES */
-    uint32_t surface;            /* NOH_SURFACE_* */
-    float surface_values[4];     /* of the surface, above */
-    uint16_t wrinkle_models;     /* NOH_WRINKLE_BY_*; the largest weight counts; 0 without a wrinkle map */
-    int16_t priority;            /* of blended materials: drawn after lower ones of the same figure; -128..127 */
-    float surface_more[6];       /* of the surface, above */
-    uint32_t specular_texture;   /* with NOH_MATERIAL_SPECULAR_*: rgb multiplies f0; a by the flag. Otherwise 0 */
-    float f90_loss;              /* 0..1: non-metals reflect 1 - f90_loss at grazing angles */
+    uint32_t emissive_texture; /* rgb multiplies `emissive` */
+    uint32_t wrinkle_texture;  /* a second normal map, with wrinkles */
+    /* With a wrinkle map rgba of the three: coverage of a texel by each of twelve regions, sampled at vertices; or a
+     * mask sampled at pixels: NOH_MATERIAL_WRINKLE_CODES. Of a toon, which has no wrinkle map: NOH_TOON_* */
+    uint32_t more_textures[3];
+    uint32_t surface;          /* NOH_SURFACE_* */
+    float surface_values[4];   /* of the surface, above */
+    uint16_t wrinkle_models;   /* NOH_WRINKLE_BY_*; the largest weight counts; 0 without a wrinkle map */
+    int16_t priority;          /* of blended materials: drawn after lower ones of the same figure; -128..127 */
+    float surface_more[6];     /* of the surface, above */
+    uint32_t specular_texture; /* with NOH_MATERIAL_SPECULAR_*: rgb multiplies f0; a by the flag. Otherwise 0 */
+    float f90_loss;            /* 0..1: non-metals reflect 1 - f90_loss at grazing angles */
 } noh_material;
 
 /* ---- CHUNK_TEXTURE: header, then the mip levels one after another, top row first. Each level has half the width and

@@ -374,6 +374,100 @@ static void a_toon_has_two_tones(void **state)
     scene_close(&s);
 }
 
+/* ---- MToon ---- */
+
+#define CAP 64u
+
+/* r and g: where it was read. */
+static model_texture cap_picture(uint8_t rgba[CAP * CAP * 4])
+{
+    const model_texture cap = { .rgba = rgba, .width = CAP, .height = CAP, .wrap_s = 33071, .wrap_t = 33071 };
+    for (uint32_t i = 0; i < CAP * CAP; i++) {
+        rgba[4 * i] = (uint8_t)(4 * (i % CAP));
+        rgba[4 * i + 1] = (uint8_t)(4 * (i / CAP));
+        rgba[4 * i + 2] = 0;
+        rgba[4 * i + 3] = 255;
+    }
+    return cap;
+}
+
+/* A ball in light from the eye, against VRMC_materials_mtoon 1.0: a shade of its own, a rim, and a matcap that is read
+ * at the normal, downwards. */
+static void a_toon_has_a_rim_and_a_matcap(void **state)
+{
+    static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
+    static uint8_t rgba[CAP * CAP * 4];
+    const model_texture cap = cap_picture(rgba);
+    model_material toon = scene_material(values);
+    noh_lighting lighting;
+    double worst = 0.0;
+    size_t count;
+    scene s;
+    (void)state;
+    toon.surface = NOH_SURFACE_TOON;
+    toon.toon_shade = 1;
+    for (int c = 0; c < 3; c++) toon.surface_values[c] = 0.1f * (float)c;
+    toon.surface_values[3] = -0.6f;
+    toon.surface_more[0] = 0.9f;
+    toon.surface_more[1] = 65536.0f * 204.0f; /* blue, 0.64 */
+    toon.surface_more[2] = 3.0f;
+    toon.surface_more[3] = 0.1f;
+    toon.more_textures[NOH_TOON_MATCAP] = 0;
+    uint8_t *pack = scene_pack(&toon, &cap, &count);
+    scene_open_pack(&s, pack, count, &scene_black, 0, NULL);
+    key_alone(front, &lighting);
+    uint8_t *drawn = scene_draw(&s, SPHERE, scene_identity, &lighting);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        const double x = pixel_at(i % SIDE), y = -pixel_at(i / SIDE), r2 = x * x + y * y;
+        if (r2 > 0.8) continue;
+        const double z = sqrt(1.0 - r2), lit = fmin(fmax((z - 0.6 + 0.1) / 0.2, 0.0), 1.0);
+        const double read[3] = { 127.5 + 127.5 * x, 127.5 - 127.5 * y, 0.0 }, rim[3] = { 0.0, 0.0, 0.64 };
+        for (int c = 0; c < 3; c++) {
+            const double tone = 0.1 * c + (0.3 - 0.1 * c) * lit + rim[c] * pow(fmin(1.1 - z, 1.0), 3.0);
+            const double should = 0.9 * (tone + (c < 2 ? decoded((uint8_t)read[c]) : 0.0));
+            worst = fmax(worst, fabs(decoded(drawn[4 * i + (uint32_t)c]) - fmin(should, 1.0)));
+        }
+    }
+    print_message("off by %.4f at most\n", worst);
+    assert_true(worst < 0.03);
+    free(drawn);
+    scene_close(&s);
+}
+
+/* A ball of radius 0.5 under an outline of 0.1 in the world, or a twentieth of the picture's height, also in a mirror:
+ * the hull's front is open. */
+static void a_toon_has_an_outline(void **state)
+{
+    static const float values[4] = { 0.8f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
+    static const float widths[] = { 0.2f, -0.05f }; /* the world's scale is a half */
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const float mirror = i & 1 ? -0.5f : 0.5f;
+        const float half[12] = { mirror, 0, 0, 0, 0, 0.5f, 0, 0, 0, 0, 0.5f, 0 };
+        model_material toon = scene_material(values);
+        noh_lighting lighting;
+        double outer = 0.0, inner = 2.0;
+        scene s;
+        toon.surface = NOH_SURFACE_TOON;
+        toon.surface_more[0] = 0.9f;
+        toon.surface_more[4] = widths[i >> 1];
+        toon.surface_more[5] = 255.0f; /* red */
+        scene_open(&s, &toon, &scene_black, 0, NULL);
+        key_alone(front, &lighting);
+        uint8_t *drawn = scene_draw(&s, SPHERE, half, &lighting);
+        for (uint32_t k = 0; k < SIDE; k++) {
+            const uint8_t *pixel = drawn + 4 * ((size_t)(SIDE / 2) * SIDE + k);
+            if (pixel[0] < 200 || pixel[1] > 60) continue; /* neither grey nor what is behind */
+            outer = fmax(outer, fabs(pixel_at(k)));
+            inner = fmin(inner, fabs(pixel_at(k)));
+        }
+        print_message("from %.3f to %.3f\n", inner, outer);
+        assert_true(fabs(inner - 0.5) < 0.04 && fabs(outer - 0.6) < 0.04);
+        free(drawn);
+        scene_close(&s);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -386,6 +480,8 @@ int main(void)
         cmocka_unit_test(lids_darken_the_ball),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
         cmocka_unit_test(a_toon_has_two_tones),
+        cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),
+        cmocka_unit_test(a_toon_has_an_outline),
         cmocka_unit_test(a_highlight_is_seen_from_its_point),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

@@ -52,7 +52,7 @@ model_material scene_material(const float values[4])
     return m;
 }
 
-static uint8_t *make_pack(const model_material *material, size_t *count)
+uint8_t *scene_pack(const model_material *material, const model_texture *texture, size_t *count)
 {
     const test_model_desc desc = { MESHES, 65, 0, TEST_UVS, 1 };
     model *m = test_model(&desc);
@@ -61,6 +61,15 @@ static uint8_t *make_pack(const model_material *material, size_t *count)
     m->materials[0] = *material;
     m->material_count = 1;
     m->materials[0].name = model_string("ball");
+    if (texture) {
+        const size_t size = (size_t)texture->width * texture->height * 4u;
+        m->textures = test_zeros(sizeof *m->textures);
+        m->textures[0] = *texture;
+        m->textures[0].name = model_string("picture");
+        m->textures[0].rgba = test_zeros(size);
+        memcpy(m->textures[0].rgba, texture->rgba, size);
+        m->texture_count = 1;
+    }
     fill_sphere(&m->meshes[SPHERE], 65);
     fill_square(&m->meshes[SQUARE], 71);
     for (int i = 0; i < MESHES; i++) m->meshes[i].submeshes[0].material = 0;
@@ -86,7 +95,7 @@ void scene_open(scene *s, const model_material *material, const noh_environment 
                 const char *own)
 {
     size_t count;
-    uint8_t *bytes = make_pack(material, &count);
+    uint8_t *bytes = scene_pack(material, NULL, &count);
     scene_open_pack(s, bytes, count, lit, shadow_px, own);
 }
 
@@ -108,6 +117,11 @@ void scene_open_pack(scene *s, uint8_t *bytes, size_t count, const noh_environme
         assert_int_equal(noh_gl_mesh_create(&s->g->gl, &s->ledger, &s->meshes[i], &s->drawn[i], NULL), NOH_OK);
     }
     const noh_gl_device device = { &s->g->gl, NULL, &s->ledger, log, sizeof log };
+    if (s->pack.runs[NOH_CHUNK_TEXTURE].count) {
+        noh_texture texture;
+        assert_int_equal(noh_pack_texture_at(&s->pack, 0, &texture, NULL), NOH_OK);
+        assert_int_equal(noh_gl_picture_create(&s->g->gl, &s->ledger, &texture, &s->picture, NULL), NOH_OK);
+    }
     if (lit) open_light(s, &device, lit, shadow_px);
     d.meshes = s->meshes;
     d.mesh_count = MESHES;
@@ -123,6 +137,7 @@ void scene_close(scene *s)
     canvas_close(&s->canvas);
     noh_gl_renderer_delete(&s->renderer);
     if (s->light.gl) noh_gl_light_delete(&s->light);
+    noh_gl_texture_delete(&s->g->gl, &s->ledger, &s->picture);
     for (int i = 0; i < MESHES; i++) noh_gl_mesh_delete(&s->g->gl, &s->ledger, &s->drawn[i]);
     assert_int_equal(noh_gl_ledger_bytes(&s->ledger), 0);
     free(s->bytes);
@@ -141,9 +156,7 @@ noh_gl_camera scene_front(void)
 
 void scene_draw_mesh(scene *s, int mesh, const float world[12], int pass)
 {
-    noh_gl_texture none[1];
-    memset(none, 0, sizeof none);
-    noh_gl_draw_mesh(&s->renderer, &s->drawn[mesh], world, NULL, NULL, NULL, none, pass);
+    noh_gl_draw_mesh(&s->renderer, &s->drawn[mesh], world, NULL, NULL, NULL, &s->picture, pass);
 }
 
 uint8_t *scene_draw(scene *s, int mesh, const float world[12], const noh_lighting *lighting)

@@ -27,6 +27,7 @@ typedef struct scene {
     noh_gl_renderer renderer;
     noh_reflection reflection;
     noh_gl_light light;
+    noh_gl_texture picture; /* the pack's first texture, if it has one */
     noh_gl_ledger ledger;
     canvas canvas;
     float eye[3]; /* highlights are seen from there; the picture stays that along -z */
@@ -40,6 +41,8 @@ model_material scene_material(const float values[4]);
  * own: a fragment shader in place of the library's, for colour alone; or NULL */
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,
                 const char *own);
+/* A pack of that material, to be freed. texture: its first one, copied; NULL: none */
+uint8_t *scene_pack(const model_material *material, const model_texture *texture, size_t *count);
 /* The same with a pack of yours, of MESHES meshes, which scene_close frees. */
 void scene_open_pack(scene *s, uint8_t *bytes, size_t count, const noh_environment *lit, uint32_t shadow_px,
                      const char *own);

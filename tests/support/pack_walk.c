@@ -106,9 +106,9 @@ static void walk_textures(walk *w)
     for (uint32_t i = 0; i < w->pack->material_count; i++) {
         const noh_material *m = &w->pack->materials[i];
         const uint32_t textures[] = {
-            m->base_color_texture, m->normal_texture,     m->surface_texture,
-            m->emissive_texture,   m->wrinkle_texture,    m->wrinkle_weights[0],
-            m->wrinkle_weights[1], m->wrinkle_weights[2], m->flags & 192u ? m->specular_texture : NOH_NONE
+            m->base_color_texture, m->normal_texture,   m->surface_texture,
+            m->emissive_texture,   m->wrinkle_texture,  m->more_textures[0],
+            m->more_textures[1],   m->more_textures[2], m->flags & 192u ? m->specular_texture : NOH_NONE
         };
         eat_name(w, noh_pack_string(w->pack, m->name));
         for (int k = 0; k < 9; k++) {

@@ -24,6 +24,7 @@ static noh_result check_texture_of(const noh_check *check, uint32_t texture, int
 
 static noh_result check_material_textures(const noh_check *check, const noh_material *m, uint64_t at)
 {
+    const int is_toon = m->surface == NOH_SURFACE_TOON;
     const struct {
         size_t field;
         uint32_t texture;
@@ -34,9 +35,9 @@ static noh_result check_material_textures(const noh_check *check, const noh_mate
         { offsetof(noh_material, normal_texture), m->normal_texture, 1 },
         { offsetof(noh_material, surface_texture), m->surface_texture, 1 },
         { offsetof(noh_material, wrinkle_texture), m->wrinkle_texture, 1 },
-        { offsetof(noh_material, wrinkle_weights), m->wrinkle_weights[0], 1 },
-        { offsetof(noh_material, wrinkle_weights) + 4u, m->wrinkle_weights[1], 1 },
-        { offsetof(noh_material, wrinkle_weights) + 8u, m->wrinkle_weights[2], 1 },
+        { offsetof(noh_material, more_textures), m->more_textures[0], !is_toon },
+        { offsetof(noh_material, more_textures) + 4u, m->more_textures[1], !is_toon },
+        { offsetof(noh_material, more_textures) + 8u, m->more_textures[2], 1 },
     };
     noh_result result = NOH_OK;
     for (size_t i = 0; !result && i < sizeof textures / sizeof textures[0]; i++) {
@@ -49,13 +50,13 @@ static noh_result check_material_textures(const noh_check *check, const noh_mate
 static noh_result check_wrinkle_codes(const noh_check *check, const noh_material *m, uint64_t at)
 {
     const noh_texture_header *h;
-    const uint64_t where = at + offsetof(noh_material, wrinkle_weights);
+    const uint64_t where = at + offsetof(noh_material, more_textures);
     if (!(m->flags & NOH_MATERIAL_WRINKLE_CODES)) return NOH_OK;
-    if (m->wrinkle_weights[0] == NOH_NONE || m->wrinkle_weights[1] != NOH_NONE || m->wrinkle_weights[2] != NOH_NONE) {
+    if (m->more_textures[0] == NOH_NONE || m->more_textures[1] != NOH_NONE || m->more_textures[2] != NOH_NONE) {
         return noh_check_fail(check, "material flags use a mask of wrinkle regions, but the material has none",
                               at + offsetof(noh_material, flags));
     }
-    h = noh_pack_chunk_at(check->pack, NOH_CHUNK_TEXTURE, m->wrinkle_weights[0]);
+    h = noh_pack_chunk_at(check->pack, NOH_CHUNK_TEXTURE, m->more_textures[0]);
     return h->nearest && h->format == NOH_TEXTURE_RGBA8
                ? NOH_OK
                : noh_check_fail(check, "mask of wrinkle regions is filtered or compressed", where);
@@ -68,7 +69,9 @@ static noh_result check_specular(const noh_check *check, const noh_material *m, 
     const uint64_t where = at + offsetof(noh_material, specular_texture);
     const int maps = (m->normal_texture != NOH_NONE) + (m->surface_texture != NOH_NONE) +
                      (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
-                     (m->wrinkle_texture != NOH_NONE) + (kind != 0) + ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0);
+                     (m->wrinkle_texture != NOH_NONE) + (kind != 0) + ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0) +
+                     ((m->flags & NOH_MATERIAL_TOON_SHADE) != 0) +
+                     (m->surface == NOH_SURFACE_TOON && m->more_textures[NOH_TOON_MATCAP] != NOH_NONE);
     if (!(m->f90_loss >= 0.0f && m->f90_loss <= 1.0f)) {
         return noh_check_fail(check, "what a material reflects at grazing angles is not within 0 to 1",
                               at + offsetof(noh_material, f90_loss));
@@ -83,6 +86,29 @@ static noh_result check_specular(const noh_check *check, const noh_material *m, 
     return kind ? check_texture_of(check, m->specular_texture, 0, where) : NOH_OK;
 }
 
+static noh_result check_toon(const noh_check *check, const noh_material *m, uint64_t at)
+{
+    const float *more = m->surface_more;
+    const uint64_t where = at + offsetof(noh_material, surface_more);
+    if (m->surface != NOH_SURFACE_TOON) {
+        return m->flags & (NOH_MATERIAL_TOON_SHADE | NOH_MATERIAL_OUTLINE_LIT)
+                   ? noh_check_fail(check, "material has flags of a toon, but another surface", at)
+                   : NOH_OK;
+    }
+    if (!(more[0] >= 0.0f && more[0] <= 1.0f)) {
+        return noh_check_fail(check, "the hardness of a toon surface's edge is not within 0 to 1", where);
+    }
+    for (int i = 1; i < 6; i += 4) {
+        if (!(more[i] >= 0.0f && more[i] < 16777216.0f)) {
+            return noh_check_fail(check, "the colour of a toon's rim or outline is not within 0 to 16777215", where);
+        }
+    }
+    if (m->wrinkle_texture != NOH_NONE) {
+        return noh_check_fail(check, "a toon has a wrinkle map", at + offsetof(noh_material, wrinkle_texture));
+    }
+    return more[2] >= 0.0f ? NOH_OK : noh_check_fail(check, "the power of a toon's rim is below 0", where);
+}
+
 static noh_result check_material(const noh_check *check, const noh_material *m, uint64_t at)
 {
     noh_result result = noh_check_name(check, m->name, m->name_hash, at);
@@ -90,7 +116,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
-    if (!result && m->flags & ~255u) {
+    if (!result && m->flags & ~1023u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
     if (!result) result = check_wrinkle_codes(check, m, at);
@@ -110,11 +136,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
         result = noh_check_fail(check, "skin has less than 0 millimetres in a unit",
                                 at + offsetof(noh_material, surface_values));
     }
-    if (!result && m->surface == NOH_SURFACE_TOON && !(m->surface_more[0] >= 0.0f && m->surface_more[0] <= 1.0f)) {
-        result = noh_check_fail(check, "the hardness of a toon surface's edge is not within 0 to 1",
-                                at + offsetof(noh_material, surface_more));
-    }
-    return result;
+    return result ? result : check_toon(check, m, at);
 }
 
 noh_result noh_check_materials(noh_check *check)

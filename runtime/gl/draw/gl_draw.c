@@ -162,7 +162,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     if (morph) noh_gl_morph_bind_streams(r->gl, v->u_streams, morph);
 }
 
-/* The caller's front face, or the opposite one for a mirrored instance. */
+/* The caller's front face, or the opposite one for a mirrored instance, or for the hull of an outline. */
 static void set_front(noh_gl_renderer *r, int mirrored)
 {
     const GLenum kept = r->raster.front_face;
@@ -173,13 +173,18 @@ static void set_front(noh_gl_renderer *r, int mirrored)
     r->gl->FrontFace(mirrored ? (GLenum)(GL_CW + GL_CCW) - r->raster.front_face : kept);
 }
 
+static int is_outline(const noh_gl_variant *v)
+{
+    return (v->key.features & NOH_FEATURE_OUTLINE) != 0;
+}
+
 /* Uniforms of one instance. A crowd has these values in rows instead. */
 static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const float world[12],
                          const noh_gl_morph_binding *morph)
 {
     float rows[12], determinant = noh_gl_normal_rows(world, rows);
     uint32_t tint[3];
-    set_front(r, determinant < 0.0f);
+    set_front(r, (determinant < 0.0f) != is_outline(v));
     r->gl->Uniform4fv(v->u_world, 3, world);
     r->gl->Uniform4fv(v->u_normal, 3, rows);
     noh_gl_tint_bits(r->tint, tint);
@@ -230,6 +235,31 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
         bind_picture(r, NOH_UNIT_EMISSIVE, m->emissive_texture, pictures);
         r->gl->Uniform3fv(v->u_emissive, 1, m->emissive);
     }
+    for (uint32_t k = 0; k < 3; k++) {
+        static const uint32_t of[3] = { NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP, NOH_FEATURE_OUTLINE };
+        if (features & of[k]) bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->more_textures[k], pictures);
+    }
+}
+
+static void decode_color(float code, float rgb[3])
+{
+    for (uint32_t i = 0; i < 3; i++) {
+        const float root = (float)((uint32_t)code >> 8u * i & 255u) / 255.0f;
+        rgb[i] = root * root;
+    }
+}
+
+/* noh_surface_more of a toon: hardness, power, lift; rim; outline; its width, and 1 if the base colour multiplies it. */
+static void set_toon(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
+{
+    const float *values = m->surface_more;
+    float more[4][3] = { { values[0], values[2], values[3] },
+                         { 0.0f },
+                         { 0.0f },
+                         { values[4], m->flags & NOH_MATERIAL_OUTLINE_LIT ? 1.0f : 0.0f, 0.0f } };
+    decode_color(values[1], more[1]);
+    decode_color(values[5], more[2]);
+    r->gl->Uniform3fv(v->u_surface_more, 4, more[0]);
 }
 
 /* Uniforms of skin, eye, teeth and toon materials. The unit of skin defaults to metres. */
@@ -239,7 +269,11 @@ static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const
     const int is_skin = m->surface == NOH_SURFACE_SKIN;
     r->gl->Uniform4f(v->u_surface_values, is_skin ? mm : m->surface_values[0], m->surface_values[1],
                      m->surface_values[2], m->surface_values[3]);
-    r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
+    if (m->surface == NOH_SURFACE_TOON) {
+        set_toon(r, v, m);
+    } else {
+        r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
+    }
 }
 
 /* A crowd has the regions in a row of each instance, if the mesh has any. */
@@ -250,7 +284,7 @@ static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     const GLint models = (GLint)(r->wrinkle_models ? r->wrinkle_models : m->wrinkle_models);
     bind_picture(r, NOH_UNIT_WRINKLE, m->wrinkle_texture, pictures);
     for (uint32_t k = 0; k < (v->key.features & NOH_FEATURE_WRINKLE_PIXEL ? 1u : 3u); k++) {
-        bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->wrinkle_weights[k], pictures);
+        bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->more_textures[k], pictures);
     }
     if (!v->key.crowd) r->gl->Uniform4fv(v->u_wrinkle_regions, 3, r->wrinkles);
     r->gl->Uniform2i(v->u_wrinkle_models, models | (in_rows ? REGIONS_IN_ROWS : 0), 255 - r->smoothed);
@@ -269,7 +303,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
         }
         if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m);
     }
-    if (m->flags & NOH_MATERIAL_DOUBLE_SIDED) {
+    if ((m->flags & NOH_MATERIAL_DOUBLE_SIDED) && !is_outline(v)) {
         r->gl->Disable(GL_CULL_FACE);
     } else {
         r->gl->Enable(GL_CULL_FACE);
@@ -293,13 +327,14 @@ typedef struct draw_job {
 } draw_job;
 
 /* The submeshes that one pass draws. */
-typedef enum draw_part { PART_OPAQUE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_DEPTH } draw_part;
+typedef enum draw_part { PART_OPAQUE, PART_OUTLINE, PART_BLENDED, PART_SOLID_DEPTH, PART_CUT_DEPTH } draw_part;
 
 static int is_in_part(const noh_material *m, draw_part part)
 {
     const int blended = (m->flags & NOH_MATERIAL_BLEND) != 0, cut = (m->flags & NOH_MATERIAL_MASK) != 0;
     switch (part) {
     case PART_OPAQUE: return !blended || noh_gl_has_core(m);
+    case PART_OUTLINE: return noh_gl_outline_features(m) != 0;
     case PART_BLENDED: return blended;
     case PART_SOLID_DEPTH: return !blended && !cut;
     default: return (!blended && cut) || noh_gl_has_core(m);
@@ -392,7 +427,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
     if (j->world) {
         set_instance(j->r, v, j->world, j->morph);
     } else {
-        set_front(j->r, 0);
+        set_front(j->r, is_outline(v));
         if (v->u_user >= 0) j->r->gl->Uniform4f(v->u_user, (float)j->skin->user_row, 0.0f, 0.0f, 0.0f);
     }
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
@@ -425,13 +460,15 @@ static void draw_part_of(const draw_job *j, draw_part part, int priority)
     for (uint32_t i = 0; i < level.header->submesh_count; i++) {
         const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
-        const uint16_t features = is_in_depth(part) ? 0 : noh_gl_features_of(&j->mesh->mesh, m);
+        const uint16_t features = is_in_depth(part)      ? 0
+                                  : part == PART_OUTLINE ? noh_gl_outline_features(m)
+                                                         : noh_gl_features_of(&j->mesh->mesh, m);
         if (draws_nothing(j, s) || !is_in_part(m, part) || (part == PART_BLENDED && m->priority != priority)) {
             continue;
         }
         if (!v || (v->key.features & ~NOH_FEATURE_PHONE) != features) {
             v = variant_of(j, part, features);
-            NOH_ASSERT(v); /* the renderer's desc asked for it */
+            NOH_ASSERT(v || part == PART_OUTLINE); /* the renderer's desc asked for it */
             if (!v) break;
             begin_variant(j, v, level.header->level);
             palette = NOH_NONE;
@@ -480,6 +517,7 @@ static void draw_pass(const draw_job *j, int pass)
         noh_gl_blend_end(j->r->gl, &j->r->raster);
     } else {
         draw_part_of(j, PART_OPAQUE, 0);
+        draw_part_of(j, PART_OUTLINE, 0);
     }
 }
 

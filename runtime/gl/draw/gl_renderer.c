@@ -56,6 +56,12 @@ static noh_debug_view view_of(const noh_gl_renderer_desc *desc)
     return desc->shaders && desc->shaders->view ? desc->shaders->view : desc->view;
 }
 
+/* Shaders of your own draw no outlines, nor do debug views. */
+static int has_outlines(const noh_gl_renderer_desc *desc)
+{
+    return view_of(desc) == NOH_VIEW_LIT && !(desc->shaders && (desc->shaders->vertex || desc->shaders->fragment));
+}
+
 typedef struct wish {
     const noh_gl_renderer_desc *desc;
     const noh_mesh *mesh;
@@ -106,7 +112,7 @@ const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *
                                         .emissive_texture = NOH_NONE,
                                         .wrinkle_texture = NOH_NONE,
                                         .wrinkle_models = 0,
-                                        .wrinkle_weights = { NOH_NONE, NOH_NONE, NOH_NONE } };
+                                        .more_textures = { NOH_NONE, NOH_NONE, NOH_NONE } };
     return submesh->material == NOH_NONE ? &plain : &mesh->pack->materials[submesh->material];
 }
 
@@ -125,8 +131,11 @@ static noh_result want_features(const wish *w, noh_gl_variant_key key)
 {
     noh_result result = NOH_OK;
     for (uint32_t i = 0; i < w->mesh->header->submesh_count && !result; i++) {
-        key.features = noh_gl_features_of(w->mesh, noh_gl_material_of(w->mesh, &w->mesh->submeshes[i]));
+        const noh_material *m = noh_gl_material_of(w->mesh, &w->mesh->submeshes[i]);
+        key.features = noh_gl_features_of(w->mesh, m);
         result = want_fades(w, key);
+        key.features = has_outlines(w->desc) ? noh_gl_outline_features(m) : 0;
+        if (!result && key.features) result = want_fades(w, key);
     }
     return result;
 }

@@ -1,6 +1,7 @@
 /* gl_variants.c: makes a key from a mesh and its bindings, defines from a key, and a program from defines. */
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
+#include "gl/draw/gl_material_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 #include "gl/draw/gl_variants_internal.h"
 #include "gl/morph/gl_morph_internal.h"
@@ -74,8 +75,21 @@ uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
     if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
-    if (m->surface == NOH_SURFACE_TOON) features |= NOH_FEATURE_TOON;
+    if (m->surface == NOH_SURFACE_TOON) {
+        features |= NOH_FEATURE_TOON;
+        if (m->flags & NOH_MATERIAL_TOON_SHADE) features |= NOH_FEATURE_TOON_SHADE;
+        if (m->more_textures[NOH_TOON_MATCAP] != NOH_NONE) features |= NOH_FEATURE_MATCAP;
+    }
     return (uint16_t)features;
+}
+
+uint16_t noh_gl_outline_features(const noh_material *m)
+{
+    const unsigned cut = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
+    const int has_outline = m->surface == NOH_SURFACE_TOON && m->surface_more[4] != 0.0f &&
+                            !(m->flags & NOH_MATERIAL_UNLIT) &&
+                            (!(m->flags & NOH_MATERIAL_BLEND) || noh_gl_has_core(m));
+    return (uint16_t)(has_outline ? NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE | cut : 0u);
 }
 
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
@@ -113,7 +127,8 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
-                                     NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP };
+                                     NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP,
+                                     NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
     if (features & NOH_FEATURE_PHONE) return 1u;
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
@@ -150,6 +165,9 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
                   { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
+                  { key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
+                  { key.features & NOH_FEATURE_MATCAP, "#define NOH_MATCAP\n" },
+                  { key.features & NOH_FEATURE_OUTLINE, "#define NOH_OUTLINE\n" },
                   { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },
                   { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },
                   { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },

@@ -1374,13 +1374,15 @@ static void damaged_vrm_is_ignored(void **state)
     }
 }
 
-/* Two tones and the edge between them; the unlit material next to it is for readers that know no MToon. */
+/* Tones, rim, outline and textures; the unlit material next to it is for readers that know no MToon. */
 static void mtoon_is_a_toon(void **state)
 {
     static const char materials[] =
         ",\"materials\":[{\"name\":\"skin\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.5,1,0,1]},\"extensions\":{"
         "\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{\"shadeColorFactor\":[0.25,0.75,0.5],"
-        "\"shadingShiftFactor\":-0.25,\"shadingToonyFactor\":0.75}}},"
+        "\"shadingShiftFactor\":-0.25,\"shadingToonyFactor\":0.75,\"parametricRimColorFactor\":[1,0,0.25],"
+        "\"parametricRimFresnelPowerFactor\":3,\"parametricRimLiftFactor\":0.5,\"outlineWidthMode\":\"worldCoordinates\","
+        "\"outlineWidthFactor\":0.002,\"outlineColorFactor\":[0,1,0],\"outlineLightingMixFactor\":0}}},"
         "{\"name\":\"hair\",\"extensions\":{\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{\"shadeColorFactor\":7}}},"
         "{\"name\":\"hat\",\"extensions\":{\"KHR_materials_unlit\":{}}}]";
     scene *s = vrm_scene("\"VRMC_vrm\":{}");
@@ -1395,7 +1397,10 @@ static void mtoon_is_a_toon(void **state)
     assert_int_equal(hair->surface, NOH_SURFACE_TOON);
     assert_true(hair->surface_values[0] == 0.0f && hair->surface_more[0] == 0.9f);
     assert_true(m->materials[2].unlit && m->materials[2].surface == NOH_SURFACE_PLAIN);
-    assert_true(has_warning(m, "the two tones of its MToon shading were kept"));
+    assert_true(skin->surface_more[1] == 255.0f + 65536.0f * 128.0f && skin->surface_more[2] == 3.0f);
+    assert_true(skin->surface_more[3] == 0.5f && skin->surface_more[4] == 0.002f && skin->surface_more[5] == 65280.0f);
+    assert_true(!skin->toon_shade && !skin->outline_lit && skin->more_textures[NOH_TOON_MATCAP] == MODEL_NONE);
+    assert_true(hair->surface_more[1] == 0.0f && hair->surface_more[2] == 5.0f && hair->surface_more[4] == 0.0f);
     model_free(m);
 }
 
@@ -1404,14 +1409,16 @@ static void old_mtoon_is_a_toon(void **state)
 {
     scene *s = vrm_scene(
         "\"VRM\":{\"materialProperties\":[{\"shader\":\"VRM/MToon\",\"floatProperties\":{\"_ShadeShift\":-0.5,"
-        "\"_ShadeToony\":0.5},\"vectorProperties\":{\"_ShadeColor\":[1,0,1,1]}},{\"shader\":\"VRM_USE_GLTFSHADER\"},4]}");
+        "\"_ShadeToony\":0.5,\"_OutlineWidthMode\":2,\"_OutlineWidth\":2,\"_OutlineColorMode\":1,"
+        "\"_RimFresnelPower\":4},\"vectorProperties\":{\"_ShadeColor\":[1,0,1,1],\"_RimColor\":[0,1,0,1]}},{\"shader\":\"VRM_USE_GLTFSHADER\"},4]}");
     (void)state;
     APPEND(s->rest, "%s", ",\"materials\":[{\"name\":\"a\"},{\"name\":\"b\"},{\"name\":\"c\"}]");
     model *m = load(s);
     const model_material *a = &m->materials[0]; /* from -0.5 to 0.25 */
     assert_int_equal(a->surface, NOH_SURFACE_TOON);
     assert_true(a->surface_values[0] == 1.0f && a->surface_values[1] == 0.0f && a->surface_values[3] == 0.125f);
-    assert_true(a->surface_more[0] == 0.625f);
+    assert_true(a->surface_more[0] == 0.625f && a->surface_more[1] == 65280.0f && a->surface_more[2] == 4.0f);
+    assert_true(fabsf(a->surface_more[4] + 0.01f) < 1e-6f && a->outline_lit);
     assert_int_equal(m->materials[1].surface, NOH_SURFACE_PLAIN);
     assert_int_equal(m->materials[2].surface, NOH_SURFACE_PLAIN);
     model_free(m);
@@ -1713,6 +1720,37 @@ static void materials_and_textures(void **state)
     assert_int_equal(m->textures[0].wrap_t, 10497);
     assert_int_equal(m->textures[0].min_filter, 9987);
     assert_int_equal(m->textures[0].mag_filter, 0);
+    model_free(m);
+}
+
+/* A shade of the base colour's image needs no texture of its own; a matcap takes its factor. */
+static void mtoon_has_textures(void **state)
+{
+    scene *s = vrm_scene("\"VRMC_vrm\":{}");
+    (void)state;
+#define TOON(rest)                                                                                              \
+    "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"extensions\":{\"VRMC_materials_mtoon\":{" \
+    "\"shadeColorFactor\":[0.5,0.5,1]" rest "}}}"
+    APPEND(
+        s->rest,
+        ",\"materials\":[" TOON(
+            ",\"shadeMultiplyTexture\":{\"index\":1},\"matcapTexture\":{\"index\":0},"
+            "\"matcapFactor\":[0,1,1],\"outlineWidthMode\":\"screenCoordinates\","
+            "\"outlineWidthFactor\":0.004,\"outlineWidthMultiplyTexture\":{\"index\":1}") "," TOON(",\"shadeMultiplyTexture\":{\"index\":0}") "," TOON(",\"rimMultiplyTexture\":{\"index\":0}") "],"
+                                                                                                                                                                                                "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
+                                                                                                                                                                                                "{\"uri\":\"data:image/png;base64,%s\"}]",
+        png_2x1, png_2x1);
+#undef TOON
+    model *m = load(s);
+    const uint8_t matcap[8] = { 0, 0, 0, 255, 0, 128, 255, 64 };
+    const model_material *own = &m->materials[0], *same = &m->materials[1], *white = &m->materials[2];
+    assert_true(own->toon_shade && own->more_textures[NOH_TOON_SHADE] != MODEL_NONE);
+    assert_true(own->surface_values[0] == 0.5f && own->surface_more[4] == -0.004f && own->outline_lit);
+    assert_memory_equal(m->textures[own->more_textures[NOH_TOON_MATCAP]].rgba, matcap, sizeof matcap);
+    assert_int_equal(m->textures[own->more_textures[NOH_TOON_WIDTH]].use, MODEL_TEXTURE_DATA);
+    assert_true(!same->toon_shade && same->more_textures[NOH_TOON_SHADE] == MODEL_NONE);
+    assert_true(white->toon_shade && white->more_textures[NOH_TOON_SHADE] == MODEL_NONE);
+    assert_true(has_warning(m, "rimMultiplyTexture of its MToon shading was left out"));
     model_free(m);
 }
 
@@ -2507,6 +2545,7 @@ int main(void)
         cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
+        cmocka_unit_test(mtoon_has_textures),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

@@ -239,12 +239,28 @@ static void all_maps_are_trimmed(void **state)
     add_texture(m, "regions", 128, 128);
     m->materials[0].specular_texture = 0;
     m->materials[0].wrinkle_texture = 1;
-    m->materials[0].wrinkle_weights[0] = 2;
+    m->materials[0].more_textures[0] = 2;
     m->textures[2].use = MODEL_TEXTURE_CODES;
     m->textures[2].mag_filter = 9728;
     assert_int_equal(trim_it(m).count, 3);
     for (uint32_t t = 0; t < 3; t++) expect_same_texels(m, t, was);
     free(was);
+    model_free(m);
+}
+
+/* A matcap is read by normals: it stays whole, whatever shares its name. */
+static void a_matcap_stays_whole(void **state)
+{
+    static const quad quads[1] = { { { 0.1f, 0.1f }, { 0.2f, 0.2f }, 0 } };
+    model *m = model_of(quads, 1, 1);
+    (void)state;
+    add_texture(m, "color", 256, 256);
+    add_texture(m, "cap", 256, 256);
+    m->materials[0].surface = NOH_SURFACE_TOON;
+    m->materials[0].base_color_texture = 0;
+    m->materials[0].more_textures[NOH_TOON_MATCAP] = 1;
+    assert_int_equal(trim_it(m).count, 1);
+    assert_int_equal(m->textures[1].cells[0], 0);
     model_free(m);
 }
 
@@ -473,6 +489,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_corner_is_all_that_is_left),
     cmocka_unit_test(beyond_one),
     cmocka_unit_test(all_maps_are_trimmed),
+    cmocka_unit_test(a_matcap_stays_whole),
     cmocka_unit_test(materials_that_share_lose_the_same),
     cmocka_unit_test(sets_go_with_their_namesakes),
     cmocka_unit_test(what_must_stay_whole),

@@ -331,7 +331,7 @@ static void masks_end_at_their_edges(void **state)
         assert_true(m->meshes[0].uv[0] == cases[i].first_u && m->meshes[0].uv[1] == cases[i].first_v);
         for (uint32_t k = 0; k < 4; ++k) {
             const model_material *skin = &m->materials[0];
-            const model_texture *t = &m->textures[k < 3 ? skin->wrinkle_weights[k] : skin->wrinkle_texture];
+            const model_texture *t = &m->textures[k < 3 ? skin->more_textures[k] : skin->wrinkle_texture];
             assert_int_equal(t->wrap_s, cases[i].wrap_s);
             assert_int_equal(t->wrap_t, cases[i].wrap_t);
         }
@@ -418,9 +418,9 @@ static void masks_are_kept_for_pixels(void **state)
         unlink(mask_path);
         skin = m->materials;
         assert_int_equal(skin->wrinkle_codes, !full);
-        assert_int_equal(skin->wrinkle_weights[1] == MODEL_NONE, !full);
+        assert_int_equal(skin->more_textures[1] == MODEL_NONE, !full);
         assert_int_equal(m->warning_count, full ? 2 : 1); /* region 4 is idle, too */
-        const model_texture *t = &m->textures[skin->wrinkle_weights[0]];
+        const model_texture *t = &m->textures[skin->more_textures[0]];
         assert_int_equal(t->use, full ? MODEL_TEXTURE_DATA : MODEL_TEXTURE_CODES);
         assert_int_equal(t->mag_filter, full ? 0 : 9728);
         assert_int_equal(t->rgba[0], full ? 255 : 75);

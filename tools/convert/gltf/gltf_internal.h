@@ -241,8 +241,14 @@ void read_animations(file &f);
 /* Whether the file's figure faces -z, as VRM's did before 1.0. */
 bool faces_back(const file &f);
 void read_vrm(file &f); /* after read_nodes and read_meshes */
-/* Whether a material is a toon of VRM (MToon); then its tones are set. After its base colour. */
-bool read_toon(const file &f, size_t index, model_material &out);
+/* The textures of a toon, indices in the file, or -1. */
+struct toon_maps {
+    bool given = false; /* it is a toon of VRM (MToon) */
+    int shade = -1, matcap = -1, width = -1;
+    double matcap_factor[3] = { 1.0, 1.0, 1.0 };
+};
+/* MToon of a material: sets its tones, rim and outline. After its base colour. */
+toon_maps read_toon(file &f, size_t index, const std::string &where, model_material &out);
 void read_springs(file &f); /* after read_nodes */
 /* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
  * nodes outside the scene. */

@@ -17,7 +17,7 @@ namespace gltf
 {
 
 static const uint64_t pixels_max = 64u << 20;
-static const int SPECULAR_KEY = -1; /* in file.texture_of, in place of a use */
+static const int SPECULAR_KEY = -1, MATCAP_KEY = -2; /* in file.texture_of, in place of a use */
 
 static std::string where_of(const file &f, size_t material)
 {
@@ -519,7 +519,7 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 /* --- materials --- */
 
 /* By "extras": {"surface": "skin", "unitMm": 10}, else by name. */
-static void read_surface(file &f, size_t index, model_material &out, const std::string &where)
+static toon_maps read_surface(file &f, size_t index, model_material &out, const std::string &where)
 {
     const tinygltf::Material &m = f.json.materials[index];
     uint32_t kind = surface_kind_of_name(m.name.c_str());
@@ -531,16 +531,49 @@ static void read_surface(file &f, size_t index, model_material &out, const std::
         else
             kind = named;
     }
-    const bool toon = read_toon(f, index, out);
-    if (toon)
-        leave_out(f, where, ": the two tones of its MToon shading were kept; outline, rim and matcap were left out");
-    surface_kind_set(&out, toon && !m.extras.Has("surface") ? NOH_SURFACE_TOON : kind);
-    if (out.surface != NOH_SURFACE_SKIN || !m.extras.IsObject() || !m.extras.Has("unitMm")) return;
+    const bool is_named = m.extras.IsObject() && m.extras.Has("surface");
+    const toon_maps toon = is_named && kind != NOH_SURFACE_TOON ? toon_maps() : read_toon(f, index, where, out);
+    surface_kind_set(&out, toon.given ? NOH_SURFACE_TOON : kind);
+    if (out.surface != NOH_SURFACE_SKIN || !m.extras.IsObject() || !m.extras.Has("unitMm")) return toon;
     const double mm = number_in(&m.extras, "unitMm", 0.0);
     if (mm >= 1e-6 && mm <= 1e9)
         out.surface_values[0] = static_cast<float>(mm);
     else
         leave_out(f, where, ": the extra 'unitMm' must be 1e-6 to 1e9 millimetres, and was ignored");
+    return toon;
+}
+
+/* The light that a matcap adds; none if all of it is black. A factor is put into the texture. */
+static uint32_t matcap_texture(file &f, const toon_maps &toon, const std::string &where)
+{
+    double gain[3];
+    for (int c = 0; c < 3; ++c) gain[c] = std::pow(toon.matcap_factor[c], 1.0 / 2.2); /* of bytes, not of light */
+    const std::array<int, 4> key = { MATCAP_KEY, toon.matcap, static_cast<int>(255.0 * gain[0] + 0.5),
+                                     static_cast<int>(255.0 * gain[1] + 0.5) * 256 +
+                                         static_cast<int>(255.0 * gain[2] + 0.5) };
+    if (toon.matcap < 0) return MODEL_NONE;
+    auto found = f.texture_of.find(key);
+    if (found != f.texture_of.end()) return found->second;
+    uint32_t slot = try_texture(f, static_cast<size_t>(toon.matcap), where);
+    if (slot == MODEL_NONE) return f.texture_of[key] = slot;
+    model_texture &t = f.out->textures[slot];
+    uint32_t brightest = 0;
+    for (size_t i = 0; i < size_t{ t.width } * t.height * 4; ++i) {
+        if (i % 4 == 3) continue;
+        t.rgba[i] = static_cast<uint8_t>(t.rgba[i] * gain[i % 4] + 0.5);
+        if (t.rgba[i] > brightest) brightest = t.rgba[i];
+    }
+    t.use = MODEL_TEXTURE_COLOR;
+    if (brightest < 2u) drop_last_texture(f), slot = MODEL_NONE;
+    return f.texture_of[key] = slot;
+}
+
+static void read_toon_maps(file &f, const toon_maps &toon, model_material &out, const std::string &where)
+{
+    out.more_textures[NOH_TOON_SHADE] = texture_for(f, toon.shade, MODEL_TEXTURE_COLOR, where);
+    out.more_textures[NOH_TOON_MATCAP] = matcap_texture(f, toon, where);
+    if (out.surface_more[4] != 0.0f)
+        out.more_textures[NOH_TOON_WIDTH] = texture_for(f, toon.width, MODEL_TEXTURE_DATA, where);
 }
 
 /* By "extras": {"tint": false}. */
@@ -578,7 +611,8 @@ static void read_priority(file &f, const tinygltf::Material &m, model_material &
         leave_out(f, where, ": the extra 'priority' must be a whole number from -128 to 127, and was ignored");
 }
 
-static void read_maps(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+static void read_maps(file &f, const tinygltf::Material &m, const toon_maps &toon, model_material &out,
+                      const std::string &where)
 {
     out.base_color_texture = texture_for(f, index_of(f, m, 0, where), MODEL_TEXTURE_COLOR, where);
     if (out.base_color_texture != MODEL_NONE && out.alpha != MODEL_ALPHA_OPAQUE) {
@@ -589,7 +623,9 @@ static void read_maps(file &f, const tinygltf::Material &m, model_material &out,
     if (out.unlit) return;
     out.normal_texture = texture_for(f, index_of(f, m, 1, where), MODEL_TEXTURE_NORMAL, where);
     const int roughness = index_of(f, m, 2, where), occlusion = index_of(f, m, 3, where);
-    if (roughness >= 0 && extension_of(m, gloss_name))
+    if (toon.given)
+        read_toon_maps(f, toon, out, where);
+    else if (roughness >= 0 && extension_of(m, gloss_name))
         read_gloss_map(f, roughness, occlusion, 1.0 - static_cast<double>(out.roughness), out, where);
     else
         read_specular_maps(f, m, occlusion, roughness, out, where);
@@ -616,16 +652,17 @@ static void read_material(file &f, size_t index, model_material &out)
     read_emissive(m, out, where);
     read_f0(m, out, where);
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
-    read_surface(f, index, out, where);
+    const toon_maps toon = read_surface(f, index, out, where);
     read_tint(f, m, out, where);
     read_priority(f, m, out, where);
-    read_maps(f, m, out, where);
+    read_maps(f, m, toon, out, where);
 }
 
 void read_materials(file &f)
 {
-    /* each texture as colours and as normals; a surface and a specular map a material, and an image that is put into one */
-    f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 2 + f.json.materials.size() * 2 + 1,
+    /* each texture as colours, normals and data; a surface and a specular map, or a matcap, a material, and an image that
+     * is put into one */
+    f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 3 + f.json.materials.size() * 2 + 1,
                                               "textures");
     f.out->materials = allocate<model_material>(f, f.json.materials.size(), "materials");
     for (size_t i = 0; i < f.json.materials.size(); ++i) {

@@ -61,7 +61,7 @@ model_material model_material_default(void)
                                    .emissive_texture = MODEL_NONE,
                                    .specular_texture = MODEL_NONE,
                                    .wrinkle_texture = MODEL_NONE,
-                                   .wrinkle_weights = { MODEL_NONE, MODEL_NONE, MODEL_NONE } };
+                                   .more_textures = { MODEL_NONE, MODEL_NONE, MODEL_NONE } };
     return plain;
 }
 

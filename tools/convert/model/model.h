@@ -60,11 +60,12 @@ typedef struct model_material {
     int16_t priority;
     float normal_scale, occlusion_strength, emissive[3], f0[3];
     /* as noh_material has them: indices into textures or MODEL_NONE */
-    uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, wrinkle_weights[3];
+    uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, more_textures[3];
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
-    uint8_t wrinkle_codes;   /* 1: wrinkle_weights[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
+    uint8_t wrinkle_codes;   /* 1: more_textures[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
     uint32_t surface;        /* NOH_SURFACE_* of format.h */
     float surface_values[4], surface_more[6];
+    uint8_t toon_shade, outline_lit; /* NOH_MATERIAL_TOON_SHADE, NOH_MATERIAL_OUTLINE_LIT */
     uint32_t specular_texture;  /* index into textures or MODEL_NONE */
     uint8_t specular_roughness; /* 1: its alpha is roughness, else the weight of f0 and f90 */
     float f90_loss;

@@ -120,7 +120,7 @@ static void renumber(const model *m, model *other, const uint32_t *map)
         a->emissive_texture = moved(a->emissive_texture, m->texture_count);
         a->specular_texture = moved(a->specular_texture, m->texture_count);
         a->wrinkle_texture = moved(a->wrinkle_texture, m->texture_count);
-        for (int k = 0; k < 3; k++) a->wrinkle_weights[k] = moved(a->wrinkle_weights[k], m->texture_count);
+        for (int k = 0; k < 3; k++) a->more_textures[k] = moved(a->more_textures[k], m->texture_count);
     }
 }
 

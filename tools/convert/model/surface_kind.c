@@ -90,12 +90,21 @@ uint32_t surface_kind_of_name(const char *name)
 
 /* ---- materials ---- */
 
+static void forget_toon(model_material *m)
+{
+    memset(m->surface_values, 0, sizeof m->surface_values);
+    memset(m->surface_more, 0, sizeof m->surface_more);
+    m->toon_shade = m->outline_lit = 0;
+    for (int i = 0; i < 3; i++) m->more_textures[i] = MODEL_NONE;
+}
+
 void surface_kind_set(model_material *m, uint32_t kind)
 {
     static const float straight[] = { 0.04f, 0.028f, 0.025f, 0.04f, 0.04f };
-    static const float shade[] = { 0.68f, 0.62f, 0.72f };
+    static const float shade[] = { 0.88f, 0.78f, 0.8f };
     const float before = straight[m->surface];
     if (kind == NOH_SURFACE_TOON) m->unlit = 0; /* exporters write both, for readers that know no toons */
+    if (m->surface == NOH_SURFACE_TOON && kind != NOH_SURFACE_TOON) forget_toon(m);
     m->surface = m->unlit ? NOH_SURFACE_PLAIN : kind;
     if (m->surface == NOH_SURFACE_TOON && m->surface_more[0] <= 0.0f) {
         memcpy(m->surface_values, shade, sizeof shade);

@@ -106,7 +106,9 @@ static uint32_t material_flags(const model_material *m)
            (m->specular_texture == MODEL_NONE ? 0u
             : m->specular_roughness           ? NOH_MATERIAL_SPECULAR_ROUGHNESS
                                               : NOH_MATERIAL_SPECULAR_WEIGHT) |
-           (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED) | (m->wrinkle_codes ? NOH_MATERIAL_WRINKLE_CODES : 0u);
+           (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED) | (m->wrinkle_codes ? NOH_MATERIAL_WRINKLE_CODES : 0u) |
+           (m->surface == NOH_SURFACE_TOON && m->toon_shade ? NOH_MATERIAL_TOON_SHADE : 0u) |
+           (m->surface == NOH_SURFACE_TOON && m->outline_lit ? NOH_MATERIAL_OUTLINE_LIT : 0u);
 }
 
 static void write_maps(const model_material *from, noh_material *to)
@@ -122,7 +124,7 @@ static void write_maps(const model_material *from, noh_material *to)
     to->specular_texture = from->specular_texture == MODEL_NONE ? 0u : from->specular_texture;
     to->f90_loss = from->f90_loss;
     to->wrinkle_models = (uint16_t)from->wrinkle_models;
-    memcpy(to->wrinkle_weights, from->wrinkle_weights, sizeof to->wrinkle_weights);
+    memcpy(to->more_textures, from->more_textures, sizeof to->more_textures);
     to->surface = from->surface;
     memcpy(to->surface_values, from->surface_values, sizeof to->surface_values);
     memcpy(to->surface_more, from->surface_more, sizeof to->surface_more);

@@ -45,13 +45,21 @@ static void join(trim *t, uint32_t a, uint32_t b)
 }
 
 #define MAPS 9u
+#define MATCAP 6u
+
+/* It is read by normals, not by texture coordinates. */
+static uint32_t matcap_of(const model_material *m)
+{
+    return m->surface == NOH_SURFACE_TOON ? m->more_textures[NOH_TOON_MATCAP] : MODEL_NONE;
+}
 
 static void maps_of(const model_material *m, uint32_t maps[MAPS])
 {
-    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,     m->surface_texture,
-                                 m->emissive_texture,   m->wrinkle_texture,    m->wrinkle_weights[0],
-                                 m->wrinkle_weights[1], m->wrinkle_weights[2], m->specular_texture };
+    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,   m->surface_texture,
+                                 m->emissive_texture,   m->wrinkle_texture,  m->more_textures[0],
+                                 m->more_textures[1],   m->more_textures[2], m->specular_texture };
     memcpy(maps, all, sizeof all);
+    if (matcap_of(m) != MODEL_NONE) maps[MATCAP] = MODEL_NONE;
 }
 
 static int is_with_suffix(const char *name, const char *of)
@@ -229,6 +237,8 @@ static void use_mesh(trim *t, uint32_t mesh)
     for (uint32_t s = 0; s < of->submesh_count; s++) {
         const uint32_t material = of->submeshes[s].material;
         if (material == MODEL_NONE) continue;
+        const uint32_t matcap = matcap_of(&t->m->materials[material]);
+        if (matcap < t->m->texture_count) keep_whole(t, t->m->material_count + matcap);
         if (!is_still || t->m->materials[material].surface == NOH_SURFACE_EYE) {
             keep_whole(t, material);
             continue;

@@ -47,11 +47,11 @@ static int out_of_memory(model_error *error)
 
 /* ---- which surface ---- */
 
-/* Cards of hair and lashes, and unlit materials, have no creases. */
+/* Cards of hair and lashes, unlit materials and toons have no creases. */
 static int can_wrinkle(const model *m, uint32_t material)
 {
     return material != MODEL_NONE && m->materials[material].alpha == MODEL_ALPHA_OPAQUE &&
-           !m->materials[material].unlit;
+           !m->materials[material].unlit && m->materials[material].surface != NOH_SURFACE_TOON;
 }
 
 static double area_of(const wrinkle_field *f)
@@ -337,13 +337,13 @@ static int add_weights(model *m, const char *mesh, const wrinkle_field *f, int b
         if (add_texture(m, mesh, names[k], &w->weights.map[k], w->weights.width, w->weights.height, f->clamped,
                         MODEL_TEXTURE_DATA))
             return 1;
-        m->materials[own].wrinkle_weights[k] = m->texture_count - 1u;
+        m->materials[own].more_textures[k] = m->texture_count - 1u;
     }
     if (!by_pixel) return 0;
     if (add_texture(m, mesh, "wrinkle regions", &w->mask.rgba, w->mask.width, w->mask.height, f->clamped,
                     MODEL_TEXTURE_CODES))
         return 1;
-    m->materials[own].wrinkle_weights[0] = m->texture_count - 1u;
+    m->materials[own].more_textures[0] = m->texture_count - 1u;
     m->materials[own].wrinkle_codes = 1;
     return 0;
 }

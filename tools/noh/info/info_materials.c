@@ -26,12 +26,16 @@ static void list_maps(const noh_material *m, material_map maps[MAPS])
                                                                                   : "specular colour, weight",
                                        "specular", m->flags & SPECULAR ? m->specular_texture : NOH_NONE },
                                      { "wrinkles", "wrinkle", m->wrinkle_texture },
-                                     { "wrinkle weights 1-4", "wrinkle_weights_0", m->wrinkle_weights[0] },
-                                     { "wrinkle weights 5-8", "wrinkle_weights_1", m->wrinkle_weights[1] },
-                                     { "wrinkle weights 9-12", "wrinkle_weights_2", m->wrinkle_weights[2] } };
-    const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->wrinkle_weights[0] };
+                                     { "wrinkle weights 1-4", "wrinkle_weights_0", m->more_textures[0] },
+                                     { "wrinkle weights 5-8", "wrinkle_weights_1", m->more_textures[1] },
+                                     { "wrinkle weights 9-12", "wrinkle_weights_2", m->more_textures[2] } };
+    const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->more_textures[0] };
+    const material_map toon[] = { { "shade", "shade", m->more_textures[NOH_TOON_SHADE] },
+                                  { "matcap", "matcap", m->more_textures[NOH_TOON_MATCAP] },
+                                  { "outline width", "outline_width", m->more_textures[NOH_TOON_WIDTH] } };
     for (uint32_t i = 0; i < MAPS; i++) maps[i] = all[i];
     if (m->flags & NOH_MATERIAL_WRINKLE_CODES) maps[6] = codes;
+    for (uint32_t i = 0; i < 3 && m->surface == NOH_SURFACE_TOON; i++) maps[6 + i] = toon[i];
 }
 
 static const char *alpha_of(const noh_material *m)
@@ -66,7 +70,7 @@ void info_print_materials(const noh_pack *pack)
 }
 
 /* A pixel reads the base colour, a white texel where there is none, and a map for each feature; weights of wrinkles are
- * read at vertices, a mask of their regions at pixels. Lit, it reads the environment and up to four texels of the
+ * read at vertices, a mask of their regions and a toon's shade and matcap at pixels. Lit, it reads the environment and up to four texels of the
  * shadow map, too. */
 typedef struct material_cost {
     uint32_t textures, fetches, lit;
@@ -75,6 +79,7 @@ typedef struct material_cost {
 
 static material_cost cost_of(const noh_pack *pack, const noh_material *m)
 {
+    const uint32_t last = m->surface == NOH_SURFACE_TOON ? 7u : m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u : 5u;
     material_cost cost = { 0, 1, 0, 0 };
     material_map maps[MAPS];
     list_maps(m, maps);
@@ -84,8 +89,7 @@ static material_cost cost_of(const noh_pack *pack, const noh_material *m)
         (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
         cost.bytes += noh_gl_picture_bytes(&t, 1);
         cost.textures++;
-        cost.fetches += k >= 1 && k <= (m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u : 5u) &&
-                        !(m->flags & NOH_MATERIAL_UNLIT);
+        cost.fetches += k >= 1 && k <= last && !(m->flags & NOH_MATERIAL_UNLIT);
     }
     cost.lit = cost.fetches + 5u < NOH_GL_FETCHES_MAX ? cost.fetches + 5u : NOH_GL_FETCHES_MAX;
     if (m->flags & NOH_MATERIAL_UNLIT) cost.lit = cost.fetches;

@@ -92,7 +92,7 @@ static int of_material(const char *path, const noh_pack *pack, const noh_materia
     noh_texture t;
     int failed = 0;
     for (uint32_t k = 0; k < (is_mask ? 1u : REGION_MAP_COUNT) && !failed; k++) {
-        (void)noh_pack_texture_at(pack, m->wrinkle_weights[k], &t, NULL);
+        (void)noh_pack_texture_at(pack, m->more_textures[k], &t, NULL);
         if (t.header->trim) {
             return tool_fail(
                 path, "its textures were trimmed, so a painted mask would not fit the model: build the pack with "
@@ -120,8 +120,8 @@ static int of_pack(const char *path, region_mask *mask)
     for (uint32_t i = 0; i < file.pack.material_count && !found; i++) {
         const noh_material *m = &file.pack.materials[i];
         const int all = m->flags & NOH_MATERIAL_WRINKLE_CODES ||
-                        (m->wrinkle_weights[1] != NOH_NONE && m->wrinkle_weights[2] != NOH_NONE);
-        if (m->wrinkle_weights[0] != NOH_NONE && all) found = m;
+                        (m->more_textures[1] != NOH_NONE && m->more_textures[2] != NOH_NONE);
+        if (m->more_textures[0] != NOH_NONE && all) found = m;
     }
     status = found ? of_material(path, &file.pack, found, mask)
                    : tool_fail(path, "it has no wrinkle regions: build it with --wrinkles auto or --region-mask");
