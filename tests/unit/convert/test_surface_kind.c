@@ -106,6 +106,23 @@ static void options_name_a_material_and_a_surface(void **state)
     model_free(m);
 }
 
+/* A toon's numbers and textures mean something else on another surface. */
+static void another_surface_forgets_the_toon(void **state)
+{
+    static const char *const names[] = { "cel" };
+    model *m = model_of(names, 1);
+    model_material *cel = &m->materials[0];
+    (void)state;
+    surface_kind_set(cel, NOH_SURFACE_TOON);
+    assert_true(cel->surface_values[0] > 0.0f && cel->surface_more[0] > 0.0f);
+    cel->toon_shade = cel->outline_lit = 1;
+    cel->more_textures[NOH_TOON_MATCAP] = 0;
+    surface_kind_set(cel, NOH_SURFACE_SKIN);
+    assert_true(cel->surface_values[0] == 0.0f && cel->surface_more[0] == 0.0f);
+    assert_true(!cel->toon_shade && !cel->outline_lit && cel->more_textures[NOH_TOON_MATCAP] == MODEL_NONE);
+    model_free(m);
+}
+
 /* Who wears another robe keeps his face: skin, eyes and teeth take no tint, unless the author says so. */
 static void faces_take_no_tint(void **state)
 {
@@ -335,6 +352,7 @@ int main(void)
         cmocka_unit_test(names_tell_surfaces),
         cmocka_unit_test(long_names_have_words_too),
         cmocka_unit_test(options_name_a_material_and_a_surface),
+        cmocka_unit_test(another_surface_forgets_the_toon),
         cmocka_unit_test(faces_take_no_tint),
         cmocka_unit_test(reflectance_follows_the_surface),
         cmocka_unit_test(irises_and_lids_are_found),
