@@ -190,7 +190,7 @@ noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
  *
  *   noh_ragdoll_module      for noh_kind_desc.ragdoll: most ragdolls at once, and the world they collide with
  *   noh_actor_fall          turn an actor into a ragdoll
- *   noh_actor_hit           an impulse at a point; a standing actor falls
+ *   noh_actor_hit           an impulse at a point; a standing actor staggers or falls
  *   noh_actor_get_up        return to clips from where the actor lies
  *   noh_actor_kill          the actor falls and stays down; noh_actor_revive
  *   noh_actor_hold_body     bodies moved by clips, and joints with strength
@@ -221,6 +221,9 @@ typedef struct noh_kind_ragdoll {
     uint32_t substeps;      /* of 1/60 s, 5..NOH_RAGDOLL_SUBSTEPS_MAX; default (0) 10 */
     float mass;             /* kilograms; default (0) 70 for a height of 1.75 m, by its cube */
     const noh_world *world; /* metres; read by steps, must outlive the stage. NULL: nothing to collide with */
+    float stagger_speed;    /* most speed, metres per second, that a hit may give a standing actor that keeps its feet
+                             * by steps; default (0) 0.6 of the square root of 9.82 times its leg: 1.73 for 0.85 m. Below
+                             * 0: every hit makes it fall */
 } noh_kind_ragdoll;
 
 /* For noh_kind_desc.ragdoll.
@@ -231,7 +234,10 @@ noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
  * errors  also ARG the actor's scale is not 1, or it is attached; LIMIT `count` actors of the kind are down */
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
-/* Let an actor fall with a push.
+/* Push an actor. The impulse over the actor's mass decides what a standing one with two legs does: it sways on its feet,
+ * steps to keep them (NOH_BODY_STAGGERS; its place then moves, also over the ground of `world`), or falls as a whole
+ * over its feet with arms reaching for the ground and joints going limp once it has landed. One without such legs, or
+ * one that gets up, falls; one that has fallen is pushed.
  * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, spread
  *         over the bodies and limited to about 40 m/s (noh_ragdoll_push)
  * errors  as noh_actor_fall; also ARG not finite */
@@ -281,7 +287,8 @@ typedef enum noh_body_state {
     NOH_BODY_STANDS = 0, /* moved by its clips; also if there is no such actor */
     NOH_BODY_FALLS,
     NOH_BODY_LIES, /* still */
-    NOH_BODY_GETS_UP
+    NOH_BODY_GETS_UP,
+    NOH_BODY_STAGGERS /* keeps its feet after a hit: sways or steps */
 } noh_body_state;
 
 noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor);

@@ -84,14 +84,14 @@ says 'cannot write'
 
 # ---- pushed ----
 
-noh sheet "$build/demo/puppet_falls.noh" -o "$work/fall.png" --clip walk --push 0,0,-90 --tiles 3 --tile 48
+noh sheet "$build/demo/puppet_falls.noh" -o "$work/fall.png" --clip walk --push 0,0,-150 --tiles 3 --tile 48
 if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
     skip 'a sheet of a fall' 'no GL context here'
 else
     expect 0 'a sheet of a fall'
     noh sheet "$build/demo/puppet_falls.noh" -o "$work/walk.png" --clip walk --tiles 3 --tile 48
     check 'shows another picture' sh -c '! cmp -s "$1/fall.png" "$1/walk.png"' - "$work"
-    noh sheet "$build/demo/puppet_falls.noh" -o "$work/again.png" --clip walk --push 0,0,-90 --tiles 3 --tile 48
+    noh sheet "$build/demo/puppet_falls.noh" -o "$work/again.png" --clip walk --push 0,0,-150 --tiles 3 --tile 48
     check 'and the same one each time' cmp -s "$work/fall.png" "$work/again.png"
 fi
 noh sheet "$build/demo/puppet_falls.noh" -o "$work/x.png" --clip walk --push 1,2

@@ -40,15 +40,21 @@ static noh_result push(noh_stage *stage, const walker *r, const float point[3], 
 {
     noh_place place;
     float away[3];
+    noh_stage_actor *a;
+    noh_stage_kind *k;
+    noh_stage_body *b = NULL;
     const noh_result found = noh_actor_place(stage, (noh_actor){ r->actor }, &place, NULL);
     if (found) return found;
-    const float at[3] = { place.position[0], point[1], place.position[2] };
+    float at[3] = { place.position[0], point[1], place.position[2] };
     noh_push_away(point, at, impulse, away);
     if (away[0] == 0.0f && away[2] == 0.0f) {
         away[0] = impulse * r->heading[0];
         away[2] = impulse * r->heading[1];
     }
-    return noh_actor_push(stage, (noh_actor){ r->actor }, at, away, NULL);
+    const noh_result open = noh_stage_open_body(stage, (noh_actor){ r->actor }, &a, &k, &b, NULL);
+    if (open) return open;
+    for (int i = 0; i < 3; i++) at[i] *= noh_stage_ragdoll_kind_of(k)->metres;
+    return noh_stage_knock_down(k, a, b, &(noh_stage_push){ at, away }, NULL);
 }
 
 uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float point[3], float radius, float impulse)

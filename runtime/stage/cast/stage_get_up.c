@@ -100,8 +100,7 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
 
 /* ---- where it stands ---- */
 
-/* The highest ground at a place that is not above `top`; 0: there is none. All from the origin. */
-static int ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
+int noh_stage_ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
 {
     const noh_ray down = { { at[0], top, at[2] }, { 0.0f, -1.0f, 0.0f }, 1e30f };
     float found = -1e30f, y;
@@ -142,8 +141,8 @@ static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_s
     const noh_world *world = shared->world;
     float ground;
     noh_ragdoll_place_under(bodies, b->bodies[0], shared->rig.body_count, &frame);
-    if (!world ||
-        !ground_below(world, b->origin, first->position, first->position[1] + shared->rig.bodies[0].radius, &ground)) {
+    if (!world || !noh_stage_ground_below(world, b->origin, first->position,
+                                          first->position[1] + shared->rig.bodies[0].radius, &ground)) {
         ground = frame.position[1] + first->position[1] - bodies[0].position[1];
     }
     frame.position[1] = ground;
@@ -163,8 +162,8 @@ static void advanced(const noh_stage_body *b, uint32_t count, float seconds, noh
     for (uint32_t i = 0; i < count; i++) {
         float turn[3], q[4];
         out[i] = b->bodies[0][i];
-        noh_madd3(out[i].position, seconds, b->motions[i].velocity, out[i].position);
-        for (int n = 0; n < 3; n++) turn[n] = b->motions[i].spin[n] * seconds;
+        noh_madd3(out[i].position, seconds, b->of.motions[i].velocity, out[i].position);
+        for (int n = 0; n < 3; n++) turn[n] = b->of.motions[i].spin[n] * seconds;
         noh_quat_from_rotation(turn, q);
         noh_quat_mul(q, out[i].rotation, out[i].rotation);
         noh_quat_normalize(out[i].rotation);
@@ -220,7 +219,7 @@ static void begin(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier
     for (uint32_t i = 0; i < fit->body_count; i++) w->local[fit->joints[i]] = kept[i];
     differ(k, b, w, seconds, &now);
     for (uint32_t i = 0; i < fit->body_count; i++) {
-        noh_ragdoll_motion *m = &b->motions[i];
+        noh_ragdoll_motion *m = &b->of.motions[i];
         unwrap(now.turns[i], then.turns[i]);
         memcpy(m->velocity, now.turns[i], sizeof m->velocity);
         for (int n = 0; n < 3; n++) m->spin[n] = (then.turns[i][n] - now.turns[i][n]) / SPEED_SECONDS;
@@ -245,7 +244,8 @@ static void go_on(const noh_stage_kind *k, const noh_stage_body *b, const noh_mo
     for (uint32_t i = 0; i < fit->body_count; i++) {
         noh_transform *t = &w->local[fit->joints[i]];
         float turn[3], q[4];
-        for (int n = 0; n < 3; n++) turn[n] = share[0] * b->motions[i].velocity[n] + share[1] * b->motions[i].spin[n];
+        for (int n = 0; n < 3; n++)
+            turn[n] = share[0] * b->of.motions[i].velocity[n] + share[1] * b->of.motions[i].spin[n];
         noh_quat_from_rotation(turn, q);
         noh_quat_mul(q, t->rotation, t->rotation);
         for (int n = 0; n < 3 && !i; n++) t->translation[n] += share[0] * b->offset[n] + share[1] * b->speed[n];
@@ -257,16 +257,16 @@ void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifi
     int64_t since = noh_clock_since(w->clock, b->rise_clock);
     if (since < 0) since = 0;
     if (w->cut || since >= (int64_t)b->rise_ticks) {
-        b->rise = NOH_RISE_NOT;
+        b->moves = NOH_MOVES_BY_CLIPS;
         return;
     }
     const float seconds = (float)since / (float)NOH_TICKS_PER_SECOND;
-    if (b->rise == NOH_RISE_GOES_ON) {
+    if (b->moves == NOH_MOVES_UP) {
         go_on(k, b, w, seconds);
         return;
     }
     begin(k, b, w, seconds);
-    b->rise = NOH_RISE_GOES_ON;
+    b->moves = NOH_MOVES_UP;
     b->rise_ticks -= (uint32_t)since;
     b->rise_clock = w->clock;
 }
@@ -276,11 +276,11 @@ void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifi
 /* From its doll, or from where it lies without one. */
 static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_body *b, uint32_t ticks)
 {
-    memset(b->motions, 0, sizeof b->motions);
-    if (b->doll) noh_ragdoll_motions(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->motions);
+    memset(b->of.motions, 0, sizeof b->of.motions);
+    if (b->doll) noh_ragdoll_motions(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->of.motions);
     b->doll = 0;
     b->state = NOH_BODY_STANDS;
-    b->rise = NOH_RISE_BEGINS;
+    b->moves = NOH_MOVES_UP_BEGINS;
     b->rise_ticks = ticks;
     b->rise_clock = b->clocks[0] = s->head->clock;
     b->poses = 1;

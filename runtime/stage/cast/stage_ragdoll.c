@@ -28,6 +28,7 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
     if (r->substeps && (r->substeps < 5u || r->substeps > NOH_RAGDOLL_SUBSTEPS_MAX))
         return "substeps of a kind's ragdoll is not in 5..NOH_RAGDOLL_SUBSTEPS_MAX";
     if (!(r->mass >= 0.0f) || !noh_is_finite(r->mass)) return "mass of a kind's ragdoll is below 0 or not finite";
+    if (!noh_is_finite(r->stagger_speed)) return "stagger_speed of a kind's ragdoll is not finite";
     if (d->skeleton == NOH_NONE) return "a kind with ragdolls has no skeleton";
     return r->world && noh_world_check(r->world, NULL) ? "world of a kind's ragdoll: see noh_world_check" : NULL;
 }
@@ -91,6 +92,9 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     (void)noh_pack_skeleton_at(k->desc->mesh, k->desc->skeleton, &joints, &header, NULL);
     r->metres = header->unit_cm / 100.0f;
     noh_ragdoll_fit_make(&r->rig, &k->skeleton, r->metres, &r->fit);
+    for (uint32_t i = 0; i < r->rig.body_count; i++) r->mass += r->rig.bodies[i].mass;
+    r->stagger_speed = from->stagger_speed;
+    noh_stage_find_parts(r, &(noh_ragdoll_source){ k->desc->mesh, k->desc->skeleton, joints, r->metres, 0.0f });
     r->world = from->world;
     r->count = from->count;
     r->dolls = k->modules[NOH_SLOT_BODY].pool;
@@ -182,7 +186,11 @@ static void modify(noh_modifier_work *w)
         show_doll(k, b, w);
         return;
     }
-    if (b->rise) noh_stage_run_get_up(k, b, w);
+    if (b->moves == NOH_MOVES_STAGGERING) {
+        noh_stage_run_stagger(k, b, w);
+    } else if (b->moves) {
+        noh_stage_run_get_up(k, b, w);
+    }
     remember(k, b, w);
 }
 
@@ -217,6 +225,15 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
     }
 }
 
+static void brace(const noh_stage_ragdoll_kind *shared, const noh_stage_body *b)
+{
+    noh_ragdoll_pose goals[NOH_RAGDOLL_BODIES_MAX];
+    float hertz[NOH_RAGDOLL_BODIES_MAX];
+    noh_stage_brace_goals(shared, b, goals, hertz);
+    (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, noh_ragdoll_dolls(shared->dolls)[b->doll - 1u].origin,
+                                   goals, 0, hertz, NULL);
+}
+
 /* Dolls learn what their clips want; those that are free cost nothing. */
 static void tell_dolls(const noh_stage_kind *k)
 {
@@ -227,6 +244,10 @@ static void tell_dolls(const noh_stage_kind *k)
         const noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive || !b->doll) continue;
         used[b->doll - 1u] = 1;
+        if (b->moves == NOH_MOVES_BRACING && !has_goals(k, b)) {
+            brace(shared, b);
+            continue;
+        }
         (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, b->origin,
                                        b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
     }
@@ -242,13 +263,17 @@ static void step(noh_stage_kind *k, uint32_t ticks)
     (void)noh_ragdolls_step_with(r->dolls, r->world, ticks, r->scratch);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
-        if (k->actors[i].alive && b->doll) follow_doll(k, b, &k->actors[i]);
+        if (!k->actors[i].alive) continue;
+        if (b->doll && b->moves == NOH_MOVES_BRACING) noh_stage_step_brace(r, b, ticks);
+        if (b->doll) follow_doll(k, b, &k->actors[i]);
+        if (b->moves == NOH_MOVES_STAGGERING) noh_stage_step_stagger(k, &k->actors[i], b, ticks);
     }
 }
 
 static int carries(const noh_stage_kind *k, uint32_t index)
 {
-    return noh_stage_falls_free(noh_stage_body_of(k, index));
+    const noh_stage_body *b = noh_stage_body_of(k, index);
+    return noh_stage_falls_free(b) || b->moves == NOH_MOVES_STAGGERING;
 }
 
 static void shift(noh_stage_kind *k, const float by[3])
@@ -318,7 +343,7 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
     return result;
 }
 
-static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
+noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     uint32_t doll;
@@ -336,7 +361,7 @@ static noh_result fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_bo
     if (result != NOH_OK) return result;
     b->doll = doll;
     b->state = NOH_BODY_FALLS;
-    b->rise = NOH_RISE_NOT;
+    b->moves = NOH_MOVES_BY_CLIPS;
     b->goals = 0;
     b->poses = 0;
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
@@ -349,7 +374,17 @@ noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error)
     noh_stage_kind *k;
     noh_stage_body *b = NULL;
     const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
-    return b ? fall(k, a, b, error) : result;
+    return b ? noh_stage_fall(k, a, b, error) : result;
+}
+
+noh_result noh_stage_knock_down(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b,
+                                const noh_stage_push *push, noh_error *error)
+{
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
+    if (b->state == NOH_BODY_STANDS && shared->parts.has_legs) return noh_stage_brace_fall(k, a, b, push, error);
+    const noh_result result = noh_stage_fall(k, a, b, error);
+    if (result == NOH_OK) noh_ragdoll_push(shared->dolls, b->doll - 1u, push->point, push->impulse);
+    return result;
 }
 
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
@@ -358,16 +393,15 @@ noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3]
     noh_stage_actor *a;
     noh_stage_kind *k;
     noh_stage_body *b = NULL;
-    noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
+    const noh_stage_push push = { point, impulse };
+    const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     NOH_ASSERT(point && impulse);
     if (!b) return result;
     for (int i = 0; i < 3; i++) {
         if (!noh_is_finite(point[i]) || !noh_is_finite(impulse[i]))
             return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not finite", (uint64_t)i, 0);
     }
-    result = fall(k, a, b, error);
-    if (result == NOH_OK) noh_ragdoll_push(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, point, impulse);
-    return result;
+    return noh_stage_begin_stagger(k, a, b, &push) ? NOH_OK : noh_stage_knock_down(k, a, b, &push, error);
 }
 
 noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error)
@@ -377,7 +411,7 @@ noh_result noh_actor_kill(noh_stage *stage, noh_actor actor, noh_error *error)
     noh_stage_body *b = NULL;
     noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     if (!b) return result;
-    if (b->state != NOH_BODY_LIES) result = fall(k, a, b, error);
+    if (b->state != NOH_BODY_LIES) result = noh_stage_fall(k, a, b, error);
     if (result == NOH_OK) b->dead = 1;
     return result;
 }
@@ -429,8 +463,9 @@ noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor)
     if (b->doll)
         return noh_ragdoll_sleeps(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u) ? NOH_BODY_LIES : NOH_BODY_FALLS;
     if (b->state == NOH_BODY_LIES) return NOH_BODY_LIES;
-    return b->rise && noh_clock_since(stage->head->clock, b->rise_clock) < (int64_t)b->rise_ticks ? NOH_BODY_GETS_UP
-                                                                                                  : NOH_BODY_STANDS;
+    if (b->moves == NOH_MOVES_STAGGERING) return NOH_BODY_STAGGERS;
+    return b->moves && noh_clock_since(stage->head->clock, b->rise_clock) < (int64_t)b->rise_ticks ? NOH_BODY_GETS_UP
+                                                                                                   : NOH_BODY_STANDS;
 }
 
 /* ---- state from outside ---- */
@@ -447,27 +482,43 @@ static int is_finite_hold(const noh_stage_body *b, uint32_t i)
 {
     float sum = 0.0f;
     for (int n = 0; n < 3; n++) {
-        sum += b->motions[i].velocity[n] - b->motions[i].velocity[n];
-        sum += b->motions[i].spin[n] - b->motions[i].spin[n];
         sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n] + b->origin[n] - b->origin[n];
     }
     return sum == 0.0f && b->hertz[i] >= 0.0f && noh_is_finite(b->hertz[i]) && b->animated[i] >= 0.0f &&
            b->animated[i] <= 1.0f;
 }
 
+static const char *bad_move(const noh_stage_kind *k, const noh_stage_body *b)
+{
+    const int falls = b->state == NOH_BODY_FALLS, legs = (int)noh_stage_ragdoll_kind_of(k)->parts.has_legs;
+    float sum = 0.0f;
+    if (b->moves == NOH_MOVES_BY_CLIPS) return NULL;
+    if (b->moves > NOH_MOVES_BRACING || falls != (b->moves == NOH_MOVES_BRACING))
+        return "state: bad ragdoll of an actor";
+    if (b->moves >= NOH_MOVES_STAGGERING && !legs) return "state: an actor without legs staggers";
+    if (b->moves == NOH_MOVES_STAGGERING) return noh_stage_check_stagger(&b->of.stagger);
+    if (b->moves == NOH_MOVES_BRACING) return noh_stage_check_brace(&b->of.brace);
+    for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
+        for (int n = 0; n < 3; n++) {
+            sum += b->of.motions[i].velocity[n] - b->of.motions[i].velocity[n];
+            sum += b->of.motions[i].spin[n] - b->of.motions[i].spin[n];
+        }
+    }
+    return sum == 0.0f && b->rise_ticks ? NULL : "state: an actor's ragdoll is not finite";
+}
+
 static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
 {
     if (b->doll > noh_stage_ragdoll_kind_of(k)->count || b->poses > 2u ||
         (b->poses == 2u && b->clocks[0] <= b->clocks[1]) || b->state > NOH_BODY_LIES ||
-        (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->rise > NOH_RISE_GOES_ON || (b->rise && !b->rise_ticks) ||
-        b->dead > 1u || b->goals > 1u) {
+        (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->dead > 1u || b->goals > 1u) {
         return "state: bad ragdoll of an actor";
     }
     for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
         if (!is_finite_pose(&b->bodies[0][i]) || !is_finite_pose(&b->bodies[1][i]) || !is_finite_hold(b, i))
             return "state: an actor's ragdoll is not finite";
     }
-    return NULL;
+    return bad_move(k, b);
 }
 
 static noh_result check(const noh_stage_kind *k, const void *state, noh_error *error)

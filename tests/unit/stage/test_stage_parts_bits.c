@@ -203,6 +203,7 @@ static void act(show *s, uint32_t f, uint32_t seen[4])
     if (f % 100u == 40u) { /* two of the four */
         const float point[3] = { place.position[0], place.position[1] + 0.9f, place.position[2] + 0.1f };
         const float push[3] = { 12.0f, 2.0f, f == 40u ? -40.0f : 25.0f };
+        assert_int_equal(noh_actor_fall(s->stage, actor, NULL), NOH_OK);
         assert_int_equal(noh_actor_hit(s->stage, actor, point, push, NULL), NOH_OK);
     }
     const char *const none = "";

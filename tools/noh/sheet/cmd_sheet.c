@@ -398,8 +398,8 @@ static const option options[] = {
       .at = offsetof(sheet_args, s.tiles.push),
       .value = "X,Y,Z",
       .what =
-          "push the character by this impulse, newton seconds, half a second into the clip: it falls as a ragdoll, and gets up by clips whose names begin with get_up",
-      .example = "0,0,-90",
+          "push the character by this impulse, newton seconds, half a second into the clip: it sways, steps to keep its feet, or falls, and gets up by clips whose names begin with get_up",
+      .example = "0,0,-150",
       .needs = "--clip",
       .excludes = "--blend --to" },
     { .name = "--lods",
@@ -474,7 +474,7 @@ const verb verb_sheet = {
     .what =
         "draw a contact sheet: every target at full weight, a clip or a live face over time, people by seed, wrinkle models, LOD levels, or data textures",
     .example =
-        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-90 --tiles 12\nface.noh -o idle.png --face on --time 3 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
+        "face.noh -o targets.png\nbody.noh -o walk.png --clip walk --tiles 12 --camera body\nbody.noh -o bow.png --clip walk --to bow --transition inertia\npuppet.noh -o fall.png --clip walk --push 0,0,-150 --tiles 12\nface.noh -o idle.png --face on --time 3 --tiles 12\nface.noh -o people.png --faces 64 --seed 7\nface.noh -o wrinkles.png --wrinkles --light room\nface.noh -o lods.png --lods --target smile --target jawOpen=0.6,smile\nface.noh -o data.png --data --target smile --target jawOpen=0.6",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

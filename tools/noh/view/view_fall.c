@@ -4,7 +4,7 @@
 
 #include "cli/message.h"
 
-#define PUSH 90.0f /* newton seconds */
+#define PUSH 150.0f /* newton seconds */
 #define GO_ON_S 0.3f
 
 int view_fall_push(view_model *m, const view_pick *pick, const float eye[3])
