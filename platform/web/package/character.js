@@ -17,7 +17,7 @@ const longest = 4000; // of a frame, ms; longer gaps were not drawn
 const settles = 2500; // ms in which gaze and emotion settle
 const swings = 2000; // ms in which hair comes to rest
 const shakes = 4000;
-const strength = 90; // of a push, newton seconds
+const strength = 150; // of a push, newton seconds
 const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
 
 // The default settings of a character.
