@@ -429,6 +429,7 @@ static int write_packs(writer *w, const noh_pack *packs, uint32_t pack_count)
         w->filter.image_bytes = packs[i].byte_count;
         if (write_pack(w, &packs[i], i ? &packs[i - 1u] : NULL)) return 1;
         append_section(w, &end);
+        if (i + 1u < pack_count) w->report->first = w->out->count;
     }
     return w->out->failed;
 }

@@ -19,9 +19,10 @@ typedef struct wire_steps {
     uint32_t weight_shift;  /* bits of weights that are 0 */
 } wire_steps;
 
-/* Bytes of the wire form by kind of data, for reports. */
+/* Bytes of the wire form by kind of data, for reports. first: up to the end of the coarse pack; 0: there is none. */
 typedef struct wire_report {
     uint64_t triangles, positions, attributes, influences, deltas, textures, rest;
+    uint64_t first;
 } wire_report;
 
 /* The packs, the coarse one first; each opens once it is complete, and the last is the whole pack.

@@ -93,6 +93,7 @@ static int print_json(const packing *p)
     json_integer(&j, "block_bytes", p->info.block_bytes);
     json_integer(&j, "pack_bytes", p->info.pack_bytes);
     json_integer(&j, "coarse_bytes", p->info.coarse_bytes);
+    json_integer(&j, "first_bytes", (uint32_t)r->first);
     json_integer(&j, "triangles_bytes", (uint32_t)r->triangles);
     json_integer(&j, "positions_bytes", (uint32_t)r->positions);
     json_integer(&j, "attributes_bytes", (uint32_t)r->attributes);
