@@ -1,10 +1,10 @@
 #!/bin/sh
 # web.sh PACK...: for each pack, the page of `make web` is built and run in headless Chromium (tests/web/page.js,
-# figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh). Its canvas is compared
-# with `noh render`, and its bytes with the plan that sized its memory and with `noh budget`. `make web-check` runs it;
-# NOH_WEB_ONLY=lights,hair runs only these parts, without a comparison; with NOH_WEB_TIMES=1 each part prints its time
-# (tests/web/harness.js). Ends like tests/run.sh. Skipped with the reason if emscripten, Chromium or playwright is not
-# available.
+# figure.js, load.js; with the mask controls.js, speech.js and the npm package, web_package.sh; with Nell greet.js). Its
+# canvas is compared with `noh render`, and its bytes with the plan that sized its memory and with `noh budget`. `make
+# web-check` runs it; NOH_WEB_ONLY=lights,hair runs only these parts, without a comparison; with NOH_WEB_TIMES=1 each part
+# prints its time (tests/web/harness.js). Ends like tests/run.sh. Skipped with the reason if emscripten, Chromium or
+# playwright is not available.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -94,7 +94,11 @@ check_pack() {
         NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 1500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
         count $? "$out/figure.txt"
     fi
-    case $name in mask | wig) # with levels, the coarsest first, and without
+    if [ "$name" = nell ]; then
+        timeout -k 5 1500 node tests/web/greet.js "$build/web/$name" "$chromium" "$out" >"$out/greet.txt" 2>&1
+        count $? "$out/greet.txt"
+    fi
+    case $name in mask | wig | nell) # with levels, the coarsest first, and without
         timeout -k 5 1500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
         count $? "$out/load.txt"
         ;;
@@ -143,6 +147,7 @@ for pack in "$@"; do
     figure=hair,spots,transfer,pushes,small # the parts of figure.js
     case $name in
     wig) all=0 figure=hair ;;
+    nell) all=0 figure= ;;
     puppet_falls) all=0 figure=pushes ;;
     *_transfer) all=0 figure=transfer ;;
     puppet_levels) figure= ;;

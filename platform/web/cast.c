@@ -35,7 +35,7 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
     k.mesh = pack;
     k.skeleton = skeleton;
     k.actor_count = wants->actors;
-    if (wants->alive) k.springs = noh_springs_module(); /* what swings depends on what was before */
+    if (wants->alive) web_cast_add_springs(&k);
     k.layers = layers;
     k.layer_count = WEB_LAYERS;
     k.root_axes = NOH_ROOT_GROUND;
@@ -64,39 +64,6 @@ static noh_result list_kinds(web_cast *cast, const noh_pack *pack, noh_error *er
     cast->desc.kinds = cast->kinds;
     cast->desc.kind_count = count;
     return NOH_OK;
-}
-
-/* Hair goes to the first kind with the joint that carries it. */
-static noh_result add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
-{
-    noh_actor_hair_desc *hair = &cast->hair;
-    noh_result result = NOH_ERR_NOT_FOUND;
-    uint32_t k = 0;
-    if (cast->wants.elsewhere || noh_haircut_open(pack, &cast->cut, NULL)) return NOH_OK;
-    while (k < cast->desc.kind_count && result) {
-        result = noh_actor_hair_desc_make(&cast->cut, pack, cast->kinds[k++].skeleton, hair, error);
-    }
-    if (result) return result;
-    hair->kind = k - 1u;
-    hair->head_max = hair->near_max = cast->wants.actors;
-    hair->in_state = 1;
-    cast->hair_part = noh_actor_hair_modifier(hair);
-    cast->kinds[hair->kind].modifiers = &cast->hair_part;
-    cast->kinds[hair->kind].modifier_count = 1;
-    cast->heads_bytes = (noh_actor_hair_size(hair) + 15u) / 16u * 16u;
-    cast->has_hair = 1;
-    return NOH_OK;
-}
-
-/* The floor is at height 0, as in `noh render --push`. */
-static void add_fall(web_cast *cast)
-{
-    static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
-    static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
-    static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
-    static noh_ragdoll_rig rig;
-    (void)noh_kind_can_fall(&cast->kinds[0], &rig, &cast->cannot_fall);
-    if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
 }
 
 static uint32_t most_skin_joints(const noh_pack *pack)
@@ -182,8 +149,8 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     cast->wants = *wants;
     result = list_kinds(cast, pack, error);
     describe(cast);
-    if (!result) result = add_hair(cast, pack, error);
-    if (!result) add_fall(cast);
+    if (!result) result = web_cast_add_hair(cast, pack, error);
+    if (!result) web_cast_add_fall(cast);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);
     if (!result) result = noh_stage_plan_make(&cast->desc, caps, &cast->plan, error);
     for (uint32_t i = 0; i < cast->desc.kind_count && !result; i++) { /* the plan has counted the floats */

@@ -56,4 +56,12 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
                          size_t scratch_bytes, const noh_gl_caps *caps, noh_error *error);
 size_t web_cast_scratch(const noh_pack *pack);
 
+/* Parts of a plan; the program of faces has none of them (face_only.c).
+ * springs  of a kind that is alive
+ * hair     to the first kind with the joint that carries it
+ * fall     of the first kind, on a floor at height 0, as in `noh render --push` */
+void web_cast_add_springs(noh_kind_desc *kind);
+noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error);
+void web_cast_add_fall(web_cast *cast);
+
 #endif

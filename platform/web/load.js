@@ -4,13 +4,19 @@
 
 const ownText = byId('file-text').textContent;
 
-// Progress of loading, as text and as a bar; only as text if the server sends no length.
-function showProgress({ taken, all, shows }) {
+// Until the first picture, the share of the program and of the first bytes of the pack; then of the rest. As text alone
+// if the server sends no length.
+const programBytes = Number(document.documentElement.dataset.program), firstBytes = Number(document.documentElement.dataset.first);
+let programCame = 0;
+function showProgress({ taken, all, shows, program = programCame }) {
     const bar = byId('progress-bar'), kilobytes = (bytes) => Math.round(bytes / 1000).toLocaleString('en');
+    programCame = program;
+    const rest = `${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`, first = programBytes + Math.min(all || firstBytes, firstBytes);
+    const share = shows ? taken / all : Math.min(1, (program + taken) / first);
     byId('progress').hidden = shows === 2;
-    bar.hidden = !all;
-    if (all) Object.assign(bar, { max: all, value: taken });
-    byId('progress-text').textContent = `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
+    bar.hidden = !Number.isFinite(share);
+    if (!bar.hidden) bar.value = share;
+    byId('progress-text').textContent = shows ? `finer detail: ${rest}` : programBytes ? `loading: ${Math.round(100 * share)} %` : `loading: ${rest}`;
 }
 
 function showWords(words) {
@@ -40,6 +46,7 @@ async function openFiles(list) {
         visitor = visitor || new (await import('./package/convert.js')).Visitor();
         const pack = await visitor.pack(files, { tell: showWords, warn: (words) => warnings.push(words) });
         fresh = true;
+        character.address = undefined; // the page's own program may be of faces alone
         await load(pack);
         say(warnings.join('\n'));
         again = () => pack;

@@ -424,18 +424,31 @@ EMSCRIPTEN_KEEPALIVE float *web_walked(void)
     return place.position;
 }
 
+static void measure(int face, float box[6])
+{
+    web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * web.cast.wants.actors, web_block(web.cast.matrices_at),
+               face, box);
+}
+
 /* The box of all figures in their current pose: 6 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_measure(void)
 {
     set_looks(1);
     if (noh_stage_frame(web.stage, 0, NULL, NULL, NULL, &web.error) == NOH_OK) {
-        web_bounds(web.stage, &web.pack, web.cast.desc.kind_count * web.cast.wants.actors,
-                   web_block(web.cast.matrices_at), web.bounds);
+        measure(0, web.bounds);
     }
     set_looks(0);
     web.view.cut = 1;
     memcpy(web.from, web_walked(), sizeof web.from);
     return web.bounds;
+}
+
+/* The box of what targets move, as last posed for web_measure; low is above high without targets. */
+EMSCRIPTEN_KEEPALIVE float *web_measure_face(void)
+{
+    static float box[6];
+    measure(1, box);
+    return box;
 }
 
 /* Pose a clip on the bodies at regular times, and measure each pose relative to the first character. */

@@ -5,7 +5,6 @@
 // faces.js, speech.js and tabs.js read other parts of the query.
 'use strict';
 
-const query = new URLSearchParams(location.search);
 const byId = (id) => document.getElementById(id);
 const canvas = byId('canvas');
 const arriving = import('./package/page.js'); // Character and its modules, joined (tools/web_join.sh)
@@ -169,6 +168,7 @@ function showPack() {
     beginFaces();
     beginSpeech();
     listTabs();
+    beginGreeting();
     character.fit();
 }
 
@@ -186,7 +186,8 @@ function showLoaded({ whole }) {
     showMemory();
 }
 
-function showFrame() {
+function showFrame(detail) {
+    showSwing(detail);
     window.noh.frames = character.frames;
     showDetail();
     showSharpness();
@@ -203,7 +204,11 @@ function listen() {
     on('push', showPush);
     on('speech', showSaid);
     on('caption', showCaption);
-    on('pick', ({ mesh, joint }) => { byId('picked').textContent = [mesh, joint].filter((name) => name).join(', joint '); });
+    on('word', feelAtWord);
+    on('pick', ({ mesh, joint }) => {
+        if (!works()) return;
+        byId('picked').textContent = [mesh, joint].filter((name) => name).join(', joint ');
+    });
     on('pause', showPaused);
     on('lost', () => {
         window.noh.lost++;
@@ -219,8 +224,8 @@ async function start() {
     const { Character, addPointers, addGaze, isSoftware } = await arriving.catch(() => { throw new Error('the page cannot load its program: is this device online?'); });
     Object.defineProperty(window.noh, 'software', { get: () => isSoftware(window.noh.renderer) });
     character = new Character(canvas, {
-        path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
-        follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),
+        program: query.has('pack') ? undefined : byId('program').href, path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
+        view: viewAsked(), follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),
     });
     byId('follow').checked = character.camera.follows;
     byId('sparing').checked = character.sparing;
@@ -236,5 +241,6 @@ document.addEventListener('DOMContentLoaded', () => start().catch((error) => {
     say(window.noh.error = String(error.message || error));
     byId('progress').hidden = true;
     byId('again').hidden = false;
+    beginGreeting();
     for (const [on, type] of [[byId('again'), 'click'], [window, 'online']]) on.addEventListener(type, () => location.reload());
 }));

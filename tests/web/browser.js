@@ -1,17 +1,27 @@
 // browser.js: shared by the tests of the page: a server of one or more folders, and Chromium on SwiftShader.
 // Needs playwright-core, found through NODE_PATH.
 'use strict';
+const crypto = require('crypto');
 const fs = require('fs');
 const http = require('http');
 const path = require('path');
 const zlib = require('zlib');
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml' };
+const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml', '.jpg': 'image/jpeg' };
 
 // A file alone is served as itself.
 const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, !name || name.endsWith('/') ? `${name}index.html` : name) : place;
 
-// What is text or program goes over the wire with gzip, as servers send it; of the rest, parts that are asked for.
+// What is text or program goes over the wire with brotli or gzip, as servers send it; of the rest, parts that are asked for.
+const codings = [['br', zlib.brotliCompressSync], ['gzip', zlib.gzipSync]], coded = new Map(); // by coding and contents
+function packedBy(request, bytes) {
+    const coding = codings.find(([name]) => new RegExp(`\\b${name}\\b`).test(request.headers['accept-encoding'] || ''));
+    if (!coding) return null;
+    const key = `${coding[0]} ${crypto.createHash('sha1').update(bytes).digest('hex')}`;
+    if (!coded.has(key)) coded.set(key, coding[1](bytes));
+    return { name: coding[0], bytes: coded.get(key) };
+}
+
 function send(request, answer, name, bytes) {
     const range = /^bytes=(\d+)-(\d*)$/.exec(request.headers.range || '');
     if (range && !types[path.extname(name)] && Number(range[1]) < bytes.length) {
@@ -21,9 +31,9 @@ function send(request, answer, name, bytes) {
         return;
     }
     const type = types[path.extname(name)] || (name.endsWith('/') ? 'text/html' : 'application/octet-stream');
-    const packed = types[path.extname(name)] && /gzip/.test(request.headers['accept-encoding'] || '') ? zlib.gzipSync(bytes) : null;
-    answer.writeHead(200, { 'Content-Type': type, 'Content-Length': (packed || bytes).length, ...(packed ? { 'Content-Encoding': 'gzip' } : {}) });
-    answer.end(packed || bytes);
+    const packed = types[path.extname(name)] && !/jpg$/.test(name) ? packedBy(request, bytes) : null, body = packed ? packed.bytes : bytes;
+    answer.writeHead(200, { 'Content-Type': type, 'Content-Length': body.length, ...(packed ? { 'Content-Encoding': packed.name } : {}) });
+    answer.end(body);
 }
 
 // Serve the files of { '/prefix/': folder, file or function (request, answer) }, with more headers; resolves to the

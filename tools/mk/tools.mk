@@ -162,6 +162,9 @@ $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 $(BUILD)/page/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	@mkdir -p $(@D)
 	$(BUILD)/noh build $< -o $@ --wrinkles auto --lod 4 --lod-fast --lod-color 1.2 --quiet
+$(BUILD)/page/nell.noh: $(BUILD)/demo/nell.glb $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-color 1.2 --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
 MASK_HAIR := tools/demo_assets/mask/mask.hair

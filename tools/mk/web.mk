@@ -3,7 +3,7 @@
 # ---- the page ----
 
 # One program for all packs: the memory that it runs in is made in the browser, for its pack (platform/web/package).
-WEB_PACK    ?= $(BUILD)/page/mask.noh
+WEB_PACK    ?= $(BUILD)/page/nell.noh
 WEB_WIRE    ?= --error-um 10# of `noh pack`; empty: nothing is rounded
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
 WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
@@ -13,9 +13,9 @@ WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s AL
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
-WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js)
+WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js greet.js)
 WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js reach.js program.js pointer.js speech.js character.js)
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js page.noh page.nohz $(addprefix package/,noh.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm face.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
 WEB_WORKER    := $(addprefix tools/web_convert/,worker.js webp.js)
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm $(notdir $(WEB_WORKER)))
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
@@ -26,8 +26,8 @@ web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERTER) || echo 'The page has no converter: it shows packs alone.'
 	@sh tools/web_sizes.sh $(WEB)
 
-# Of the mask and of the puppet; or of one pack, if it is named.
-WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
+# Of the mask, of the page's own, and others; or of one pack, if it is named.
+WEB_PACKS   := $(if $(filter file,$(origin WEB_PACK)),$(BUILD)/page/mask.noh $(BUILD)/page/nell.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm_transfer.noh,$(WEB_PACK))
 web-check: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/tests/gl/picture_diff $(BUILD)/demo/arm.glb $(WEB_OBJECTS)/plan.js $(WEB_PACKS)
 	@$(MAKE) --no-print-directory DEPS=0 npm
@@ -55,26 +55,45 @@ look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
 
 $(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh
 	@mkdir -p $(@D)
-	$(Q)$(BUILD)/noh pack $< -o $@ --quiet $(WEB_WIRE)
+	$(Q)$(BUILD)/noh pack $< -o $@ --json $(WEB_WIRE) >$(@:.nohz=.json)
 $(WEB)/page.noh: $(WEB)/page.nohz
 	$(Q)$(BUILD)/noh strip $< -o $@ --from-level 0 --quiet
+# The page has to know which program shows its pack, its size, for the share that has come, and how many bytes of the pack
+# the first picture needs.
+$(WEB)/index.html: platform/web/index.html tools/web_index.sh $(WEB)/page.nohz $(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm
+	$(Q)sh tools/web_index.sh $< $(WEB_OBJECTS) $(BUILD)/noh $(WEB)/page.nohz $(WEB)/page.json >$@.new
+	@mv $@.new $@
+# The face as the page draws it, shown until it does: pictures of 3 kB.
+POSTER_tall := 150x325
+POSTER_wide := 320x200
+$(BUILD)/web_poster: tools/web_poster/web_poster.c
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) -std=c99 -O1 -isystem /usr/include/stb $< -lm -o $@
+$(WEB)/poster_%.jpg: $(WEB_PACK) $(BUILD)/noh $(BUILD)/web_poster
+	@mkdir -p $(@D)
+	$(Q)$(BUILD)/noh render $< -o $(WEB)-$*.png --camera face --light studio --size $(POSTER_$*) >/dev/null
+	$(Q)$(BUILD)/web_poster $(WEB)-$*.png $@ 3000
+	@rm -f $(WEB)-$*.png
 $(WEB)/page.js: $(WEB_SCRIPTS)
 	@mkdir -p $(@D)
-	@cat $^ >$@
+	@cat $^ | sed '/^ *\/\/ /d' >$@
 $(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
 	@mkdir -p $(@D)
 	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
-$(WEB)/package/noh.wasm: $(WEB_OBJECTS)/noh.wasm
+$(addprefix $(WEB)/package/,noh.wasm face.wasm): $(WEB)/package/%.wasm: $(WEB_OBJECTS)/%.wasm
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-# The program, and the planner that the tests run under node.
-WEB_C := $(filter-out %/plan.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
+# The program, the one of faces, and the planner that the tests run under node.
+WEB_BODY_C := $(addprefix platform/web/,cast_body.c push.c hair.c vertices.c)
+WEB_C := $(filter-out %/plan.c %/face_only.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
-WEB_PLAN_O := $(WEB_OBJECTS)/platform/web/plan.o $(WEB_OBJECTS)/platform/web/cast.o $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+WEB_FACE_O := $(filter-out $(WEB_BODY_C:%.c=$(WEB_OBJECTS)/%.o),$(WEB_O)) $(WEB_OBJECTS)/platform/web/face_only.o
+WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o) $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
 $(BUILD)/web-cc: tools/web_cc.sh
 	@mkdir -p $(@D)
@@ -90,9 +109,11 @@ $(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c | $(BUILD)/web-cc
 $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
--include $(WEB_O:.o=.d) $(WEB_PLAN_O:.o=.d)
+-include $(WEB_O:.o=.d) $(WEB_FACE_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
 $(WEB_OBJECTS)/noh.wasm: $(WEB_O)
+$(WEB_OBJECTS)/face.wasm: $(WEB_FACE_O)
+$(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm:
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
@@ -187,6 +208,6 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm LICENSE tools/npm.sh runtime/noh/base.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm LICENSE tools/npm.sh runtime/noh/base.h \
     $(WEB_WORKER) $(wildcard $(WEB_CONVERT)/convert.wasm)
-	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS)/noh.wasm LICENSE $(WEB_CONVERT) $(WEB_WORKER)
+	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS) LICENSE $(WEB_CONVERT) $(WEB_WORKER)

@@ -2,6 +2,22 @@
 
 export const front = { azimuth: 0, elevation: 0.05 };
 
+// ---- what is framed, much as `noh render --camera` does (figure_shape.c) ----
+
+const faceIsAll = 0.4, upperShare = 0.45; // of the figure's height: a higher face is a head alone; of a body, its upper part
+const belowFace = [0.12, 0.12, 0.35], aboveFace = [0.12, 0.5, 0.35]; // room around a face, of its height: less at the sides, so that it fills a tall screen
+
+// The box of a view: 'face', 'upper' or 'full'. Boxes: minimum, maximum. face: what targets move; its minimum is above its
+// maximum if there is none.
+export function framed(all, face, view) {
+    const tall = all[4] - all[1], high = face[4] - face[1], middle = (all[0] + all[3]) / 2, half = upperShare * tall / 2;
+    if (view === 'full' || (high < 0 && view === 'face')) return all;
+    if (high > 0 && (view === 'face' || high > faceIsAll * tall)) {
+        return face.map((at, i) => (i < 3 ? Math.max(at - belowFace[i] * high, all[i]) : Math.min(at + aboveFace[i - 3] * high, all[i])));
+    }
+    return [Math.max(all[0], middle - half), all[4] - 2 * half, all[2], Math.min(all[3], middle + half), all[4], all[5]];
+}
+
 function product(a, b, out) {
     for (let i = 0; i < 16; i++) {
         out[i] = 0;
@@ -12,13 +28,13 @@ function product(a, b, out) {
 export class Camera {
     constructor() {
         // distance: 1 frames the figures; pixel: size of a page pixel at the figures, in world units
-        Object.assign(this, front, { distance: 0, box: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
+        Object.assign(this, front, { distance: 0, box: null, all: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
         this.matrix = new Float32Array(16);
     }
 
-    // Frame a box, measured at the figures' position, as near as possible.
-    fit(box, from) {
-        Object.assign(this, { box, from, distance: 0, offset: [0, 0, 0], byHand: false });
+    // Frame a box, measured at the figures' position, as near as possible. all: the box of the figures.
+    fit(box, from, all = box) {
+        Object.assign(this, { box, from, all, distance: 0, offset: [0, 0, 0], byHand: false });
     }
 
     zoom(by) {
@@ -45,7 +61,8 @@ export class Camera {
         const radius = Math.max(Math.hypot(...half), 1e-6);
         const need = Math.max(half[1], Math.max(half[0], half[2] * 0.7) / aspect) * 1.05;
         const d = (this.distance || 1) * Math.max(need * f + half[2], radius * 1.02);
-        const near = Math.max(d - 2 * radius, d * 0.02), far = d + 2 * radius;
+        const depth = 2 * (radius + Math.max(...b.map((at, i) => Math.abs(this.all[i] - at))));
+        const near = Math.max(d - depth, d * 0.02), far = d + depth;
         const ca = Math.cos(this.azimuth), sa = Math.sin(this.azimuth), ce = Math.cos(this.elevation), se = Math.sin(this.elevation);
         const right = [ca, 0, -sa], up = [-sa * se, ce, -ca * se], back = [sa * ce, se, ca * ce];
         Object.assign(this, { right, up, pixel: 2 * d / f / height });

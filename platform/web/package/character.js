@@ -1,6 +1,6 @@
 // character.js: a character on a canvas: loading its pack, drawing, clips, gaze, emotions and speech. Settings are
 // stored here, so that they apply to the coarsest levels of a pack, to the whole pack, and to another pack.
-import { Camera, front } from './camera.js';
+import { Camera, framed, front } from './camera.js';
 import { forgetPrograms } from './gl.js';
 import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
@@ -26,12 +26,12 @@ const asMade = { light: 'studio', degrees: 0, shadow: 'on', floor: true, tonemap
 
 export class Character extends EventTarget {
     // options: { program: where noh.wasm is, path, characters, alive, size: pixels across instead of the canvas's own,
-    // pixels: 'auto': fewer while it moves and frames take long, or 'all', follows: whether the camera does, elsewhere: another renderer draws (three.js) }, and what `asMade` has.
+    // pixels: 'auto': fewer while it moves and frames take long, or 'all', follows: whether the camera does, view: what it frames, elsewhere: another renderer draws (three.js) }, and what `asMade` has.
     constructor(canvas, options = {}) {
         super();
-        const { program, path = 'auto', characters = 1, alive = true, size = 0, pixels = 'auto', follows = true, elsewhere = false, ...chosen } = options;
+        const { program, path = 'auto', characters = 1, alive = true, size = 0, pixels = 'auto', follows = true, view = 'full', elsewhere = false, ...chosen } = options;
         this.wants = { path, characters, alive, elsewhere };
-        Object.assign(this, { canvas, size, pixels: new Pixels(), spares: pixels !== 'all', sharp: false, goesOn: false, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
+        Object.assign(this, { canvas, size, view, pixels: new Pixels(), spares: pixels !== 'all', sharp: false, goesOn: false, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
         Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
         Object.assign(this, { loaded: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
         this.speech = new Speech(this);
@@ -101,7 +101,8 @@ export class Character extends EventTarget {
     }
 
     async arrive(source, shown, show, mine) {
-        const [module, answer] = await Promise.all([compile(this.address), responseOf(source)]);
+        const program = (came) => { if (mine()) this.emit('progress', { taken: 0, all: 0, shows: 0, program: came }); };
+        const [module, answer] = await Promise.all([compile(this.address, program), responseOf(source)]);
         if (!mine()) return;
         const arrival = await Arrival.begin(module, this.gl, this.caps);
         arrival.around = (call) => this.around(call);
@@ -285,12 +286,14 @@ export class Character extends EventTarget {
     // The position of the first character.
     get walked() { return Array.from(this.program.floats(this.program._web_walked(), 3)); }
 
-    // Frame all figures as near as possible, in their present pose or in all poses of a running clip.
+    // Frame the figures as near as possible, in their present pose or in all poses of a running clip; with the view 'upper'
+    // or 'face' that part of them, as `noh render --camera` does.
     fit() {
         const p = this.program, clip = this.runs && this.playing[0].clip !== null ? this.clipNamed(this.playing[0].clip) : null;
         const poses = clip ? Math.min(mostPoses, Math.max(4, Math.ceil(clip.seconds * posesASecond))) : 0;
-        const box = p.floats(clip ? p._web_measure_clip(clip.index, clip.seconds, poses) : p._web_measure(), 6);
-        this.camera.fit(Array.from(box), this.walked);
+        const still = Array.from(p.floats(p._web_measure(), 6)), face = Array.from(p.floats(p._web_measure_face(), 6));
+        const all = clip ? Array.from(p.floats(p._web_measure_clip(clip.index, clip.seconds, poses), 6)) : still;
+        this.camera.fit(this.view === 'full' ? all : framed(still, face, this.view), this.walked, all);
         this.redraw();
     }
 

@@ -37,13 +37,13 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 // Properties and their values without an attribute.
 const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
-    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
+    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, view: 'full', cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
 // A plain class if there is no page (rendering on a server).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
-    static observedAttributes = ['src', 'poster', 'clip', 'face', ...ofLight, 'level', 'speed', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
+    static observedAttributes = ['src', 'poster', 'clip', 'face', ...ofLight, 'level', 'speed', 'view', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
 
     constructor() {
         super();
@@ -149,8 +149,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // The attributes as options.
     wishes() {
-        const { path, pixels, characters, light, degrees, shadow, background, level, speed } = this;
-        return { program: this.program || undefined, path, pixels, characters, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
+        const { path, pixels, characters, view, light, degrees, shadow, background, level, speed } = this;
+        return { program: this.program || undefined, path, pixels, characters, view, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
             paused: this.rests(), calm: !this.lives() };
     }
 
@@ -221,13 +221,13 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.inside('slot').replaceChildren(...this.poster ? [picture] : []);
     }
 
-    showProgress({ taken, all, shows, words }) {
+    showProgress({ taken, all, shows, words, program = 0 }) {
         const bar = this.inside('progress');
         this.inside('.progress').hidden = shows === 2;
         if (all) Object.assign(bar, { max: all, value: taken });
         else bar.removeAttribute('value');
         this.style.setProperty('--noh-progress', all ? String(taken / all) : '0');
-        this.inside('.bar span').textContent = words || `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
+        this.inside('.bar span').textContent = words || `${shows ? 'finer detail' : 'loading'}: ${kilobytes(taken || program)}${all ? ` of ${kilobytes(all)}` : ''} kB`;
     }
 
     dropped(event) {
@@ -303,6 +303,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             this.character.setLight(Object.fromEntries(Object.entries(this.wishes()).filter(([key]) => ofLight.includes(key))));
         } else if (name === 'level' || name === 'speed') {
             this.character[name] = this.wishes()[name];
+        } else if (name === 'view') {
+            this.character.view = this.view;
+            if (this.loaded) this.character.fit();
         } else if (name === 'paused' || name === 'auto-life') {
             this.rest();
         } else if (name === 'alt' || name === 'aria-label' || name === 'camera-orbit') {

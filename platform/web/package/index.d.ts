@@ -5,6 +5,8 @@ export type PackSource = string | URL | Response | Promise<Response> | Blob | Ar
 
 export type Layer = 'body' | 'face';
 export type Shadow = 'on' | 'off' | 'blob';
+/** What the camera frames: the face with its hair, the upper part of a body, or all of the figures. */
+export type View = 'face' | 'upper' | 'full';
 export type Background = 'light' | 'gradient' | 'plain';
 /** The accumulation path of targets: `auto` selects the best for this context. */
 export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'direct' | 'cpu' | 'blend';
@@ -46,7 +48,13 @@ export interface Memory {
 /** A callback key that a clip has passed. */
 export interface KeyDetail { readonly name: string; readonly clip: string; readonly layer: Layer; readonly weight: number; readonly character: number }
 /** `all`: 0 if the server sends no length. `shows`: 0 nothing yet, 1 the coarsest levels, 2 everything. */
-export interface ProgressDetail { readonly taken: number; readonly all: number; readonly shows: 0 | 1 | 2 }
+export interface ProgressDetail {
+    readonly taken: number;
+    readonly all: number;
+    readonly shows: 0 | 1 | 2;
+    /** Bytes of the program so far, uncompressed, before the pack is read. */
+    readonly program?: number;
+}
 export interface CharacterEvents {
     load: CustomEvent<{ whole: boolean }>;
     progress: CustomEvent<ProgressDetail>;
@@ -82,7 +90,8 @@ export interface SpeechOptions {
 }
 
 export interface CharacterOptions extends Partial<Light> {
-    /** Address of noh.wasm; default: in the folder of this module. */
+    /** Address of the program; default: noh.wasm in the folder of this module. face.wasm, which lies next to it, is smaller:
+     * it has no falls, springs, hair or three.js. */
     program?: string | URL;
     path?: MorphPath;
     /** Number of characters side by side, 1 to 16. */
@@ -96,6 +105,8 @@ export interface CharacterOptions extends Partial<Light> {
     pixels?: 'auto' | 'all';
     /** Whether the camera follows a walking figure. */
     follows?: boolean;
+    /** What the camera frames; default: all of the figures. */
+    view?: View;
     level?: number;
     speed?: number;
     paused?: boolean;
@@ -149,6 +160,8 @@ export class Character extends EventTarget {
     /** Fifteen weights of mouth shapes, in the order of noh_viseme; null: silence. */
     setMouth(weights: ArrayLike<number> | null): void;
     push(x?: number, y?: number): string;
+    /** What `fit` frames. */
+    view: View;
     fit(): void;
     home(): void;
     zoom(by: number): void;
@@ -193,6 +206,7 @@ export interface NohCharacterProperties {
     path: MorphPath;
     pixels: 'auto' | 'all';
     characters: number;
+    view: View;
     cameraOrbit: boolean;
     autoLife: boolean;
     /** Whether what is said is shown; without a voice it always is. */

@@ -9,11 +9,11 @@ export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'b
 
 const compiled = new Map(); // by address
 
-// The program, compiled once for all characters. address: of noh.wasm.
-export function compile(address = new URL('./noh.wasm', import.meta.url)) {
+// The program, compiled once for all characters. address: of noh.wasm; tell(taken): its bytes, while they arrive.
+export function compile(address = new URL('./noh.wasm', import.meta.url), tell) {
     const key = String(address);
     if (!compiled.has(key)) {
-        const module = compileFrom(key, 'program');
+        const module = compileFrom(key, 'program', tell);
         module.catch(() => compiled.delete(key)); // the next call tries again
         compiled.set(key, module);
     }

@@ -1,0 +1,94 @@
+/* face_only.c: stands in for cast_body.c, push.c, hair.c and vertices.c in the program of faces, face.wasm, which is
+ * smaller: figures do not fall, and hair and springs of a pack stay still. */
+#include <emscripten.h>
+
+#include "web.h"
+
+void web_cast_add_springs(noh_kind_desc *kind)
+{
+    (void)kind;
+}
+
+noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)
+{
+    (void)cast;
+    (void)pack;
+    (void)error;
+    return NOH_OK;
+}
+
+void web_cast_add_fall(web_cast *cast)
+{
+    (void)noh_fail(&cast->cannot_fall, NOH_ERR_UNSUPPORTED, "face.wasm has no falls: use noh.wasm", 0, 0);
+}
+
+/* ---- push.c ---- */
+
+EMSCRIPTEN_KEEPALIVE int web_push(float strength)
+{
+    (void)strength;
+    web.error = web.cast.cannot_fall;
+    return (int)web.error.result;
+}
+
+EMSCRIPTEN_KEEPALIVE int web_push_at(float x, float y, float strength)
+{
+    return web_pick(x, y) ? web_push(strength) : 0;
+}
+
+EMSCRIPTEN_KEEPALIVE uint32_t web_fallen(void)
+{
+    return 0;
+}
+
+noh_result web_rise(uint32_t ticks)
+{
+    (void)ticks;
+    return NOH_OK;
+}
+
+/* ---- hair.c ---- */
+
+noh_result web_hair_open(void)
+{
+    return NOH_OK;
+}
+
+void web_hair_close(void) {}
+
+noh_result web_hair_restore(void)
+{
+    return NOH_OK;
+}
+
+void web_hair_update(void) {}
+
+void web_hair_shadow(void) {}
+
+noh_result web_hair_draw(void)
+{
+    return noh_stage_draw(web.stage, NOH_PASS_COLOR, 0, NULL, &web.error);
+}
+
+void web_hair_shake(double seconds)
+{
+    (void)seconds;
+}
+
+EMSCRIPTEN_KEEPALIVE int web_has_hair(void)
+{
+    return 0;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_set_hair(int shows, float wind)
+{
+    (void)shows;
+    (void)wind;
+}
+
+EMSCRIPTEN_KEEPALIVE void web_shake(void) {}
+
+EMSCRIPTEN_KEEPALIVE int web_shakes(void)
+{
+    return 0;
+}
