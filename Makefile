@@ -8,6 +8,7 @@ CC      ?= gcc
 HOSTCC  ?= gcc
 CXX     ?= g++
 AR      ?= ar
+OBJCOPY ?= objcopy
 PKG     ?= pkg-config
 DEPS    ?= 1
 JOBS    ?= $(shell nproc 2>/dev/null || echo 2)
@@ -67,7 +68,8 @@ CONVERT_CC := $(call sources,tools/convert,*.cpp)
 VIEW_NOT_C := $(call sources,tools/noh,view_without.c)
 VIEW_C     := $(filter-out $(VIEW_NOT_C) %/cmd_view.c,$(call sources,tools/noh/view,*.c))
 VIEW_CC    := $(call sources,tools/noh/view,*.cpp)
-TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C),$(call sources,tools/noh,*.c))
+# The converter as a library has its own entry.
+TOOL_C     := $(filter-out $(VIEW_NOT_C) $(VIEW_C) %/noh_convert.c,$(call sources,tools/noh,*.c))
 DEMO_C     := $(call sources,tools/demo_assets,*.c)
 EXAMPLE_C  := $(sort $(wildcard tools/examples/*.c))
 STAGES     := vert geom frag
@@ -111,10 +113,10 @@ KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/noh.1 $(BUILD)/noh.bash
+all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/libnohconvert.a $(BUILD)/noh.1 $(BUILD)/noh.bash
 
 help:
-	@echo 'make            build/noh and build/libnoh.a'
+	@echo 'make            build/noh, build/libnoh.a and build/libnohconvert.a, the converter as a library'
 	@echo 'make demo       install what is missing, build, make the mask, convert it, render it'
 	@echo 'make demo-body  the same with the puppet, a figure that walks, bows, dances, falls and gets up'
 	@echo 'make demo-crowd a square at a festival, with a thousand puppets who know where they are'

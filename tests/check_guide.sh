@@ -62,7 +62,7 @@ names() {
     sed 's/noh_[a-z_]*\.h//g' "$@" | grep -oE '\<(noh|NOH)_[a-zA-Z0-9_]*[a-z0-9A-Z]\>' | grep -vE '[a-z]_[A-Z]' | sort -u
 }
 cat runtime/noh/*.h >"$work/headers"
-cat shaders_es/*.glsl shaders_es/README.md runtime/CMakeLists.txt tools/install/nohConfig.cmake.in tests/run.sh >>"$work/headers"
+cat shaders_es/*.glsl shaders_es/README.md runtime/CMakeLists.txt tools/install/nohConfig.cmake.in tools/noh/build/noh_convert.h tests/run.sh >>"$work/headers"
 pages=$(ls $guide/*.md | grep -v 'find_your_way\|/add_')
 # shellcheck disable=SC2086 # a list
 names $pages | grep -vE '^(NOH_WITHOUT_GL|NOH_GL_DEBUG)$' | while read -r name; do

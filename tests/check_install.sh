@@ -29,14 +29,14 @@ prefix=$work/prefix
 installs 'make install-lib without a C++ compiler' install-lib PREFIX="$prefix" CXX=false
 check 'the library alone: no program' test ! -e "$prefix/bin" -a -f "$prefix/lib/libnoh.a"
 installs 'make install over it' install PREFIX="$prefix"
-for file in bin/noh bin/noh-embed lib/libnoh.a lib/pkgconfig/noh.pc lib/cmake/noh/nohConfig.cmake lib/cmake/noh/nohConfigVersion.cmake \
+for file in bin/noh bin/noh-embed lib/libnoh.a lib/libnohconvert.a lib/pkgconfig/nohconvert.pc include/noh_convert.h lib/pkgconfig/noh.pc lib/cmake/noh/nohConfig.cmake lib/cmake/noh/nohConfigVersion.cmake \
     include/noh/noh.h share/noh/shaders/common_layers.glsl share/noh/examples/walker.c share/noh/platform/template.c share/noh/guide/index.md share/noh/guide/figures.md; do
     check "$file" test -s "$prefix/$file"
 done
 [ ! -f "$build/noh.1" ] || check 'the man page' test -s "$prefix/share/man/man1/noh.1"
 [ ! -f tools/completion/noh.bash ] || check 'bash completion' test -s "$prefix/share/bash-completion/completions/noh"
 (cd "$prefix/include" && find . -name '*.h') | sed 's|^\./||' | sort >"$work/headers"
-(cd runtime && find noh -name '*.h') | sort >"$work/public"
+{ (cd runtime && find noh -name '*.h') && echo noh_convert.h; } | sort >"$work/public"
 check 'the public headers and no other' cmp "$work/public" "$work/headers"
 # A folder of the source is share/noh/FOLDER there. A header that is named is public.
 (cd "$prefix/include/noh" && grep -rhoE '\<(runtime|tools|tests|platform|shaders_es|core|motion|deform|life|stage|gl)/[A-Za-z0-9_./]*[A-Za-z0-9*_]' .) | sort -u >"$work/paths"

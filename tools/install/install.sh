@@ -4,7 +4,8 @@
 #
 #   lib     libnoh.a, the public headers, noh.pc, the CMake package; in DATADIR/noh the GLSL for a
 #           game's own shaders, the examples, the platform template and the guide
-#   all     that, and the programs noh and noh-embed (tools/embed), the man page and bash completion
+#   all     that, the programs noh and noh-embed (tools/embed), the man page, bash completion, and the converter as a
+#           library: libnohconvert.a, noh_convert.h, nohconvert.pc
 #   remove  what DATADIR/noh/installed.txt lists, and the folders that were made for it, where they are empty
 #
 # installed.txt has a line for each file and each folder made ("f PATH", "d PATH", without DESTDIR). What an earlier
@@ -85,7 +86,7 @@ fill() {
     rest=${VERSION#*.}
     sed "s|@PREFIX@|$PREFIX|g; s|@INCLUDEDIR@|$(of_prefix "$INCLUDEDIR")|g; s|@LIBDIR@|$(of_prefix "$LIBDIR")|g
          s|@DATADIR@|$(of_prefix "$DATADIR")|g; s|@VERSION@|$VERSION|g; s|@MAJOR@|${VERSION%%.*}|g; s|@MINOR@|${rest%%.*}|g
-         s|@TO_DATADIR@|$(within "$DATADIR")|g; s|@TO_INCLUDEDIR@|$(within "$INCLUDEDIR")|g; s|@TO_BINDIR@|$(within "$BINDIR")|g; s|@GC@|$gc|g; s|@HAS_GC@|${gc:+ON}|g" "$1" >"$new.filled"
+         s|@TO_DATADIR@|$(within "$DATADIR")|g; s|@TO_INCLUDEDIR@|$(within "$INCLUDEDIR")|g; s|@TO_BINDIR@|$(within "$BINDIR")|g; s|@GC@|$gc|g; s|@TOOL_LIBS@|${TOOL_LIBS:-}|g; s|@HAS_GC@|${gc:+ON}|g" "$1" >"$new.filled"
     put 644 "$new.filled" "$2"
     rm -f "$new.filled"
 }
@@ -129,11 +130,14 @@ fill tools/install/nohConfigVersion.cmake.in "$LIBDIR/cmake/noh/nohConfigVersion
 if [ "$what" = all ]; then
     put 755 "$BUILD/noh" "$BINDIR/noh"
     put 755 "$BUILD/embed" "$BINDIR/noh-embed"
+    put 644 "$BUILD/libnohconvert.a" "$LIBDIR/libnohconvert.a"
+    put 644 tools/noh/build/noh_convert.h "$INCLUDEDIR/noh_convert.h"
+    fill tools/install/nohconvert.pc.in "$LIBDIR/pkgconfig/nohconvert.pc"
     put 644 "$BUILD/noh.1" "$DATADIR/man/man1/noh.1"
     put 644 "$BUILD/noh.bash" "$DATADIR/bash-completion/completions/noh"
 elif [ -f "$list" ]; then
     # The programs of an earlier `make install` stay, and stay listed.
-    kept="^f $BINDIR/\|^f $DATADIR/man/\|^f $DATADIR/bash-completion/"
+    kept="^f $BINDIR/\|^f $DATADIR/man/\|^f $DATADIR/bash-completion/\|^f .*noh_\?convert[.]"
     grep "$kept\|^d " "$list" >>"$new" || :
 fi
 

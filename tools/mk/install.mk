@@ -7,7 +7,7 @@ BINDIR     ?= $(PREFIX)/bin
 LIBDIR     ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
 DATADIR    ?= $(PREFIX)/share
-INSTALL    := BUILD="$(BUILD)" VERSION="$(VERSION)" CC="$(CC)" DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" BINDIR="$(BINDIR)" \
+INSTALL    := BUILD="$(BUILD)" VERSION="$(VERSION)" CC="$(CC)" TOOL_LIBS="$(TOOL_LIBS)" DESTDIR="$(DESTDIR)" PREFIX="$(PREFIX)" BINDIR="$(BINDIR)" \
               LIBDIR="$(LIBDIR)" INCLUDEDIR="$(INCLUDEDIR)" DATADIR="$(DATADIR)" sh tools/install/install.sh
 
 install: all

@@ -93,6 +93,17 @@ $(BUILD)/noh_without: $(TOOL_O) $(WITHOUT_O) $(filter-out %/gltf_draco.o,$(CONVE
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $(filter %.o %.a,$^) -o $@ $(filter-out -ldraco,$(TOOL_LIBS))
 
+# The converter as a library for other tools (tools/noh/build/noh_convert.h): one object, in which only that header's
+# functions are global, so that it can be linked beside libnoh.a and any other code.
+CONVERT_LIB_O := $(patsubst %,$(BUILD)/tools/noh/%.o,build/noh_convert build/cmd_build build/build_fail build/depfile \
+                   cli/args cli/message cli/report_stream)
+CONVERT_CALLS := noh_convert noh_convert_version
+$(BUILD)/libnohconvert.a: $(CONVERT_LIB_O) $(CONVERT_O) $(PLATFORM_O) $(BUILD)/libnoh.a
+	$(call say,LD,$@)
+	$(Q)$(CXX) -r -nostdlib -Wl,--force-group-allocation,--gc-sections $(CONVERT_CALLS:%=-Wl,-u,%) $^ -o $(@:.a=.o)
+	$(Q)$(OBJCOPY) $(CONVERT_CALLS:%=--keep-global-symbol=%) $(@:.a=.o)
+	$(Q)rm -f $@ && $(AR) rcs $@ $(@:.a=.o)
+
 # The man page and the completion for bash come from the tables that the verbs read their options by.
 $(BUILD)/noh.1: $(BUILD)/noh
 	$(Q)$(BUILD)/noh help --man >$@

@@ -3,7 +3,7 @@
 #include <stddef.h>
 #include <string.h>
 
-#include "platform.h"
+#include "convert/base/input_file.h"
 
 #define EXPORT "export glTF 2.0 (.glb) from the program that it is of, and give noh that file"
 #define BLENDER "export glTF 2.0 in Blender (File, Export, glTF 2.0), and give noh the .glb file"
@@ -94,14 +94,15 @@ int file_has_ending(const char *path, const char *ending)
 static const file_kind *by_beginning(const char *path, int *is_there)
 {
     const file_kind *found = NULL;
-    noh_file file;
-    *is_there = noh_file_map(path, &file, NULL) == NOH_OK;
+    const void *data;
+    size_t count;
+    *is_there = !input_map(path, &data, &count, NULL);
     if (!*is_there) return NULL;
     for (size_t i = 0; i < KIND_COUNT && !found; i++) {
         const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
-        if (length && file.bytes >= length && memcmp(file.data, kinds[i].begins, length) == 0) found = &kinds[i];
+        if (length && count >= length && memcmp(data, kinds[i].begins, length) == 0) found = &kinds[i];
     }
-    noh_file_unmap(&file);
+    input_unmap(data, count);
     return found;
 }
 

@@ -5,7 +5,11 @@
 
 #include "platform.h"
 
+#define PATH_BYTES 4096
+
 static __thread input_list *recording;
+static __thread const input_held *held;
+static __thread uint32_t held_count;
 
 void inputs_record(input_list *list)
 {
@@ -39,25 +43,109 @@ void inputs_free(input_list *list)
     memset(list, 0, sizeof *list);
 }
 
+/* ---- files in memory ---- */
+
+void inputs_hold(const input_held *files, uint32_t count)
+{
+    held = files;
+    held_count = count;
+}
+
+int inputs_are_held(void)
+{
+    return held != NULL;
+}
+
+/* A path without ".", empty names, and names that a ".." takes back; "" where it is too long. */
+static void plain_path(const char *path, char plain[PATH_BYTES])
+{
+    size_t count = 0;
+    plain[0] = '\0';
+    for (size_t length; *path; path += length + (path[length] == '/')) {
+        length = strcspn(path, "/");
+        if (!length || (length == 1 && path[0] == '.')) continue;
+        const char *last = strrchr(plain, '/');
+        last = last ? last + 1 : plain;
+        if (length == 2 && memcmp(path, "..", 2) == 0 && count && strcmp(last, "..") != 0) {
+            count = last == plain ? 0 : (size_t)(last - plain) - 1u;
+        } else {
+            const size_t slash = count != 0;
+            if (count + slash + length >= PATH_BYTES) {
+                count = 0;
+                break;
+            }
+            if (slash) plain[count++] = '/';
+            memcpy(plain + count, path, length);
+            count += length;
+        }
+        plain[count] = '\0';
+    }
+    plain[count] = '\0';
+}
+
+const input_held *input_find_held(const char *path)
+{
+    char wanted[PATH_BYTES], own[PATH_BYTES];
+    plain_path(path, wanted);
+    for (uint32_t i = 0; i < held_count; i++) {
+        plain_path(held[i].path, own);
+        if (wanted[0] && strcmp(wanted, own) == 0) return &held[i];
+    }
+    return NULL;
+}
+
+const char *input_next_held(const char *folder, uint32_t *at)
+{
+    char wanted[PATH_BYTES], own[PATH_BYTES];
+    plain_path(folder, wanted);
+    while (*at < held_count) {
+        const char *path = held[(*at)++].path, *slash = strrchr(path, '/');
+        plain_path(path, own);
+        char *cut = strrchr(own, '/');
+        *(cut ? cut : own) = '\0';
+        if (strcmp(wanted, own) == 0) return slash ? slash + 1 : path;
+    }
+    return NULL;
+}
+
+int input_map(const char *path, const void **bytes, size_t *count, const char **what)
+{
+    const input_held *found = input_find_held(path);
+    noh_file file = { found ? found->bytes : NULL, found ? found->count : 0 };
+    noh_error reason = { NOH_OK, "there is no file of this name among the caller's", 0, 0 };
+    const int failed = !found && (held || noh_file_map(path, &file, &reason) != NOH_OK);
+    *bytes = file.data;
+    *count = file.bytes;
+    if (failed && what) *what = reason.what;
+    return failed;
+}
+
+void input_unmap(const void *bytes, size_t count)
+{
+    noh_file file = { bytes, count };
+    if (!held) noh_file_unmap(&file);
+}
+
 char *input_read(const char *path, size_t *bytes, model_error *error)
 {
-    noh_file file;
-    noh_error reason;
-    const noh_result result = noh_file_map(path, &file, &reason);
-    inputs_note(path, result == NOH_OK);
-    if (result != NOH_OK) {
-        model_fail(error, "", "the file cannot be read: %s", reason.what);
+    const void *data;
+    const char *reason;
+    size_t count;
+    const int failed = input_map(path, &data, &count, &reason);
+    inputs_note(path, !failed);
+    if (failed) {
+        model_fail(error, "", "the file cannot be read: %s", reason);
         return NULL;
     }
-    char *copy = malloc(file.bytes + 1);
+    char *copy = malloc(count + 1);
     if (copy) {
-        if (file.bytes) memcpy(copy, file.data, file.bytes);
-        copy[file.bytes] = '\0';
-        *bytes = file.bytes;
+        if (count) memcpy(copy, data, count);
+        copy[count] = '\0';
+        *bytes = count;
     } else {
         model_fail(error, "", "there is not enough memory to read this file");
     }
-    noh_file_unmap(&file);
+    input_unmap(data, count);
     return copy;
 }
 

@@ -1,5 +1,5 @@
-/* input_file.h: a whole input file in memory, for the readers written in C, and the list of all files that a conversion
- * reads. */
+/* input_file.h: a whole input file in memory, the list of all files that a conversion reads, and files that are in memory
+ * from the start. */
 #ifndef NOH_CONVERT_BASE_INPUT_FILE_H
 #define NOH_CONVERT_BASE_INPUT_FILE_H
 
@@ -13,6 +13,25 @@ extern "C" {
 
 /* The bytes of a file and a zero after them, to be freed. NULL and *error where it cannot be read. */
 char *input_read(const char *path, size_t *bytes, model_error *error);
+
+/* A file that the caller of noh_convert.h has in memory. */
+typedef struct input_held {
+    const char *path;
+    const void *bytes;
+    size_t count;
+} input_held;
+
+/* From now on this thread reads these files and none of the machine's; NULL: the machine's again. They stay the
+ * caller's. Paths are compared without "./" and "FOLDER/../". */
+void inputs_hold(const input_held *files, uint32_t count);
+int inputs_are_held(void);
+/* NULL: there is none of this name. */
+const input_held *input_find_held(const char *path);
+/* The name of the next file in a folder, not below it; *at starts with 0. NULL: no more. */
+const char *input_next_held(const char *folder, uint32_t *at);
+/* Its bytes until input_unmap. 0, or 1 and *what, the reason (NULL: not wanted). */
+int input_map(const char *path, const void **bytes, size_t *count, const char **what);
+void input_unmap(const void *bytes, size_t count);
 
 /* The files that were read or looked for, in the order of the first attempt, each once. */
 typedef struct input_list {

@@ -92,7 +92,8 @@ static std::string beside(const job &j, const std::string &path)
                            try_at.find('\0') == std::string::npos;
         if (!local) continue;
         const std::filesystem::path picture = file.parent_path() / try_at;
-        const bool found = std::filesystem::is_regular_file(picture, ignored);
+        const bool found = inputs_are_held() ? input_find_held(picture.c_str()) != nullptr
+                                             : std::filesystem::is_regular_file(picture, ignored);
         inputs_note(picture.c_str(), found);
         if (found) return try_at;
     }

@@ -41,22 +41,36 @@ static void free_names(byte_buffer *names)
     buffer_free(names);
 }
 
-/* The .obj files of a folder by name, but the one that has the name of the model: it is the model in most folders. */
+static int add_name(const char *file, byte_buffer *names)
+{
+    char *name = model_string(file);
+    const int failed = !name || !buffer_append(names, &name, sizeof(char *));
+    if (failed) free(name);
+    return failed;
+}
+
+/* All files but the one that has the name of the model: it is the model in most folders. */
+static int list_names(const char *folder, const char *model_file, byte_buffer *names, model_error *error)
+{
+    DIR *open = inputs_are_held() ? NULL : opendir(folder);
+    uint32_t at = 0;
+    int failed = 0;
+    if (!open && !inputs_are_held())
+        return model_fail(error, "", "the folder %.120s cannot be read: %s", folder, strerror(errno));
+    while (!failed) {
+        const struct dirent *entry = open ? readdir(open) : NULL;
+        const char *name = open ? (entry ? entry->d_name : NULL) : input_next_held(folder, &at);
+        if (!name) break;
+        if (is_obj(name) && strcmp(name, file_name(model_file)) != 0) failed = add_name(name, names);
+    }
+    if (open) (void)closedir(open);
+    return failed ? model_fail(error, "", "out of memory") : 0;
+}
+
+/* The targets of a folder, by name. */
 static int list_folder(const char *folder, const char *model_file, byte_buffer *names, model_error *error)
 {
-    DIR *open = opendir(folder);
-    const struct dirent *entry;
-    int failed = 0;
-    if (!open) return model_fail(error, "", "the folder %.120s cannot be read: %s", folder, strerror(errno));
-    while (!failed && (entry = readdir(open))) {
-        char *name;
-        if (!is_obj(entry->d_name) || strcmp(entry->d_name, file_name(model_file)) == 0) continue;
-        name = model_string(entry->d_name);
-        failed = !name || !buffer_append(names, &name, sizeof(char *));
-        if (failed) free(name);
-    }
-    (void)closedir(open);
-    if (failed) return model_fail(error, "", "out of memory");
+    if (list_names(folder, model_file, names, error)) return 1;
     if (names->count == 0) return model_fail(error, "", "there is no other .obj file in the folder %.120s", folder);
     qsort(names->bytes, names->count / sizeof(char *), sizeof(char *), by_name);
     return 0;

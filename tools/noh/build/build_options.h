@@ -7,6 +7,8 @@
 /* The options of a command line of `noh build`, without report and progress: argv is what follows the verb. Not in the
  * verb itself. Returns an exit code. */
 int build_options_read(int argc, char **argv, convert_options *o);
+/* The models and clips among these arguments. */
+const char *const *build_inputs(int *count);
 /* Print the failure; returns an exit code. */
 int build_fail(const convert_failure *f);
 

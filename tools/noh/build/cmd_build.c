@@ -416,7 +416,14 @@ static build_args arguments;
 
 int build_options_read(int argc, char **argv, convert_options *o)
 {
+    memset(&arguments, 0, sizeof arguments);
     return args_read(&verb_build, argc, argv) ? EXIT_USAGE : set_options(&arguments, o);
+}
+
+const char *const *build_inputs(int *count)
+{
+    *count = arguments.input_count;
+    return arguments.inputs;
 }
 
 static const option options[] = {

@@ -5,6 +5,21 @@
 #include <string.h>
 
 static tool_error last;
+static int is_quiet;
+
+void tool_errors_quiet(void)
+{
+    is_quiet = 1;
+}
+
+static void print(const char *subject, const char *format, va_list args, const char *end)
+{
+    if (is_quiet) return;
+    fputs("noh: ", stderr);
+    if (subject) fprintf(stderr, "%s: ", subject);
+    vfprintf(stderr, format, args);
+    fputs(end, stderr);
+}
 
 static void record(int status, const char *subject, const char *format, va_list args)
 {
@@ -18,9 +33,7 @@ int tool_fail(const char *subject, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    fprintf(stderr, "noh: %s: ", subject);
-    vfprintf(stderr, format, args);
-    fputc('\n', stderr);
+    print(subject, format, args, "\n");
     va_end(args);
     va_start(args, format);
     record(EXIT_FAILED, subject, format, args);
@@ -32,9 +45,7 @@ int tool_usage(const char *format, ...)
 {
     va_list args;
     va_start(args, format);
-    fputs("noh: ", stderr);
-    vfprintf(stderr, format, args);
-    fputs(" (try `noh help`)\n", stderr);
+    print(NULL, format, args, " (try `noh help`)\n");
     va_end(args);
     va_start(args, format);
     record(EXIT_USAGE, "command line", format, args);

@@ -37,6 +37,8 @@ typedef struct tool_error {
 } tool_error;
 
 const tool_error *tool_last_error(void);
+/* From now on errors are recorded and not printed. */
+void tool_errors_quiet(void);
 /* Its text; "" before any. */
 const char *tool_last_failure(void);
 
