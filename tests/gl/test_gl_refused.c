@@ -8,6 +8,7 @@
 #include "support/support.h"
 
 #include "gpu/gpu.h"
+#include "gl/draw/gl_light_internal.h"
 #include "gl/device/gl_timer_internal.h"
 #include "gl/device/gl_memory_internal.h"
 #include "noh/base.h"

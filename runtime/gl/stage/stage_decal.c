@@ -1,5 +1,6 @@
 #include "core/base/assert_internal.h"
 #include "gl/draw/gl_draw_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 #include "stage/actors/decal_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
