@@ -46,7 +46,8 @@ extern "C" {
     X(RAGDOLL, ragdoll, NOH_FOURCC('R', 'G', 'D', 'L'), 0)       \
     X(SPRINGS, springs, NOH_FOURCC('S', 'P', 'R', 'G'), 1)       \
     X(HAIR, hair, NOH_FOURCC('H', 'A', 'I', 'R'), 0)             \
-    X(TERRAIN, terrain, NOH_FOURCC('T', 'E', 'R', 'R'), 0)
+    X(TERRAIN, terrain, NOH_FOURCC('T', 'E', 'R', 'R'), 0)       \
+    X(COVER, cover, NOH_FOURCC('C', 'O', 'V', 'R'), 1)
 
 /* NOH_CHUNK_STRINGS and so on: a place in the list. */
 #define NOH_CHUNK_TYPE(NAME, name, tag, many) NOH_CHUNK_##NAME,
@@ -609,6 +610,19 @@ typedef struct noh_pack_terrain_header {
     uint32_t reserved[4];
 } noh_pack_terrain_header;
 NOH_STATIC_ASSERT(sizeof(noh_pack_terrain_header) == 48, pack_terrain_header);
+
+/* ---- CHUNK_COVER, none or several: header, bits. The triangles that a garment hides of one mesh of its wearer, of all
+ * levels in the wearer's pack (noh build --wear). Libraries older than this chunk refuse a pack with it. ---- */
+
+typedef struct noh_pack_cover_header {
+    uint32_t mesh, mesh_hash; /* string offset and hash of the name of the wearer's mesh */
+    uint32_t triangle_count;  /* of all levels, the finest first, as their indices lie in the pack; at least 1 */
+    uint32_t indices_crc;     /* CRC-32C of these indices: the bits are for no other mesh */
+    uint32_t hidden_count;
+    uint32_t bits_offset; /* uint32_t[(triangle_count + 31) / 32]: bit t & 31 of word t / 32: triangle t is hidden */
+    uint32_t reserved[2];
+} noh_pack_cover_header;
+NOH_STATIC_ASSERT(sizeof(noh_pack_cover_header) == 32, pack_cover_header);
 
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph (low_motion.h) whose nodes,
  * parameters, clips and joints have names; graph.h checks it and binds it to clips and a skeleton when it is opened.

@@ -628,7 +628,8 @@ typedef struct noh_gl_renderer {
     uint8_t wrinkle_models, smoothed;    /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
     uint8_t shading;                     /* noh_shading */
     const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
-    noh_gl_raster raster;                /* state restored by noh_gl_draw_end */
+    unsigned cover;       /* of the next draws: a buffer in place of the mesh's indices, as large; 0: none */
+    noh_gl_raster raster; /* state restored by noh_gl_draw_end */
     uint32_t variant_count;
     noh_gl_variant *variants; /* [variant_count] in the memory passed to create */
 } noh_gl_renderer;

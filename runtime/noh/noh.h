@@ -199,6 +199,9 @@ typedef struct noh_kind_desc {
     uint32_t texture_set_count;          /* 0..NOH_TEXTURE_SETS_MAX */
     uint32_t worn_by; /* bit k: actors of kind k may wear its actors (noh_actor_wear), at 2 bytes a joint and a float
                        * for each such kind; its own actors then wear nothing. Default (0) none */
+    uint32_t cover_count; /* most sets of garments worn at one time, 0..255, whose hidden triangles (noh build --wear)
+                           * are left out of its meshes, at the bytes of their indices for each. An actor with another
+                           * set is drawn whole. Without GPU, and for meshes with `finer`, none. Default (0) none */
 } noh_kind_desc;
 
 struct noh_gl_light_desc;

@@ -79,6 +79,17 @@ else
     expect 1 'a pack without a graph is refused'
     check 'by name' grep -q 'graphs of a kind' "$work/err"
 
+    run dressing "$build/demo/puppet_levels.noh" "$build/demo/coat.noh" mask -o room
+    expect 0 'dressing puts a coat on and off, in the bytes that were planned'
+    for i in 0 1 2; do
+        check "and its picture $i shows it" differ "$work/room$i.png" "$work/room$((i + 1)).png"
+    done
+    run dressing "$build/demo/puppet_levels.noh" "$build/demo/coat.noh" nothing
+    expect 1 'a mesh that is missing is refused'
+    run dressing "$build/demo/puppet_levels.noh" "$build/mask.noh"
+    expect 1 'what has no joint of the body is no garment'
+    check 'and says so' grep -q 'no joint of the garment has the name' "$work/err"
+
     field() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$work/out"; }
     run cast "$build/demo/puppet_levels.noh" --json --seconds 1 -o cast.png
     expect 0 'cast plays for a second'

@@ -157,8 +157,8 @@ $(BUILD)/demo/coat.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --coat $@
 COAT_SPRINGS := tools/demo_assets/puppet/coat.springs
-$(BUILD)/demo/coat.noh: $(BUILD)/demo/coat.glb $(COAT_SPRINGS) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --lod 3 --lod-fast --springs $(COAT_SPRINGS) --quiet
+$(BUILD)/demo/coat.noh: $(BUILD)/demo/coat.glb $(COAT_SPRINGS) $(BUILD)/demo/puppet_levels.noh $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 3 --lod-fast --springs $(COAT_SPRINGS) --wear $(BUILD)/demo/puppet_levels.noh --quiet
 
 $(BUILD)/demo/get_up.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)

@@ -38,6 +38,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     r->priority = NOH_PRIORITY_ANY;
     noh_gl_draw_wrinkles(r, NULL);
     noh_gl_draw_triangles(r, NULL);
+    noh_gl_draw_cover(r, 0);
     for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
     noh_gl_draw_wrinkle_look(r, 0, 0);
 }
@@ -71,6 +72,12 @@ int noh_gl_next_priority(const noh_mesh *mesh, int above)
         if ((m->flags & NOH_MATERIAL_BLEND) && m->priority > above && m->priority < lowest) lowest = m->priority;
     }
     return lowest;
+}
+
+void noh_gl_draw_cover(noh_gl_renderer *r, unsigned indices)
+{
+    NOH_ASSERT(r);
+    r->cover = indices;
 }
 
 void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles)
@@ -158,6 +165,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
     noh_gl_mesh_bind(r->gl, mesh, morph);
+    if (r->cover) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->cover);
     if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);
     if (morph) noh_gl_morph_bind_streams(r->gl, v->u_streams, morph);
 }
@@ -479,7 +487,7 @@ static void draw_part_of(const draw_job *j, draw_part part, int priority)
         }
         draw_material(j, v, s, first, part);
     }
-    if (v && j->r->triangles) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
+    if (v && (j->r->triangles || j->r->cover)) j->r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, j->mesh->indices.name);
     if (v && j->morph && !j->morph->vertex_array && (j->morph->vertex_buffer || j->morph->stream_buffer)) {
         noh_gl_mesh_unbind(j->r->gl, j->mesh, j->morph);
     }

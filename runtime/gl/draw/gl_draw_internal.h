@@ -20,6 +20,10 @@ const noh_gl_variant *noh_gl_renderer_variant(const noh_gl_renderer *renderer, n
  * NULL: all. */
 void noh_gl_draw_triangles(noh_gl_renderer *renderer, const noh_gl_triangles *triangles);
 
+/* Set the buffer of indices that the next draws use in place of the mesh's, with the same levels at the same places;
+ * noh_gl_draw_begin resets it to 0, the mesh's own. */
+void noh_gl_draw_cover(noh_gl_renderer *renderer, unsigned indices);
+
 #ifdef __cplusplus
 }
 #endif

@@ -155,7 +155,13 @@ static void carve_kinds(measure *m)
         noh_gl_item *items = CARVE(m, m->plan->kinds[i].mesh_count, noh_gl_item);
         const uint32_t count = noh_gl_pictures_count(&m->desc->kinds[i]);
         noh_gl_texture *pictures = CARVE(m, count, noh_gl_texture);
+        const uint32_t cover_count = m->desc->kinds[i].cover_count, meshes = m->plan->kinds[i].mesh_count;
+        noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
+        noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
         if (!kinds) continue;
+        kinds[i].covers = covers;
+        memset(indices, 0, cover_count * meshes * sizeof *indices);
+        for (uint32_t c = 0; c < cover_count; c++) covers[c] = (noh_gl_cover){ 0, 0, indices + c * meshes };
         kinds[i].items = items;
         kinds[i].pictures = pictures;
         memset(items, 0, m->plan->kinds[i].mesh_count * sizeof *items);
@@ -292,8 +298,11 @@ static noh_result visit(measure *m, noh_error *error)
     }
     for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
         const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i, m->caps->etc2);
+        const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, i);
         if (bytes) add(m, "textures", i, m->arena.used, bytes);
+        if (covers) add(m, "covers", i, m->arena.used, covers);
     }
+    if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
     return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;
 }
 
@@ -335,6 +344,7 @@ static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
 {
     noh_stage_gl *gl = stage->gpu;
     noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
+    noh_gl_covers_delete(&stage->desc, stage->plan, d, gl->kinds);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
     }
@@ -437,6 +447,7 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
     }
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
     if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
+    if (result == NOH_OK) result = noh_gl_covers_create(&stage->desc, stage->plan, &gl->device, gl->kinds, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 
@@ -525,6 +536,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
 static void upload(noh_stage *s)
 {
     noh_stage_gl *gl = s->gpu;
+    noh_gl_choose_covers(s);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
         for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_actor(s, k, gl->kinds[i].items, k->order[p]);

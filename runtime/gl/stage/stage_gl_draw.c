@@ -48,6 +48,13 @@ static int shows(const drawing *d, uint32_t mesh, uint32_t place)
     return is_seen(d, place) && !(actor_at(d, place)->look.hidden_meshes >> mesh & 1u);
 }
 
+/* Draw next what an actor's garments leave of a mesh. */
+static void set_cover(const drawing *d, uint32_t mesh, uint32_t place)
+{
+    const uint32_t cover = shown_at(d, place)->cover;
+    noh_gl_draw_cover(d->renderer, cover ? d->on_gl->covers[cover - 1u].indices[mesh].name : 0);
+}
+
 static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint32_t influences)
 {
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(item->skin, place);
@@ -94,6 +101,7 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
     noh_gl_draw_user(d->renderer, d->s->desc.user_values ? actor_at(d, place)->look.user : NULL);
     set_wrinkles(d, mesh, place);
+    set_cover(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
                      &lod, pictures_of(d, place), d->pass);
 }
@@ -143,14 +151,17 @@ static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
     noh_gl_draw_wrinkle_look(d->renderer, actor_at(d, first)->look.wrinkle_models, actor_at(d, first)->look.smoothed);
+    set_cover(d, mesh, first);
     noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
                       pictures_of(d, first), d->pass);
 }
 
-static uint32_t wears(const drawing *d, uint32_t place)
+/* Whether two actors can be drawn together. */
+static int wear_the_same(const drawing *d, uint32_t a, uint32_t b)
 {
-    const noh_appearance *look = &actor_at(d, place)->look;
-    return look->texture_set | (uint32_t)look->wrinkle_models << 16 | (uint32_t)look->smoothed << 24;
+    const noh_appearance *of_a = &actor_at(d, a)->look, *of_b = &actor_at(d, b)->look;
+    return of_a->texture_set == of_b->texture_set && of_a->wrinkle_models == of_b->wrinkle_models &&
+           of_a->smoothed == of_b->smoothed && shown_at(d, a)->cover == shown_at(d, b)->cover;
 }
 
 static int is_mirrored(const drawing *d, uint32_t mesh, uint32_t place)
@@ -167,7 +178,7 @@ static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
         uint32_t first;
         while (at < end && !shows(d, mesh, at)) at++;
         first = at;
-        while (at < end && shows(d, mesh, at) && wears(d, at) == wears(d, first) && !is_mirrored(d, mesh, at)) at++;
+        while (at < end && shows(d, mesh, at) && wear_the_same(d, at, first) && !is_mirrored(d, mesh, at)) at++;
         if (at > first) {
             draw_together(d, mesh, run, first, at - first);
         } else if (at < end) {

@@ -59,7 +59,15 @@ static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage
     return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
 }
 
+/* The triangles that a set of garments leaves of a kind's meshes (stage_cover.c). */
+typedef struct noh_gl_cover {
+    uint32_t garments;      /* bit k: a garment of kind k; 0: the buffers are not filled */
+    uint32_t frame;         /* number of the last frame in which an actor had it */
+    noh_gl_buffer *indices; /* [mesh_count] none where no garment hides anything */
+} noh_gl_cover;
+
 typedef struct noh_gl_kind {
+    noh_gl_cover *covers;     /* [cover_count] */
     noh_gl_item *items;       /* [mesh_count] */
     noh_gl_texture *pictures; /* [1 + texture_set_count][textures of the pack]: those that others own, too */
 } noh_gl_kind;
@@ -148,6 +156,18 @@ noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
 noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
 int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
 void noh_gl_use(noh_stage *stage, uint32_t load_kind, int loaded);
+
+/* ---- covers ---- */
+
+/* The bytes of the covers of a kind. */
+uint64_t noh_gl_covers_bytes(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
+/* Make the buffers of all kinds, also in a new context; delete them. */
+noh_result noh_gl_covers_create(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
+                                noh_gl_kind *kinds, noh_error *error);
+void noh_gl_covers_delete(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
+                          noh_gl_kind *kinds);
+/* Once a frame: give each seen actor the cover of its garments. */
+void noh_gl_choose_covers(noh_stage *stage);
 
 /* ---- textures ---- */
 

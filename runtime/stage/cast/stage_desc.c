@@ -209,6 +209,7 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
+    if (d->cover_count > 255u) return "cover_count of a kind is above 255";
     if (noh_stage_bad_worn(desc, number)) return noh_stage_bad_worn(desc, number);
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
     filled = noh_stage_kind_desc(desc, number);

@@ -241,6 +241,7 @@ typedef struct noh_stage_shown {
     uint8_t level, level_before; /* drawn */
     uint16_t worn;               /* 1 + the first garment on it that is posed or shown in this frame; 0: none */
     uint16_t next_worn;          /* of a garment: 1 + the next one on its wearer; 0: the last */
+    uint8_t cover;               /* what draws: 1 + the set of garments that hides parts of it; 0: none */
 } noh_stage_shown;
 
 #define NOH_STAGE_MOVED 2u
@@ -487,6 +488,8 @@ void noh_stage_open_worn(noh_stage *s);                /* once all kinds are the
 int noh_stage_can_wear(const noh_stage_kind *garment, uint32_t wearer_kind);
 /* Whether a joint of the garment follows one of the wearer. */
 int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_stage_kind *wearer);
+/* What a garment's pack hides of a mesh, which has all levels of its pack; NULL: nothing. */
+const noh_pack_cover_header *noh_stage_cover_of(const noh_pack *garment, const noh_mesh *mesh);
 /* Before updates are chosen: list the garments of each wearer that are posed or shown. */
 void noh_stage_link_worn(noh_stage *s);
 void noh_stage_update_worn(noh_stage *s); /* and after: they are updated when their wearers are */

@@ -10,10 +10,12 @@
 #include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
+#include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
 #include "noh/noh.h"
+#include "noh/pack.h"
 #include "stage/cast/stage_internal.h"
 
 /* ---- kinds ---- */
@@ -122,6 +124,22 @@ int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_
         if (map[j] != NOH_JOINT_ROOT) return 1;
     }
     return 0;
+}
+
+/* ---- what it hides ---- */
+
+const noh_pack_cover_header *noh_stage_cover_of(const noh_pack *garment, const noh_mesh *mesh)
+{
+    const noh_mesh_header *h = mesh->header;
+    size_t count = 0;
+    for (uint32_t k = h->level; k < h->level_count; k++) count += h[k - h->level].index_count;
+    for (uint32_t i = 0; i < garment->runs[NOH_CHUNK_COVER].count; i++) {
+        const noh_pack_cover_header *c = noh_pack_chunk_at(garment, NOH_CHUNK_COVER, i);
+        if (c->mesh_hash == noh_hash_name(mesh->name) && c->triangle_count == count / 3u &&
+            c->indices_crc == noh_crc32c(0, mesh->indices, count * h->index_bytes))
+            return c;
+    }
+    return NULL;
 }
 
 /* ---- a frame ---- */

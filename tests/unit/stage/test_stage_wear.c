@@ -3,6 +3,8 @@
  * actor are off and on. */
 #include "support/stage_fixture.h"
 
+#include "support/pack_walk.h"
+
 #include "stage/cast/stage_internal.h"
 
 #include <math.h>
@@ -288,13 +290,52 @@ static void meshes_are_off_and_on(void **state)
     wardrobe_close(&c);
 }
 
+/* What the coat hides is known for the mesh that it was built over, and for no other; lies about it are refused. */
+static void lies_about_what_it_hides_are_refused(void **state)
+{
+    static const char *const what[] = { "count of a cover", "count of a cover", "bits of a cover", "name and its hash",
+                                        "count of a cover" };
+    cast c;
+    noh_mesh mesh;
+    uint32_t found = 0;
+    (void)state;
+    memset(&c, 0, sizeof c);
+    cast_map(&c, BODIES, "demo/puppet_levels.noh");
+    cast_map(&c, COATS, "demo/coat.noh");
+    for (uint32_t i = 0; noh_pack_mesh_at(&c.packs[BODIES], i, &mesh, NULL) == NOH_OK; i++) {
+        noh_mesh other = mesh;
+        if (!noh_stage_cover_of(&c.packs[COATS], &mesh)) continue;
+        other.name = "other";
+        assert_null(noh_stage_cover_of(&c.packs[COATS], &other));
+        found++;
+    }
+    assert_int_equal(found, 1);
+    for (uint32_t lie = 0; lie < TEST_COUNT(what); lie++) {
+        uint8_t *bytes = test_aligned(c.files[COATS].data, c.files[COATS].bytes);
+        const noh_pack_cover_header *own = noh_pack_chunk_at(&c.packs[COATS], NOH_CHUNK_COVER, 0);
+        noh_pack_cover_header *h = (void *)(bytes + ((const uint8_t *)own - c.packs[COATS].bytes));
+        noh_pack pack;
+        if (lie == 0) h->triangle_count = 0;
+        if (lie == 1) h->hidden_count = h->triangle_count + 1u;
+        if (lie == 2) h->hidden_count++;
+        if (lie == 3) h->mesh_hash++;
+        if (lie == 4) h->reserved[1] = 1;
+        pack_repair(bytes, c.files[COATS].bytes);
+        assert_int_equal(noh_pack_open(bytes, c.files[COATS].bytes, &pack, &said), NOH_ERR_DATA);
+        if (!strstr(said.what, what[lie])) fail_msg("lie %u: %s", lie, said.what);
+        free(bytes);
+    }
+    noh_file_unmap(&c.files[0]);
+    noh_file_unmap(&c.files[1]);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_coat_follows_its_wearer), cmocka_unit_test(its_own_joints_swing),
         cmocka_unit_test(joints_may_be_missing),     cmocka_unit_test(bits_are_the_same),
         cmocka_unit_test(it_is_taken_off),           cmocka_unit_test(what_does_not_fit_is_refused),
-        cmocka_unit_test(meshes_are_off_and_on),
+        cmocka_unit_test(meshes_are_off_and_on),     cmocka_unit_test(lies_about_what_it_hides_are_refused),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
