@@ -2,7 +2,6 @@
  * buffers of its own for the meshes of its wearers' kind: with the same levels at the same places, but hidden triangles
  * have their three corners at one vertex, so that they cover no pixel. Actors with the same set share them and are drawn
  * together. A kind has room for cover_count sets; one that nobody has shown since the last frame makes way. */
-#include "core/base/assert_internal.h"
 #include "gl/device/gl_names_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "noh/base.h"
