@@ -1,12 +1,15 @@
 #!/bin/sh
 # golden.sh: the same ten seconds on every available compiler, optimisation and processor: tests/golden/golden.c prints
 # hashes of states, callback keys, places, weights, joints, palettes, vertices and a crowd, which must equal
-# tests/golden/golden.txt.
+# tests/golden/golden.txt. Then a stage is played for five simulated minutes of random commands, and with NOH_LONG=1 for
+# 24 hours with each of three seeds (4 minutes of a processor for a seed; emulated, an hour): equal hashes too, joints
+# stay rotations, and in the end the stage does what a new one does.
 #
 #   golden.sh            all of them (`make golden`)
-#   golden.sh short      what `make check` runs: gcc without and with optimisation
-#   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here
-#   golden.sh update     write golden.txt again, after a change that is meant to change results
+#   golden.sh short      what `make check` runs: gcc without and with optimisation; the long play with it only
+#   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here; the same
+#   golden.sh update     write golden.txt again, after a change that is meant to change results (NOH_LONG=1: the rows of
+#                        24 hours, too; without it they are left out)
 #
 # The table applies to packs with the checksums in it; if the demo's packs differ, builds are only compared with the
 # first build, with a message. Prints TAP.
@@ -43,6 +46,12 @@ compile() {
     $1 -O0 "$work"/objects/*.o $3 -o "$2" -lm
 }
 
+# PROGRAM RUNNER: a long time of random commands. Prints nothing where only the first build plays it.
+play_long() {
+    case $how,$first in short,?* | cross,?*) return 0 ;; esac
+    ${2:-} "$1" 300 1 "$build/demo/puppet.noh" && { [ -z "${NOH_LONG:-}" ] || ${2:-} "$1" 86400 3 "$build/demo/puppet.noh"; }
+}
+
 # NAME COMPILER-AND-FLAGS [RUNNER [ARCHIVE]]: build, run, compare with the first.
 variant() {
     if ! has "${2%% *}" || { [ -n "${3:-}" ] && ! has "${3%% *}"; }; then
@@ -55,21 +64,23 @@ variant() {
         return
     fi
     # shellcheck disable=SC2086
-    if ! compile "$2" "$work/$1" "${4:-}" >"$work/$1.log" 2>&1 || ! ${3:-} "$work/$1" $packs >"$work/$1.txt" 2>"$work/$1.err"; then
+    if ! compile "$2" "$work/$1" "${4:-}" >"$work/$1.log" 2>&1 || ! ${3:-} "$work/$1" $packs >"$work/$1.txt" 2>"$work/$1.err" ||
+        ! play_long "$work/$1" "${3:-}" >"$work/$1.long" 2>>"$work/$1.err"; then
         report 'not ok' "$1"
         tail -n 5 "$work/$1.log" "$work/$1.err" 2>/dev/null | sed 's/^/# /'
         return
     fi
     if [ -z "$first" ]; then
         first=$1
+        cat "$work/$1.txt" "$work/$1.long" >"$work/$1.all"
         report ok "$1: runs; the others are compared with it"
         return
     fi
-    if cmp -s "$work/$first.txt" "$work/$1.txt"; then
+    if cmp -s "$work/$first.txt" "$work/$1.txt" && { [ ! -s "$work/$1.long" ] || cmp -s "$work/$first.long" "$work/$1.long"; }; then
         report ok "$1: as $first"
     else
         report 'not ok' "$1: as $first"
-        diff "$work/$first.txt" "$work/$1.txt" | head -n 8 | sed 's/^/# /'
+        cat "$work/$1.txt" "$work/$1.long" | diff "$work/$first.all" - | head -n 8 | sed 's/^/# /'
     fi
 }
 
@@ -78,7 +89,7 @@ against_table() {
     awk 'NR == FNR { known[$1 " " $2 " " $3] = $4; next }
         { key = $1 " " $2 " " $3
           if (!(key in known)) print "pack " $1 " " $2
-          else if (known[key] != $4) print "differs " key }' "$table" "$work/$first.txt" | sort -u >"$work/table.txt"
+          else if (known[key] != $4) print "differs " key }' "$table" "$work/$first.all" | sort -u >"$work/table.txt"
     if grep -q '^differs' "$work/table.txt"; then
         report 'not ok' "as $table"
         sed 's/^/# /' "$work/table.txt"
@@ -103,7 +114,7 @@ short) made=$(ls "$build/amalgam/noh.o" 2>/dev/null) ;; # -O2, too
 esac
 variant gcc-O2 'gcc -O2' '' "$made"
 if [ "${1:-}" = update ]; then
-    [ $failures = 0 ] && cp "$work/gcc-O2.txt" "$table" && echo "# $table is written"
+    [ $failures = 0 ] && cp "$work/gcc-O2.all" "$table" && echo "# $table is written"
     exit $failures
 fi
 against_table

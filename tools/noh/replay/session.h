@@ -3,6 +3,7 @@
  *   session_open, session_close     a stage of a pack with all features that the pack supports
  *   session_draw                    a session by seed
  *   session_run                     play a session, and hash each part of each frame
+ *   session_give, session_step, session_hash   the same, frame by frame
  *   session_write, session_read     as text (session_text.h)
  *
  * A stage is deterministic: the same pack and the same inputs give the same hashes on every processor. The stage of a
@@ -119,6 +120,11 @@ void session_do(session_stage *stage, const session_input *input, uint32_t index
 /* Fill a session with random inputs by seed: clips, graphs, parameters, floats, gaze, emotions, hits, as the pack
  * supports them. `stage` gives names. 0, or 1 when out of memory. */
 int session_draw(session *s, const session_stage *stage, uint32_t frame_count, uint32_t seed);
+
+/* The parts of session_run: do a frame's inputs, from *next on; step (0, or 1 and *error); hash. */
+void session_give(const session *s, session_stage *stage, uint32_t frame, uint32_t *next);
+int session_step(session_stage *stage, noh_error *error);
+void session_hash(session_stage *stage, uint32_t frame, session_hashes *hashes);
 
 /* Play a session on a fresh stage into hashes[frame_count]. 0, or 1 and *error. */
 int session_run(const session *s, session_stage *stage, session_hashes *hashes, noh_error *error);

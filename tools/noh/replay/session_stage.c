@@ -165,7 +165,7 @@ static void hash_meshes(session_stage *s, noh_actor actor, int vertices, session
     }
 }
 
-static void hash_frame(session_stage *s, uint32_t frame, session_hashes *h)
+void session_hash(session_stage *s, uint32_t frame, session_hashes *h)
 {
     const uint64_t state = noh_stage_hash(s->stage);
     const uint32_t float_count = s->plan.kinds[0].float_count;
@@ -186,7 +186,7 @@ static void hash_frame(session_stage *s, uint32_t frame, session_hashes *h)
 
 /* ---- playing ---- */
 
-static int run_frame(session_stage *s, noh_error *error)
+int session_step(session_stage *s, noh_error *error)
 {
     static const float middle[3] = { 0.0f, 0.8f, 0.0f };
     noh_stage_view view;
@@ -194,16 +194,21 @@ static int run_frame(session_stage *s, noh_error *error)
     return noh_stage_frame(s->stage, s->ticks, &view, NULL, NULL, error) != NOH_OK;
 }
 
+void session_give(const session *s, session_stage *stage, uint32_t frame, uint32_t *next)
+{
+    stage->returned = 0;
+    for (; *next < s->input_count && s->inputs[*next].frame == frame; ++*next) {
+        session_do(stage, &s->inputs[*next], *next);
+    }
+}
+
 int session_run(const session *s, session_stage *stage, session_hashes *hashes, noh_error *error)
 {
     uint32_t next = 0;
     for (uint32_t f = 0; f < s->frame_count; f++) {
-        stage->returned = 0;
-        for (; next < s->input_count && s->inputs[next].frame == f; next++) {
-            session_do(stage, &s->inputs[next], next);
-        }
-        if (run_frame(stage, error)) return 1;
-        hash_frame(stage, f, &hashes[f]);
+        session_give(s, stage, f, &next);
+        if (session_step(stage, error)) return 1;
+        session_hash(stage, f, &hashes[f]);
     }
     return 0;
 }
