@@ -30,7 +30,7 @@ flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanit
 rm -rf "$work/objects"
 mkdir "$work/objects"
 # shellcheck disable=SC2016
-if ! { find runtime -name '*.c' && find tests -name pack_walk.c && echo "$build/gen/shaders.gen.c"; } |
+if ! { find runtime -name '*.c' && find tests -name pack_walk.c -o -name wild_text.c && echo "$build/gen/shaders.gen.c"; } |
     xargs -P "${JOBS:-2}" -I '{}' sh -c '$1 $2 -c "$3" -o "$4/$(echo "$3" | tr / _).o"' sh "$clang" "$flags" '{}' "$work/objects"; then
     echo '0 passed, 1 failed, 0 skipped'
     exit 1

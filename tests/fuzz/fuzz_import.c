@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "convert/base/hair_read.h"
@@ -17,11 +18,15 @@
 #include "convert/base/recipe_read.h"
 #include "convert/clips/events_read.h"
 #include "convert/convert.h"
+#include "convert/graph/graph_text.h"
 #include "convert/springs/springs_read.h"
 #include "noh/base.h"
 #include "noh/pack.h"
 #include "support/fuzz_replay.h"
 #include "support/pack_walk.h"
+#include "support/wild_text.h"
+
+#define WILD_S 5 /* of the processor, of one file of at most 64 KB */
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 
@@ -58,7 +63,7 @@ static void write_to(const char *path, const uint8_t *bytes, size_t count)
 }
 
 /* Defaults of noh build, but two levels of detail where `more` says so, and clips as they come. */
-static convert_options options_of(int more)
+static convert_options options_of(int more, int split_eyes)
 {
     convert_options o;
     memset(&o, 0, sizeof o);
@@ -70,7 +75,7 @@ static convert_options options_of(int more)
     o.lod.mode = LOD_FAST;
     o.lod.level_count = more ? 2 : 0;
     o.source.clean = more ? ~0u : 0u;
-    o.source.split_eyes = more;
+    o.source.split_eyes = split_eyes;
     o.etc2 = 1;
     o.texture_max = 256;
     return o;
@@ -83,10 +88,10 @@ static void must_say(const model_error *e)
     abort();
 }
 
-static void convert(const char *path, const char *targets, int more)
+static void convert(const char *path, const char *targets, int more, int split_eyes)
 {
     const char *inputs[] = { path };
-    convert_options o = options_of(more);
+    convert_options o = options_of(more, split_eyes);
     convert_failure failure;
     byte_buffer out = { NULL, 0, 0, 0 };
     noh_pack pack;
@@ -113,12 +118,12 @@ static void convert(const char *path, const char *targets, int more)
 static void try_as(const char *ending, const uint8_t *bytes, size_t count)
 {
     char path[96], target[128];
-    const int is_obj = strcmp(ending, "obj") == 0, more = count > 0 && (bytes[count - 1] & 1);
+    const int is_obj = strcmp(ending, "obj") == 0;
     (void)snprintf(path, sizeof path, "%s/in.%s", folder, ending);
     write_to(path, bytes, count);
     (void)snprintf(target, sizeof target, "%s/a.obj", target_folder);
     if (is_obj) write_to(target, bytes, count);
-    convert(path, is_obj ? target_folder : NULL, more);
+    convert(path, is_obj ? target_folder : NULL, count % 2u != 0, count % 8u == 3u);
 }
 
 /* ---- .glb: the lengths made right ---- */
@@ -179,6 +184,7 @@ static void try_texts(const uint8_t *bytes, size_t count)
     ragdoll_text *ragdoll = NULL;
     recipe_text *recipe = NULL;
     event_list *events = NULL;
+    graph_file *graph = NULL;
     springs_text *springs = springs_text_new();
     (void)snprintf(path, sizeof path, "%s/in.txt", folder);
     write_to(path, bytes, count);
@@ -186,11 +192,13 @@ static void try_texts(const uint8_t *bytes, size_t count)
     if (ragdoll_read(path, &ragdoll, &line, &error)) must_say(&error);
     if (recipe_read(path, &recipe, &line, &error)) must_say(&error);
     if (events_read(path, &events, &error)) must_say(&error);
+    if (graph_text_read(path, &graph, &line, &error)) must_say(&error);
     if (springs && springs_text_read(springs, path, &line, &error)) must_say(&error);
     hair_free(hair);
     ragdoll_free(ragdoll);
     recipe_free(recipe);
     events_free(events);
+    graph_text_free(graph);
     springs_text_free(springs);
 }
 
@@ -238,9 +246,51 @@ static int try_input(const uint8_t *bytes, size_t count)
     return converted;
 }
 
+/* Every kind of text with grammatical edits, cases first to first + count - 1. What a case takes is limited: a file of a
+ * few kilobytes is refused or converted in seconds. A case that fails leaves its file in the folder that is printed. */
+static int run_wild(uint32_t first, uint32_t count)
+{
+    static char text[1u << 16];
+    for (size_t s = 0; s < wild_seed_count; s++) {
+        const size_t whole = strlen(wild_seeds[s].text);
+        unsigned passed = 0;
+        clock_t longest = 0;
+        uint32_t slowest = 0;
+        for (uint32_t i = first; i < first + count; i++) {
+            const clock_t begin = clock();
+            clock_t taken;
+            memcpy(text, wild_seeds[s].text, whole);
+            passed += (unsigned)try_input((const uint8_t *)text, wild_text(text, whole, sizeof text, i));
+            taken = clock() - begin;
+            if (taken > longest) longest = taken, slowest = i;
+        }
+        printf("%s %u - %s: %u wild files, %u converted; the slowest, %u, took %ld ms\n",
+               longest < WILD_S * CLOCKS_PER_SEC ? "ok" : "not ok", (unsigned)s + 1u, wild_seeds[s].name, count, passed,
+               slowest, (long)(longest * 1000 / CLOCKS_PER_SEC));
+        fflush(stdout);
+    }
+    printf("1..%u\n", (unsigned)wild_seed_count);
+    return 0;
+}
+
+/* fuzz_import FILE|FOLDER...          replay
+ * fuzz_import --wild FIRST COUNT      grammatical edits of valid texts */
 int main(int argument_count, char **arguments)
 {
+    if (argument_count == 4 && !strcmp(arguments[1], "--wild"))
+        return run_wild((uint32_t)atoi(arguments[2]), (uint32_t)atoi(arguments[3]));
     return fuzz_replay(argument_count, arguments, try_input);
+}
+
+#else
+
+/* Half of libFuzzer's edits are its own, half keep the grammar. */
+size_t LLVMFuzzerMutate(uint8_t *data, size_t count, size_t room);
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t count, size_t room, unsigned seed);
+size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t count, size_t room, unsigned seed)
+{
+    const int is_text = count && !memchr(data, 0, count);
+    return is_text && seed % 2u ? wild_text((char *)data, count, room, seed) : LLVMFuzzerMutate(data, count, room);
 }
 
 #endif

@@ -13,7 +13,9 @@
 
 #define COLUMNS_MAX 256u
 #define DAY_S 86400.0
-#define GAP_S 0.1 /* without a row: worth a warning */
+#define GAP_S 0.1             /* without a row: worth a warning */
+#define FRAMES_FREE 10000.0   /* what a file may become, whatever its rows; */
+#define FRAMES_OF_A_ROW 100.0 /* and for each row, so that a wrong time does not cost minutes */
 
 typedef enum time_kind { TIME_NONE, TIME_SECONDS, TIME_CODE } time_kind;
 
@@ -273,6 +275,10 @@ static int make_clip(face_csv *f, const char *path, raw_set *set)
     if (!(frames <= (double)RAW_FRAMES_MAX && frames * f->shape_count * sizeof(float) <= (double)RAW_BYTES_MAX)) {
         return text_fail(&f->text, f->text.line, "it lasts %.0f frames at %g Hz, and the limit is %u: cut it", frames,
                          f->rate_hz, RAW_FRAMES_MAX);
+    }
+    if (frames > FRAMES_FREE + FRAMES_OF_A_ROW * (double)f->row_count) {
+        return text_fail(&f->text, f->text.line, "%u rows last %.0f frames at %g Hz: correct a wrong time, or cut it",
+                         f->row_count, frames, f->rate_hz);
     }
     if (!(f->rate_hz >= 1e-3 && f->rate_hz <= 1e6)) {
         return text_fail(&f->text, 1, "%g rows a second: the times have to be in seconds", f->rate_hz);
