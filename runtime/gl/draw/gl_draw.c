@@ -257,7 +257,7 @@ static void decode_color(float code, float rgb[3])
     }
 }
 
-/* noh_surface_more of a toon: hardness, power, lift; rim; outline; its width, and 1 if the base colour multiplies it. */
+/* noh_surface_more of a toon: hardness, power, lift; rim; outline; its width, 1 if the base colour multiplies it. */
 static void set_toon(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
 {
     const float *values = m->surface_more;

@@ -660,8 +660,8 @@ static void read_material(file &f, size_t index, model_material &out)
 
 void read_materials(file &f)
 {
-    /* each texture as colours, normals and data; a surface and a specular map, or a matcap, a material, and an image that
-     * is put into one */
+    /* each texture as colours, normals and data; a surface and a specular map, or a matcap, a material, and an image
+     * that is put into one */
     f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 3 + f.json.materials.size() * 2 + 1,
                                               "textures");
     f.out->materials = allocate<model_material>(f, f.json.materials.size(), "materials");

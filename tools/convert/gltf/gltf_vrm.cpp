@@ -345,9 +345,9 @@ static void leave_out_of_toon(file &f, const value *from, const std::string &whe
             leave_out(f, where, std::string(": ") + key + " of its MToon shading was left out");
 }
 
-/* VRM 0.0 has them apart from the materials, in their order. Its tones begin and end at cosines of the light, 1.0's at a
- * middle and half a width; its outlines are in hundredths of a metre, or of half the picture's height (UniVRM converts
- * them in the same way). */
+/* VRM 0.0 has them apart from the materials, in their order. Its tones begin and end at cosines of the light, 1.0's at
+ * a middle and half a width; its outlines are in hundredths of a metre, or of half the picture's height (UniVRM
+ * converts them in the same way). */
 static toon_maps read_old_toon(file &f, const value &vrm, size_t index, const std::string &where, model_material &out)
 {
     toon_maps maps;

@@ -70,8 +70,8 @@ void info_print_materials(const noh_pack *pack)
 }
 
 /* A pixel reads the base colour, a white texel where there is none, and a map for each feature; weights of wrinkles are
- * read at vertices, a mask of their regions and a toon's shade and matcap at pixels. Lit, it reads the environment and up to four texels of the
- * shadow map, too. */
+ * read at vertices, a mask of their regions and a toon's shade and matcap at pixels. Lit, it reads the environment and
+ * up to four texels of the shadow map, too. */
 typedef struct material_cost {
     uint32_t textures, fetches, lit;
     uint64_t bytes;
