@@ -51,7 +51,8 @@ static void check_poses(const fixture_skin_desc *desc)
         fixture_skin_pose(&f, &r);
         most = fmax(most, expect_equals_cpu(&f, desc->asset));
     }
-    print_message("# %s, %s: positions within %.2g of the box\n", desc->asset, noh_palette_mode_name(desc->mode), most);
+    print_message("# %s, %s: positions within %.2g of the box\n", desc->asset,
+                  desc->mode == NOH_PALETTE_UNIFORM ? "uniform" : "texture", most);
     fixture_skin_close(&f);
     fixture_expect_no_errors();
 }

@@ -163,14 +163,6 @@ void noh_skin_vertex_dual(const noh_mesh *mesh, const noh_dual_quaternion *joint
     move(&sum, out);
 }
 
-void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
-                            uint32_t index, float out[3])
-{
-    noh_vertex vertex;
-    noh_skin_vertex_dual(mesh, joints, layers, index, &vertex);
-    memcpy(out, vertex.position, 3 * sizeof *out);
-}
-
 void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
                          float out[3])
 {

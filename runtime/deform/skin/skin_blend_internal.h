@@ -24,7 +24,7 @@ static inline float noh_cofactors(const float m[12], float c[9])
 }
 
 /* Move a point of the morphed surface by a vertex's joints, with the same bits as noh_skin_position and
- * noh_skin_position_dual. */
+ * noh_skin_vertex_dual. */
 void noh_skin_point(const noh_mesh *mesh, const float *matrices, uint32_t index, const float p[3], float out[3]);
 void noh_skin_point_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, uint32_t index, const float p[3],
                          float out[3]);

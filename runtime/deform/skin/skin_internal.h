@@ -12,10 +12,6 @@ extern "C" {
  * identity, and all of A is stretch. */
 void noh_dual_quaternion_from_matrix(const float matrix[12], noh_dual_quaternion *out);
 
-/* Compute only the position of a vertex, with the same bits. */
-void noh_skin_position_dual(const noh_mesh *mesh, const noh_dual_quaternion *joints, const noh_morph_layers *layers,
-                            uint32_t index, float out[3]);
-
 /* Get the instruction set that noh_skin_vertices was compiled for: "scalar", "sse2", "avx2" or "neon". */
 const char *noh_skin_simd(void);
 

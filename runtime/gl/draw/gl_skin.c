@@ -389,12 +389,6 @@ noh_result noh_gl_skin_restore(noh_gl_skin *skin, noh_error *error)
 
 /* ---- asking ---- */
 
-const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin)
-{
-    NOH_ASSERT(skin);
-    return &skin->plan;
-}
-
 uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i)
 {
     NOH_ASSERT(skin && mesh < skin->mesh_count && i < skin->meshes[mesh].instance_count);

@@ -15,11 +15,6 @@ extern "C" {
 /* Release the GL object of a lost context without GL calls (gl_device.h). It may be restored later. */
 void noh_gl_skin_forget(noh_gl_skin *skin);
 
-const noh_gl_skin_plan *noh_gl_skin_plan_of(const noh_gl_skin *skin);
-
-/* The names "auto", "uniform", "texture". */
-const char *noh_palette_mode_name(noh_palette_mode mode);
-
 /* Set matrices in two halves, so that several threads may write different instances at once, with no other call on the
  * object meanwhile. An update sends written matrices only if noh_gl_skin_touch was called for the instance afterwards.
  * returns  1 if a row changed */

@@ -20,13 +20,6 @@ NOH_STATIC_ASSERT(NOH_PALETTE_JOINTS_MAX == 256u, palette_block_of_common_skin);
 #define WIDTH_LOG2_MIN 6u
 #define SIDE_OF_ES3 2048u /* ES 3.0 guarantees this texture size */
 
-const char *noh_palette_mode_name(noh_palette_mode mode)
-{
-    static const char *const names[] = { "auto", "uniform", "texture" };
-    NOH_ASSERT((unsigned)mode <= NOH_PALETTE_TEXTURE);
-    return names[mode];
-}
-
 static uint32_t count_of(const noh_gl_skin_desc *desc, uint32_t mesh)
 {
     return desc->instance_counts ? desc->instance_counts[mesh] : 1u;

@@ -78,34 +78,6 @@ noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack)
     return recipe;
 }
 
-noh_result noh_face_recipe_of_pack(const noh_pack *pack, noh_face_row *rows, uint32_t row_max, noh_face_recipe *recipe,
-                                   noh_error *error)
-{
-    uint32_t count = 0;
-    NOH_ASSERT(pack && recipe && (rows || !row_max));
-    if (!pack->recipe_row_count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the pack has no recipe: build it with --recipe", 0, 0);
-    }
-    if (pack->recipe_row_count > row_max) {
-        return noh_fail(error, NOH_ERR_MEMORY, "the recipe has more rows than row_max", row_max,
-                        pack->recipe_row_count);
-    }
-    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
-        const noh_recipe_row *from = &pack->recipe_rows[i];
-        const uint32_t channel = noh_face_channel_find(noh_pack_string(pack, from->channel));
-        if (channel == NOH_NONE) continue;
-        rows[count].target = noh_pack_string(pack, from->target);
-        rows[count].channel = (uint16_t)channel;
-        rows[count].weight = from->weight;
-        count++;
-    }
-    recipe->name = "pack";
-    recipe->rows = rows;
-    recipe->row_count = count;
-    recipe->pack = NULL;
-    return NOH_OK;
-}
-
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
 {
     static const char *const overrides[3] = { "override-lids", "override-eyes", "override-speech" };

@@ -26,14 +26,6 @@ int noh_aabb_contains(const noh_aabb *box, const float point[3])
     return 1;
 }
 
-int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b)
-{
-    for (int i = 0; i < 3; i++) {
-        if (!(a->min[i] <= b->max[i] && b->min[i] <= a->max[i])) return 0;
-    }
-    return 1;
-}
-
 /* Transform a point or, about the origin, a direction into the space of a rotation. */
 static void into(const float rotation[4], const float v[3], float out[3])
 {

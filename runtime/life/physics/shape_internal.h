@@ -8,8 +8,6 @@
 extern "C" {
 #endif
 
-int noh_aabb_overlap(const noh_aabb *a, const noh_aabb *b);
-
 /* Get the point of a box nearest to a point: the point itself if it is inside. */
 void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3]);
 

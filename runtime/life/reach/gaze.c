@@ -200,12 +200,6 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
 
 /* ---- states ---- */
 
-void noh_gaze_init(noh_gaze *gaze)
-{
-    NOH_ASSERT(gaze);
-    memset(gaze, 0, sizeof *gaze);
-}
-
 static int is_look(const noh_ik_look *look)
 {
     const float square = noh_dot3(look->direction, look->direction);

@@ -24,8 +24,6 @@ void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
 void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
                       float seconds, float rotation[4]);
 
-void noh_gaze_init(noh_gaze *gaze);
-
 /* Advance time, and turn a pose.
  * desc     of the head; zeros: as in body.h
  * local    [joint_count], from a clip; changes the rotations of the rig's joints and eyes

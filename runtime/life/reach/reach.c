@@ -89,12 +89,6 @@ noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *r
 
 /* ---- states ---- */
 
-void noh_reach_init(noh_reach *reach)
-{
-    NOH_ASSERT(reach);
-    memset(reach, 0, sizeof *reach);
-}
-
 const char *noh_reach_check(const noh_reach *reach)
 {
     for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) {

@@ -9,8 +9,6 @@
 extern "C" {
 #endif
 
-void noh_reach_init(noh_reach *reach);
-
 /* Advance time, and bend a pose's arms.
  * local    [joint_count]; changes the rotations of upper arms and forearms
  * points   [NOH_REACH_ARMS_MAX][3] in model space, finite; used for hands that reach or return

@@ -145,18 +145,6 @@ noh_result noh_character_scratch_init(void *memory, size_t bytes, const noh_char
     return noh_pose_scratch_init(pose_memory, pose_bytes, desc->controller.set, 0, &scratch->pose, error);
 }
 
-size_t noh_character_bytes(const noh_character *ch)
-{
-    NOH_ASSERT(ch);
-    return ch->bytes;
-}
-
-void noh_character_set_instance(noh_character *ch, uint32_t instance)
-{
-    NOH_ASSERT(ch);
-    ch->time.instance = instance;
-}
-
 void noh_character_set_behind(noh_character *ch, uint32_t ticks)
 {
     NOH_ASSERT(ch);

@@ -25,7 +25,7 @@ extern "C" {
  *   noh_character_update(ch, set, skeleton, radii, &scratch)  characters that are due: samples, blends, makes matrices
  *   noh_character_skin(ch, skin, matrices)                    drawn characters: skinning matrices
  * A scheduler can spread updates within a time budget. Change tracks through noh_character_controller,
- * then call noh_character_wake. After a memcpy, give the copy its own update phase with noh_character_set_instance.
+ * then call noh_character_wake. After a memcpy, give the copy its own time.instance.
  *
  * Bytes: 160 for the head, plus the controller (clip.h), plus two poses of 48 per joint and 4 per float, each
  * rounded up to 16. 31 joints, 34 floats and 4 tracks: 3,888; with inertia 5,648.
@@ -117,9 +117,6 @@ const float *noh_character_floats(const noh_character *ch, float *mixed);
  * to one update period. */
 void noh_character_wake(noh_character *ch);
 
-/* Give a copy its own update phase. */
-void noh_character_set_instance(noh_character *ch, uint32_t instance);
-
 /* Get the skin's matrices of a character in this frame, after an update.
  * shapes  matrices[joint_count of the skin][12]
  * ranges  skin: of the skeleton that updates the character; if the skeleton has inverse bind matrices, they must be
@@ -139,9 +136,6 @@ void noh_character_sphere(const noh_character *ch, float sphere[4]);
 
 /* Call when the camera has jumped: LOD levels are chosen again, and the character is posed before it is shown. */
 void noh_character_cut(noh_character *ch);
-
-/* The bytes to copy to clone or save a character. The copy must also be aligned to NOH_MEMORY_ALIGN. */
-size_t noh_character_bytes(const noh_character *ch);
 
 /* ---- memory ---- */
 

@@ -146,23 +146,6 @@ float noh_lod_scale(float distance_m, float field_of_view_rad, uint32_t viewport
     return (float)viewport_height * cosine / (2.0f * distance * sine);
 }
 
-float noh_lod_depth(const float view_projection[16], const float world[12], const float box[6])
-{
-    const float *m = view_projection;
-    float nearest = 0.0f;
-    NOH_ASSERT(view_projection && world && box);
-    for (int corner = 0; corner < 8; corner++) {
-        const float x = box[corner & 1 ? 3 : 0], y = box[corner & 2 ? 4 : 1], z = box[corner & 4 ? 5 : 2];
-        float depth = m[15];
-        for (int r = 0; r < 3; r++) {
-            const float *row = world + 4 * r;
-            depth += m[4 * r + 3] * (row[0] * x + row[1] * y + row[2] * z + row[3]);
-        }
-        nearest = corner && nearest < depth ? nearest : depth;
-    }
-    return nearest;
-}
-
 /* The quality setting in metres, at a scale. */
 static double quality_metres(const noh_lod_settings *s, float pixels_per_metre)
 {

@@ -37,11 +37,6 @@ uint32_t noh_lod_influence_count(const noh_lod *d, const noh_lod_table *table);
 
 NOH_STATIC_ASSERT(sizeof(noh_lod) == 32, lod);
 
-/* The depth of a box's nearest corner, in world units; below 0: behind the camera.
- * shapes  view_projection[16] column-major, of a perspective camera (clip w is the depth); world[12] rows of 3 x 4;
- *         box[6]: smallest x, y, z, largest x, y, z (noh_mesh_box, noh_skin_box) */
-float noh_lod_depth(const float view_projection[16], const float world[12], const float box[6]);
-
 /* Check a table once before using it.
  * errors  DATA a count is 0, or an error is negative, not finite, or below the previous level's (where: the level); ARG
  *         a level count is over the limit, or an array is NULL */

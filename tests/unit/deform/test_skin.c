@@ -417,7 +417,9 @@ static float smallest_radius(const noh_mesh *mesh, const float *matrices, const 
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         float p[3], square;
         if (joints) {
-            noh_skin_position_dual(mesh, joints, NULL, v, p);
+            noh_vertex vertex;
+            noh_skin_vertex_dual(mesh, joints, NULL, v, &vertex);
+            memcpy(p, vertex.position, sizeof p);
         } else {
             noh_skin_position(mesh, matrices, NULL, v, p);
         }
@@ -495,10 +497,10 @@ static void signs_of_quaternions_do_not_matter(void **state)
             }
         }
         for (uint32_t v = 0; v < x.mesh.header->vertex_count; v++) {
-            float a[3], b[3];
-            noh_skin_position_dual(&x.mesh, joints, NULL, v, a);
-            noh_skin_position_dual(&x.mesh, turned, NULL, v, b);
-            test_same_floats(b, a, 3, "position");
+            noh_vertex a, b;
+            noh_skin_vertex_dual(&x.mesh, joints, NULL, v, &a);
+            noh_skin_vertex_dual(&x.mesh, turned, NULL, v, &b);
+            test_same_floats(b.position, a.position, 3, "position");
         }
     }
     unmake(&x);

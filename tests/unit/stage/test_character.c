@@ -181,7 +181,7 @@ static void memory_is_exact(void **state)
     assert_null(ch);
     for (size_t i = 0; i < g.size + 512; i++) assert_int_equal(memory[i], 0xa5);
     assert_int_equal(noh_character_init(memory + 256, g.size, &g.desc, &ch, &error), NOH_OK);
-    assert_int_equal(noh_character_bytes(ch), g.size);
+    assert_int_equal(ch->bytes, g.size);
     assert_int_equal(g.size % 16, 0);
     play(&g, ch, 0, track_of(WALK, 1.0f));
     for (int frame = 0; frame < 40; frame++) {
@@ -623,7 +623,7 @@ static void a_copy_plays_the_same_on_its_own(void **state)
         if (noh_character_select_lod(g.ch, &g.table, &g.settings, 0.5f) != NOH_DUE_NOT) update(&g, g.ch);
     }
     array = test_aligned(NULL, COPIES * g.size);
-    for (uint32_t i = 0; i < COPIES; i++) memcpy(array + i * g.size, g.ch, noh_character_bytes(g.ch));
+    for (uint32_t i = 0; i < COPIES; i++) memcpy(array + i * g.size, g.ch, g.ch->bytes);
     for (int frame = 0; frame < 100; frame++) {
         for (uint32_t i = 0; i < COPIES; i++) {
             noh_character *ch = (noh_character *)(void *)(array + i * g.size);
@@ -693,7 +693,7 @@ static void a_crowd_keeps_its_budget(void **state)
     for (uint32_t i = 0; i < CROWD; i++) {
         noh_character *ch = (noh_character *)(void *)(array + i * g.size);
         memcpy(ch, g.ch, g.size);
-        noh_character_set_instance(ch, i);
+        ch->time.instance = i;
     }
     for (int frame = 0; frame < FRAMES; frame++) {
         uint32_t instance;

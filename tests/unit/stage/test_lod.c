@@ -477,30 +477,6 @@ static void a_fixed_level_does_not_influence_later_choices(void **state)
 }
 
 /* Against the depth of every corner in double precision. */
-static void depth_is_that_of_the_nearest_corner(void **state)
-{
-    test_random r = test_random_from(91);
-    (void)state;
-    for (int round = 0; round < 200; round++) {
-        float m[16], world[12], box[6];
-        double nearest = 1e30;
-        for (int i = 0; i < 16; i++) m[i] = test_random_float(&r, -2.0f, 2.0f);
-        for (int i = 0; i < 12; i++) world[i] = test_random_float(&r, -3.0f, 3.0f);
-        for (int i = 0; i < 3; i++)
-            box[i] = test_random_float(&r, -1.0f, 0.0f), box[3 + i] = test_random_float(&r, 0.0f, 1.0f);
-        for (int corner = 0; corner < 8; corner++) {
-            double depth = (double)m[15];
-            for (int row = 0; row < 3; row++) {
-                double at = (double)world[4 * row + 3];
-                for (int c = 0; c < 3; c++) at += (double)world[4 * row + c] * (double)box[corner >> c & 1 ? 3 + c : c];
-                depth += (double)m[4 * row + 3] * at;
-            }
-            nearest = fmin(nearest, depth);
-        }
-        assert_true(fabs((double)noh_lod_depth(m, world, box) - nearest) < 1e-4);
-    }
-}
-
 static void skipped_targets_are_the_smallest_and_bounded(void **state)
 {
     noh_lod_settings s = settings_of(0.0f);
@@ -659,7 +635,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(fades_are_smooth_and_one_at_a_time),
         cmocka_unit_test(parts_of_a_fade_are_all_pixels),
         cmocka_unit_test(a_fixed_level_does_not_influence_later_choices),
-        cmocka_unit_test(depth_is_that_of_the_nearest_corner),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
         cmocka_unit_test(fades_follow_the_smoothstep),
         cmocka_unit_test(errors_of_all_kinds_add_up),
