@@ -6,7 +6,7 @@
 #   - no struct of stage/ has more than forty fields
 . "$(dirname "$0")/cli/lib.sh"
 
-modules='stage_graph|stage_graph_play|stage_face|stage_face_open|stage_face_eyes|stage_person|stage_ragdoll|stage_stagger|stage_brace|stage_get_up|fall|springs|stage_feet|stage_gaze'
+modules='stage_graph|stage_graph_play|stage_face|stage_face_open|stage_face_eyes|stage_person|stage_ragdoll|stage_stagger|stage_brace|stage_get_up|fall|springs|stage_feet|stage_gaze|stage_stand|stage_legs'
 
 # ---- fields ----
 

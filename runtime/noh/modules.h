@@ -185,6 +185,30 @@ typedef struct noh_kind_feet {
 /* feet  must outlive the stage */
 noh_modifier noh_feet_modifier(const noh_kind_feet *feet);
 
+/* ======== standing ========
+ * How humanoids stand that play nothing: arms down, breathing, shifting their weight, looking about.
+ *
+ *   noh_kind_stand_make   find arms, legs and head of a kind, by joint names
+ *   noh_stand_modifier    a modifier of a kind whose actors have no clips for standing
+ *
+ * It poses the bind pose, or whatever clips show: arms that are spread hang down, the rest is added. Feet stay where
+ * they are. Actors differ, and each moves as a function of time alone: the modifier has no state. In a kind with a face
+ * the face moves the head. List it before gaze, feet and hands.
+ * Threads: no state; any thread. */
+
+typedef struct noh_kind_stand {
+    noh_reach_rig arms; /* arm_count 0: none */
+    noh_feet_rig legs;  /* leg_count 0: none */
+    noh_gaze_rig trunk; /* joint_count 0: none */
+} noh_kind_stand;
+
+/* Make the rig of a kind, from its mesh and skeleton.
+ * errors  NOT_FOUND it has no skeleton, or none of arms, legs and head */
+noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand, noh_error *error);
+
+/* stand  must outlive the stage */
+noh_modifier noh_stand_modifier(const noh_kind_stand *stand);
+
 /* ======== ragdolls of actors ========
  * Actors that become ragdolls.
  *

@@ -17,6 +17,7 @@
 #include "noh/low_life.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
+#include "stage/cast/stage_legs_internal.h"
 #include "stage/cast/stage_ragdoll_internal.h"
 
 /* Lengths are in legs, times in seconds. */
@@ -35,6 +36,7 @@
 #define SLOW 0.3f        /* legs a second: then the other foot closes up */
 #define GROUND_STEP 0.4f /* ground higher or lower is no place to step on */
 #define LEAN_RATE 6.0f
+#define CROUCH 0.04f
 #define STAGGER_SPEED 0.6f /* default: of the speed of a pendulum as long as a leg */
 
 typedef struct walk {
@@ -435,89 +437,36 @@ static void pose_trunk(const noh_stage_ragdoll_kind *shared, const noh_stage_sta
     }
 }
 
-typedef struct leg_pose {
-    noh_ik_limb limb;
-    float target[3], pole[3], foot[4];
-} leg_pose;
-
-static void read_leg(const noh_stage_ragdoll_kind *shared, const noh_stage_stagger *s, const noh_modifier_work *w,
-                     uint32_t i, leg_pose *p)
+/* Where the foot of a leg is wanted. */
+static void want_foot(const noh_stage_ragdoll_kind *shared, const noh_stage_stagger *s, const noh_modifier_work *w,
+                      uint32_t i, noh_stage_leg *leg)
 {
-    const noh_feet_leg *leg = &shared->legs.legs[i];
     const noh_stage_foothold *f = &s->feet[i];
     const float part = s->foot == i + 1u ? (float)s->step_ticks / (float)s->step_lasts : 0.0f;
-    float thigh[4], unused[4], back[4], along[3], want[3];
-    memset(p, 0, sizeof *p);
-    noh_rig_joint(w->skeleton, w->local, leg->thigh, p->limb.start, thigh);
-    noh_rig_joint(w->skeleton, w->local, leg->shin, p->limb.middle, unused);
-    noh_rig_joint(w->skeleton, w->local, leg->foot, p->limb.end, p->foot);
-    noh_quat_nlerp(p->foot, f->rotation, ease(s->weight), p->foot);
+    float back[4], want[3] = { f->stance[0] + f->off[0], f->stance[1] + f->height, f->stance[2] + f->off[1] };
+    want[1] += 4.0f * part * (1.0f - part) * LIFT * leg_of(shared);
+    noh_quat_nlerp(leg->foot, f->rotation, ease(s->weight), leg->foot);
     noh_quat_conjugate(w->place.rotation, back);
-    want[0] = f->stance[0] + f->off[0];
-    want[1] = f->stance[1] + f->height + 4.0f * part * (1.0f - part) * LIFT * leg_of(shared);
-    want[2] = f->stance[2] + f->off[1];
     noh_quat_rotate(back, want, want);
     for (int n = 0; n < 3; n++) {
-        want[n] = want[n] / (shared->metres * w->place.scale) - p->limb.end[n];
-        p->target[n] = p->limb.end[n] + ease(s->weight) * want[n];
+        want[n] = want[n] / (shared->metres * w->place.scale) - leg->ankle[n];
+        leg->ankle[n] += ease(s->weight) * want[n];
     }
-    noh_quat_rotate(thigh, leg->knee, p->pole);
-    noh_sub3(p->limb.middle, p->limb.start, along);
-    for (int n = 0; n < 3; n++) p->pole[n] = along[n] + 0.3f * shared->legs.length * p->pole[n];
-}
-
-/* How far a hip must come down so that its leg reaches. */
-static float lacks(const leg_pose *p)
-{
-    float upper[3], lower[3], way[3];
-    noh_sub3(p->limb.middle, p->limb.start, upper);
-    noh_sub3(p->limb.end, p->limb.middle, lower);
-    noh_sub3(p->target, p->limb.start, way);
-    const float reach = 0.985f * (noh_length3(upper) + noh_length3(lower));
-    const float room = reach * reach - way[0] * way[0] - way[2] * way[2];
-    const float down = -way[1] - (room > 0.0f ? noh_sqrt(room) : 0.0f);
-    return down > 0.0f ? down : 0.0f;
-}
-
-static void lower_pelvis(const noh_stage_ragdoll_kind *shared, const noh_modifier_work *w, float by)
-{
-    const uint32_t top = shared->legs.top, parent = w->skeleton->parents[top];
-    float at[3], carrier[4] = { 0.0f, 0.0f, 0.0f, 1.0f }, down[3] = { 0.0f, -by, 0.0f };
-    if (parent != NOH_JOINT_ROOT) noh_rig_joint(w->skeleton, w->local, parent, at, carrier);
-    noh_quat_conjugate(carrier, carrier);
-    noh_quat_rotate(carrier, down, down);
-    noh_madd3(w->local[top].translation, 1.0f, down, w->local[top].translation);
 }
 
 void noh_stage_run_stagger(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const noh_stage_stagger *s = &b->of.stagger;
-    leg_pose legs[2];
+    const float by[3] = { 0.0f, -CROUCH * shared->legs.length * s->arms * s->weight, 0.0f };
+    noh_stage_leg legs[NOH_FEET_LEGS_MAX];
     if (w->joint_count <= shared->legs.last) return;
     pose_trunk(shared, s, w);
-    float by = 0.04f * shared->legs.length * s->arms * s->weight;
-    for (uint32_t i = 0; i < 2; i++) {
-        read_leg(shared, s, w, i, &legs[i]);
-        const float down = lacks(&legs[i]);
-        by = down > by ? down : by;
+    for (uint32_t i = 0; i < NOH_FEET_LEGS_MAX; i++) {
+        noh_stage_read_leg(&shared->legs, w, i, &legs[i]);
+        want_foot(shared, s, w, i, &legs[i]);
     }
-    lower_pelvis(shared, w, by);
-    for (uint32_t i = 0; i < 2; i++) {
-        const noh_feet_leg *leg = &shared->legs.legs[i];
-        float at[3], now[4], turn[4];
-        noh_ik_bend bend;
-        legs[i].limb.start[1] -= by;
-        legs[i].limb.middle[1] -= by;
-        legs[i].limb.end[1] -= by;
-        noh_ik_two_bone(&legs[i].limb, legs[i].target, legs[i].pole, 1.0f, &bend);
-        noh_rig_turn(w->skeleton, w->local, leg->thigh, bend.start);
-        noh_rig_turn(w->skeleton, w->local, leg->shin, bend.middle);
-        noh_rig_joint(w->skeleton, w->local, leg->foot, at, now);
-        noh_quat_conjugate(now, now);
-        noh_quat_mul(legs[i].foot, now, turn);
-        noh_rig_turn(w->skeleton, w->local, leg->foot, turn);
-    }
+    noh_stage_move_pelvis(&shared->legs, w, legs, by);
 }
 
 const char *noh_stage_check_stagger(const noh_stage_stagger *s)

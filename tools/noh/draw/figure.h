@@ -80,7 +80,7 @@ typedef struct figure_desc {
     noh_debug_view view;
     noh_shading shading;
     figure_body *body; /* NULL: it looks ahead and stands as in its clips. Must outlive the figure, at one address */
-    int lowers_arms;   /* 1: arms that the pose spreads hang down */
+    int stands;        /* 1: it stands as noh_stand_modifier does */
     int hair;          /* 1: with the pack's hair, if any */
     float wind[3];     /* wind in the hair, as in noh_hair_carrier */
     const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
@@ -98,8 +98,8 @@ typedef struct figure {
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
     drawn_hair hair;
-    noh_reach_rig arms[NOH_STAGE_KINDS_MAX];                         /* of desc.lowers_arms */
-    noh_modifier rest_parts[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX]; /* of a kind: the others, then its arms */
+    noh_kind_stand stands[NOH_STAGE_KINDS_MAX];                      /* of desc.stands */
+    noh_modifier rest_parts[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX]; /* of a kind: how it stands, then the others */
     noh_modifier hair_parts[NOH_MODIFIERS_MAX];                      /* of its kind: the others, then the hair */
     uint32_t *nodes;                                                 /* of all kinds, one after another */
     noh_stage_plan plan;
@@ -220,7 +220,7 @@ int figure_draw_decals(figure *f);
 
 /* The first clip of joints with "idle" in its name; NULL: none. */
 const char *figure_idle_clip(const noh_pack *pack);
-/* Arms that hang down (figure_desc.lowers_arms), called while its kinds are made. */
+/* How it stands (figure_desc.stands), called while its kinds are made. */
 void figure_add_rest(figure *f);
 
 /* The hair of a figure: planned, opened on a driver, updated after a frame. */

@@ -195,7 +195,8 @@ int figure_body_place(const figure_body *b, noh_stage *stage, const noh_kind_des
             return tool_fail_error("--look-at", &error);
         }
         if (b->looks && !kinds[k].face.type && kinds[k].modifier_count) {
-            noh_gaze *g = noh_actor_modifier(stage, actors[k], 0);
+            const uint32_t after = strcmp(kinds[k].modifiers[0].name, "stand") == 0; /* figure_add_rest */
+            noh_gaze *g = noh_actor_modifier(stage, actors[k], after);
             memcpy(g->point, b->point, sizeof g->point);
             g->looks = 1;
         }

@@ -72,7 +72,7 @@ static int choose_pose(render_args *a, const noh_pack *pack)
     if (rest || !a->rests || a->body.has_ground || a->show_bones || !figure_draws(pack)) return 0;
     const char *idle = figure_idle_clip(pack);
     if (idle) a->clips.items[a->clips.count++] = idle;
-    a->figure.lowers_arms = !idle;
+    a->figure.stands = !idle;
     return 0;
 }
 
@@ -129,7 +129,7 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
 {
     noh_gl_camera camera;
     const int alive = a->figure.alive;
-    const int lives = alive || a->body.has_ground;
+    const int lives = alive || a->figure.stands || a->body.has_ground;
     const int hangs = !lives && a->rests && p->figure.hair.is_there;
     int status = p->shows_bones ? 0 : strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
@@ -234,7 +234,7 @@ static const option options[] = {
       .at = offsetof(render_args, time_s),
       .value = "S",
       .initial = "0",
-      .what = "time in the clips, and how long faces have lived (--face on), seconds",
+      .what = "time in the clips, and how long a face (--face on) or a body without clips has lived, seconds",
       .example = "0.5" },
     OPTION_ANIMS(render_args, anims, .needs = "--clip"),
     { .name = "--pose",

@@ -256,6 +256,7 @@ static int check_args(sheet_args *a)
     if (!s->tiles.clips.count && strcmp(s->camera, "auto") == 0) s->camera = "face";
     s->tiles.alive = s->figure.alive;
     s->tiles.life_s = lives_alone(a) ? a->time_s : 0.0;
+    s->figure.stands = lives_alone(a);
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;

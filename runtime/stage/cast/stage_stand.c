@@ -1,0 +1,184 @@
+/* stage_stand.c: how humanoids stand that play nothing.
+ *
+ * All motion is a function of the clock and of the actor: values that are held for some seconds and go over to the
+ * next, and a breath. At the first tick all of it is 0. */
+#include <string.h>
+
+#include "core/base/assert_internal.h"
+#include "life/face/face_internal.h"
+#include "life/physics/vector_internal.h"
+#include "life/reach/rig_internal.h"
+#include "noh/base.h"
+#include "noh/body.h"
+#include "noh/clip.h"
+#include "noh/format.h"
+#include "noh/low_core.h"
+#include "noh/low_life.h"
+#include "noh/modules.h"
+#include "stage/cast/stage_internal.h"
+#include "stage/cast/stage_legs_internal.h"
+
+#define SECONDS(s) ((uint32_t)((s) * (float)NOH_TICKS_PER_SECOND))
+#define ARM_OUT 0.24f /* of a lowered upper arm, relative to its height */
+#define FORE_OUT 0.06f
+#define FORE_AHEAD 0.22f
+#define LOWERED 0.93f /* cosine to straight down: arms at least as low stay as they are */
+#define BREATH_TICKS SECONDS(4.0f)
+#define BREATH 0.022f /* radians */
+#define SHIFT 0.035f  /* of a leg, to each side */
+#define TILT 0.035f   /* radians, of the pelvis */
+#define TURN 0.3f     /* of the head, to each side */
+#define NOD 0.08f
+#define DRIFT 0.006f /* of a leg: always on its way */
+
+enum { WEIGHT, YAW, PITCH, DRIFT_X, DRIFT_Z, PHASE };
+
+/* ---- values ---- */
+
+/* The weight goes from one leg to the other. */
+static float key_of(uint32_t seed, uint32_t stream, uint32_t index)
+{
+    if (!index) return 0.0f;
+    const float u = noh_face_uniform(seed, NOH_FACE_STAND + stream, index);
+    if (stream != WEIGHT) return 2.0f * u - 1.0f;
+    return (index + seed) % 2u ? 0.6f + 0.4f * u : -0.6f - 0.4f * u;
+}
+
+/* -1..1: held, then for `moves` seconds of each period on its way to the next value. */
+static float held(const noh_modifier_work *w, uint32_t stream, float period, float moves)
+{
+    const uint32_t seed = w->actor.id, ticks = SECONDS(period);
+    const uint64_t clock = (uint64_t)w->clock;
+    const uint32_t index = (uint32_t)(clock / ticks);
+    const float at = (float)(clock % ticks) / (float)NOH_TICKS_PER_SECOND;
+    const float begins = (period - moves) * noh_face_uniform(seed, NOH_FACE_STAND + PHASE, index);
+    const float part = (at - begins) / moves, s = part < 0.0f ? 0.0f : part > 1.0f ? 1.0f : part;
+    const float from = key_of(seed, stream, index), to = key_of(seed, stream, index + 1u);
+    return from + (to - from) * s * s * s * (10.0f - s * (15.0f - 6.0f * s));
+}
+
+/* 0 exhaled .. 1 inhaled. */
+static float breath_of(const noh_modifier_work *w)
+{
+    const uint32_t at = (uint32_t)((uint64_t)w->clock % BREATH_TICKS);
+    float sine, cosine;
+    noh_sin_cos_turn((uint32_t)(((uint64_t)at << 32) / BREATH_TICKS), &sine, &cosine);
+    return 0.5f - 0.5f * cosine;
+}
+
+/* ---- arms ---- */
+
+/* The way from a joint to the next of its limb, in model space. */
+static void bone_of(const noh_modifier_work *w, uint32_t joint, uint32_t next, float bone[3])
+{
+    float at[3], unused[4];
+    noh_rig_joint(w->skeleton, w->local, joint, at, unused);
+    noh_rig_joint(w->skeleton, w->local, next, bone, unused);
+    noh_sub3(bone, at, bone);
+}
+
+static void point(const noh_modifier_work *w, uint32_t joint, uint32_t next, const float direction[3])
+{
+    static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
+    float bone[3], turn[4];
+    bone_of(w, joint, next, bone);
+    noh_quat_between(bone, direction, ahead, turn);
+    noh_rig_turn(w->skeleton, w->local, joint, turn);
+}
+
+static void lower_arm(const noh_modifier_work *w, const noh_reach_arm *arm, float side)
+{
+    const float upper[3] = { side * ARM_OUT, -1.0f, 0.0f }, fore[3] = { side * FORE_OUT, -1.0f, FORE_AHEAD };
+    float bone[3];
+    bone_of(w, arm->upper, arm->fore, bone);
+    if (-bone[1] >= LOWERED * noh_length3(bone)) return;
+    point(w, arm->upper, arm->fore, upper);
+    point(w, arm->fore, arm->hand, fore);
+}
+
+static void lower_arms(const noh_modifier_work *w, const noh_reach_rig *rig)
+{
+    for (uint32_t i = 0; i < rig->arm_count && w->joint_count > rig->last; i++) {
+        float root[3], hand[3], unused[4];
+        noh_rig_joint(w->skeleton, w->local, 0, root, unused);
+        noh_rig_joint(w->skeleton, w->local, rig->arms[i].hand, hand, unused);
+        lower_arm(w, &rig->arms[i], hand[0] < root[0] ? -1.0f : 1.0f);
+    }
+}
+
+/* ---- body ---- */
+
+static void turn_by(const noh_modifier_work *w, uint32_t joint, float x, float y, float z)
+{
+    const float turn[3] = { x, y, z };
+    float q[4];
+    noh_quat_from_rotation(turn, q);
+    noh_rig_turn(w->skeleton, w->local, joint, q);
+}
+
+static void shift_weight(const noh_modifier_work *w, const noh_feet_rig *rig, const noh_gaze_rig *trunk)
+{
+    const float weight = held(w, WEIGHT, 6.0f, 1.6f), size = rig->length;
+    const float by[3] = { size * (SHIFT * weight + DRIFT * held(w, DRIFT_X, 2.2f, 2.2f)), 0.0f,
+                          size * DRIFT * held(w, DRIFT_Z, 1.7f, 1.7f) };
+    noh_stage_leg legs[NOH_FEET_LEGS_MAX];
+    if (!rig->leg_count || w->joint_count <= rig->last) return;
+    for (uint32_t i = 0; i < rig->leg_count; i++) noh_stage_read_leg(rig, w, i, &legs[i]);
+    turn_by(w, rig->top, 0.0f, 0.0f, -TILT * weight);
+    if (trunk->joint_count > 1u) turn_by(w, trunk->joints[0], 0.0f, 0.0f, TILT * weight);
+    for (uint32_t i = 0; i < rig->leg_count; i++) {
+        const noh_stage_leg was = legs[i];
+        noh_stage_read_leg(rig, w, i, &legs[i]);
+        memcpy(legs[i].ankle, was.ankle, sizeof was.ankle);
+        memcpy(legs[i].foot, was.foot, sizeof was.foot);
+    }
+    noh_stage_move_pelvis(rig, w, legs, by);
+}
+
+static void move_trunk(const noh_modifier_work *w, const noh_gaze_rig *rig)
+{
+    const noh_stage_kind *k = w->kind;
+    const float breath = BREATH * breath_of(w), yaw = TURN * held(w, YAW, 4.3f, 0.7f);
+    const float pitch = NOD * held(w, PITCH, 3.1f, 0.8f);
+    if (!rig->joint_count || w->joint_count <= rig->last) return;
+    if (rig->joint_count > 1u) turn_by(w, rig->joints[0], -breath, 0.0f, 0.0f);
+    for (uint32_t i = 0; i < rig->joint_count && !k->modules[NOH_SLOT_FACE].type; i++) {
+        turn_by(w, rig->joints[i], rig->shares[i] * pitch, rig->shares[i] * yaw, 0.0f);
+    }
+    turn_by(w, rig->joints[rig->joint_count - 1u], breath, 0.0f, 0.0f);
+}
+
+static void stand_pose(noh_modifier_work *w)
+{
+    const noh_kind_stand *s = w->user;
+    lower_arms(w, &s->arms);
+    shift_weight(w, &s->legs, &s->trunk);
+    move_trunk(w, &s->trunk);
+}
+
+/* ---- made ---- */
+
+noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand, noh_error *error)
+{
+    noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
+    const noh_skeleton_header *header;
+    NOH_ASSERT(kind && stand);
+    memset(stand, 0, sizeof *stand);
+    if (source.skeleton == NOH_NONE || !source.pack->runs[NOH_CHUNK_SKELETON].count) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+    }
+    const noh_result result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
+    if (result != NOH_OK) return result;
+    source.metres = header->unit_cm / 100.0f;
+    if (noh_reach_rig_make(&source, &stand->arms, NULL)) stand->arms.arm_count = 0;
+    if (noh_feet_rig_make(&source, &stand->legs, NULL)) stand->legs.leg_count = 0;
+    if (noh_gaze_rig_make(source.pack, source.skeleton, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
+    if (stand->arms.arm_count || stand->legs.leg_count || stand->trunk.joint_count) return NOH_OK;
+    return noh_fail(error, NOH_ERR_NOT_FOUND, "no joints have the names of arms, legs or a head", 0, 0);
+}
+
+noh_modifier noh_stand_modifier(const noh_kind_stand *stand)
+{
+    NOH_ASSERT(stand);
+    return (noh_modifier){ .name = "stand", .modify = stand_pose, .user = stand };
+}
