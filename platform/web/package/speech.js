@@ -56,14 +56,16 @@ function mixed(buffer) {
     return sum;
 }
 
-// Whether the browser has voices. Some list them only some time after a first request.
+// Whether the browser has voices. Some list them only some time after a first request: they are waited for once.
+let voicesCome = null;
 async function hasVoices() {
     const voices = window.speechSynthesis, some = () => Boolean(voices) && voices.getVoices().length > 0;
     if (!voices || some()) return some();
-    await new Promise((resolve) => {
+    voicesCome = voicesCome || new Promise((resolve) => {
         if (voices.addEventListener) voices.addEventListener('voiceschanged', resolve, { once: true });
         setTimeout(resolve, voicesMs);
     });
+    await voicesCome;
     return some();
 }
 
