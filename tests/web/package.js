@@ -133,6 +133,17 @@ async function used(browser) {
     await page.keyboard.press('Home');
     await page.evaluate(() => { document.getElementById('it').light = 'sky'; });
     check('used: an attribute changes the light', (await state()).light === 'sky');
+    const held = await page.evaluate(() => {
+        const it = document.getElementById('it'), { character } = it, before = { ...character.camera };
+        Object.assign(it, { minCameraOrbit: '-10deg 60deg 80%', maxCameraOrbit: '10deg auto 120%' });
+        character.turn(1, 2);
+        character.zoom(0.1);
+        const { azimuth, elevation, distance } = character.camera;
+        Object.assign(it, { minCameraOrbit: '', maxCameraOrbit: '' });
+        Object.assign(character.camera, before, { limits: character.camera.limits });
+        return [azimuth, elevation, distance].map((value) => value.toFixed(4)).join();
+    });
+    check('used: attributes limit the camera', held === '0.1745,0.5236,0.8000', held);
     const links = await page.evaluate(() => {
         const it = document.getElementById('it'), { character } = it, { gl } = character, link = gl.linkProgram.bind(gl), pictures = [];
         let count = 0;
@@ -248,6 +259,13 @@ async function keys(browser) {
         return seen;
     });
     check('keys: a step of a walk is an event', told.length > 0 && told.every(({ name, clip, layer, weight }) => name && clip === 'walk' && layer === 'body' && weight > 0), JSON.stringify(told));
+    const shares = await page.evaluate(() => ['face', 'upper', 'full'].map((view) => {
+        const it = document.getElementById('it');
+        it.view = view;
+        const { box, all } = it.character.camera;
+        return (box[4] - box[1]) / (all[4] - all[1]);
+    }));
+    check('keys: the camera frames a face, the upper part, or all', shares[0] < 0.35 && Math.abs(shares[1] - 0.45) < 0.1 && shares[2] === 1, shares.join());
     await close(page, 'keys');
 }
 

@@ -2,6 +2,24 @@
 
 export const front = { azimuth: 0, elevation: 0.05 };
 
+// ---- limits ----
+
+const free = { azimuth: [-Infinity, Infinity], elevation: [-1.5, 1.5], distance: [0.15, 4] };
+const units = { deg: Math.PI / 180, rad: 1, '%': 0.01 };
+function measured(text) {
+    const [, number, unit] = /^(-?[\d.]+)(deg|rad|%)$/.exec(text) || [];
+    return number === undefined ? null : Number(number) * units[unit];
+}
+
+// Limits from two texts "theta phi radius" as in model-viewer: angles in deg or rad, phi 0 from above, the radius in % of
+// the distance that frames the figures; auto: no limit of its own.
+export function limitsOf(min, max) {
+    const [low, high] = [min, max].map((text) => text.trim().split(/\s+/).map(measured)), up = (phi) => (phi == null ? null : Math.PI / 2 - phi);
+    const range = (from, to, [least, most]) => [Math.max(least, from ?? least), Math.min(most, to ?? most)];
+    return { azimuth: range(low[0], high[0], free.azimuth), elevation: range(up(high[1]), up(low[1]), free.elevation), distance: range(low[2], high[2], free.distance) };
+}
+const within = (value, [from, to]) => Math.max(from, Math.min(to, value));
+
 // ---- what is framed, much as `noh render --camera` does (figure_shape.c) ----
 
 const faceIsAll = 0.4, upperShare = 0.45; // of the figure's height: a higher face is a head alone; of a body, its upper part
@@ -28,7 +46,7 @@ function product(a, b, out) {
 export class Camera {
     constructor() {
         // distance: 1 frames the figures; pixel: size of a page pixel at the figures, in world units
-        Object.assign(this, front, { distance: 0, box: null, all: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
+        Object.assign(this, front, { limits: free, distance: 0, box: null, all: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
         this.matrix = new Float32Array(16);
     }
 
@@ -39,12 +57,18 @@ export class Camera {
 
     zoom(by) {
         this.byHand = true;
-        this.distance = Math.min(4, Math.max(0.15, (this.distance || 1) * by));
+        this.distance = within((this.distance || 1) * by, this.limits.distance);
     }
 
     turn(azimuth, elevation) {
-        this.azimuth += azimuth;
-        this.elevation = Math.min(1.5, Math.max(-1.5, this.elevation + elevation));
+        this.azimuth = within(this.azimuth + azimuth, this.limits.azimuth);
+        this.elevation = within(this.elevation + elevation, this.limits.elevation);
+    }
+
+    limit(limits) {
+        this.limits = limits;
+        this.turn(0, 0);
+        if (this.distance) this.zoom(1);
     }
 
     // Move by pixels of the page: the point under a finger stays there.

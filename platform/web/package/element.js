@@ -1,4 +1,5 @@
 // element.js: <noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>.
+import { limitsOf } from './camera.js';
 import { Character } from './character.js';
 import { convertAddress, isModel, Visitor } from './convert.js';
 import { addGaze, addPointers } from './pointer.js';
@@ -37,13 +38,13 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 // Properties and their values without an attribute.
 const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
-    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, view: 'full', cameraOrbit: false, autoLife: false, captions: false, gaze: false, drop: false, paused: false };
+    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, view: 'full', cameraOrbit: false, minCameraOrbit: '', maxCameraOrbit: '', autoLife: false, captions: false, gaze: false, drop: false, paused: false };
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
 // A plain class if there is no page (rendering on a server).
 export class NohCharacter extends (globalThis.HTMLElement || Object) {
-    static observedAttributes = ['src', 'poster', 'clip', 'face', ...ofLight, 'level', 'speed', 'view', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
+    static observedAttributes = ['src', 'poster', 'clip', 'face', ...ofLight, 'level', 'speed', 'view', 'min-camera-orbit', 'max-camera-orbit', 'emotion', 'alt', 'aria-label', 'camera-orbit', 'auto-life', 'paused'];
 
     constructor() {
         super();
@@ -80,6 +81,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.canvas.part = 'canvas';
         this.inside('.poster').before(this.canvas);
         this.character = new Character(this.canvas, this.wishes());
+        this.limitCamera();
         this.watch();
         this.nameCanvas();
         this.showPoster();
@@ -306,6 +308,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         } else if (name === 'view') {
             this.character.view = this.view;
             if (this.loaded) this.character.fit();
+        } else if (name === 'min-camera-orbit' || name === 'max-camera-orbit') {
+            this.limitCamera();
         } else if (name === 'paused' || name === 'auto-life') {
             this.rest();
         } else if (name === 'alt' || name === 'aria-label' || name === 'camera-orbit') {
@@ -313,6 +317,11 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         } else {
             this.apply(name);
         }
+    }
+
+    limitCamera() {
+        this.character.camera.limit(limitsOf(this.minCameraOrbit, this.maxCameraOrbit));
+        if (this.loaded) this.character.redraw();
     }
 
     // A clip, a face or an emotion by name, if it exists.

@@ -208,6 +208,9 @@ export interface NohCharacterProperties {
     characters: number;
     view: View;
     cameraOrbit: boolean;
+    /** Limits of the camera, "theta phi radius" as in model-viewer: `-60deg 70deg 50%`; `auto`: none of its own. */
+    minCameraOrbit: string;
+    maxCameraOrbit: string;
     autoLife: boolean;
     /** Whether what is said is shown; without a voice it always is. */
     captions: boolean;
