@@ -49,7 +49,7 @@ const filled = (page, find) => page.evaluate((how) => {
 }, find);
 
 async function page(browser) {
-    const shown = await open(browser, '/?clip=none&alive=off&light=studio&background=plain&size=256');
+    const shown = await open(browser, '/?tab=all&clip=none&alive=off&light=studio&background=plain&size=256');
     await until(shown, () => window.noh.whole || window.noh.error);
     const state = await shown.evaluate(() => ({ error: window.noh.error, renderer: window.noh.renderer, path: window.noh.path }));
     console.log(`# ${await browser.version()}, ${state.renderer}, path ${state.path}`);
