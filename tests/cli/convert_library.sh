@@ -1,5 +1,5 @@
 #!/bin/sh
-# libnohconvert: files in memory give the same pack as `noh build` makes of them, and nothing of the machine is read.
+# libnohconvert: files in memory give the same pack as `noh build` makes of them, and no file of the machine is read.
 . "$(dirname "$0")/lib.sh"
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'the converter as a library' 'its objects have sanitizers here'

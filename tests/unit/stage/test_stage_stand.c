@@ -87,7 +87,7 @@ static void it_stands_and_lives(void **state)
         wide[0] = fminf(wide[0], now[3]);
         wide[1] = fmaxf(wide[1], now[3]);
         joint_at(&c, actors[0], "hand.L", other);
-        assert_true(other[7] < now[7] + 0.05f && fabsf(other[3] - now[3]) < 0.45f); /* beside the hips */
+        assert_true(other[7] < now[7] + 0.05f && fabsf(other[3] - now[3]) < 0.45f); /* next to the hips */
     }
     print_message("hips go %.0f mm from side to side, the head turns by %.2f, feet slide %.2f mm\n",
                   1e3 * (double)(wide[1] - wide[0]), (double)(turned[1] - turned[0]), 1e3 * (double)slid);
