@@ -109,7 +109,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # Skinning kernels and lanes built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE phones phones-update mutants check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes release api-update
+.PHONY: FORCE phones phones-update mutants check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes release release-check api-update
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -145,6 +145,8 @@ help:
 	@echo 'make install-lib  the library alone, without a C++ compiler (CC=, AR=: for another processor)'
 	@echo 'make release    source archive, Debian and npm packages, port, recipe, SPDX list and checksums: build/release/;'
 	@echo '                make api-update: the API that later versions are compared with'
+	@echo 'make release-check  the Debian packages twice, lintian, installed into a minimal Debian, used, removed: root, debhelper,'
+	@echo '                lintian, debootstrap; two whole builds'
 	@echo 'make clean      remove $(BUILD)'
 	@echo ''
 	@echo 'CFLAGS, CXXFLAGS, CPPFLAGS and LDFLAGS are appended to the flags that are needed; OPT="-O2 -g" can be replaced, and'

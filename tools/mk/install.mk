@@ -51,6 +51,9 @@ api-update:
 # A release: archive, Debian packages, npm package, port, recipe, list of files, checksums.
 release:
 	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/release/release.sh $(BUILD)/release
+# The Debian packages built twice, read by lintian, installed into a minimal Debian, used and removed.
+release-check:
+	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/release/check_packages.sh $(BUILD)/release
 
 # Code and data of the library by processor, against the table of the last commit; make sizes-update writes that table.
 sizes:

@@ -65,9 +65,7 @@ if wants debian; then
     if ! command -v dh >/dev/null 2>&1; then
         echo 'release: no Debian packages: debhelper is not installed' >&2
     else
-        # A folder of a fixed name: paths in debug data and messages are the same in each build.
-        tree=/tmp/noh-release-$(id -u)
-        rm -rf "$tree"
+        tree=$work/debian
         mkdir "$tree"
         tar -C "$tree" -xzf "$archive"
         cp -r "$tree/$name/tools/release/debian" "$tree/$name/debian"
