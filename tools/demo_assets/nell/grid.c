@@ -90,11 +90,25 @@ static int hidden(const Grid *grid, int i, int j)
     return t < -0.180 || (nell_hair_past(s, t) > 0.024 && nell_hair_past(fabs(s) - wide, t) > 0.018);
 }
 
+static int has_face(const Grid *grid, int i, int j)
+{
+    return j >= 0 && j + 1 < ROWS && !hidden(grid, i, j) && !hidden(grid, i + 1, j) && !hidden(grid, i, j + 1) &&
+           !hidden(grid, i + 1, j + 1);
+}
+
+/* A vertex of no face would have no normal. The last column is the first. */
+static int is_used(const Grid *grid, int i, int j)
+{
+    int before = i ? i - 1 : COLUMNS - 2;
+    return has_face(grid, i, j) || has_face(grid, i, j - 1) || has_face(grid, before, j) ||
+           has_face(grid, before, j - 1);
+}
+
 static void add_vertices(Model *model, Grid *grid)
 {
     for (int j = 0; j < ROWS; j++) {
         for (int i = 0; i + 1 < COLUMNS; i++) {
-            if (hidden(grid, i, j)) {
+            if (!is_used(grid, i, j)) {
                 continue;
             }
             Seed seed = grid_seed(grid, i, j, 1);
@@ -113,7 +127,7 @@ static void add_faces(Model *model, const Grid *grid)
 {
     for (int j = 0; j + 1 < ROWS; j++) {
         for (int i = 0; i + 1 < COLUMNS; i++) {
-            if (hidden(grid, i, j) || hidden(grid, i + 1, j) || hidden(grid, i, j + 1) || hidden(grid, i + 1, j + 1)) {
+            if (!has_face(grid, i, j)) {
                 continue;
             }
             uint32_t a = grid->above[j][i], b = grid->above[j][i + 1];

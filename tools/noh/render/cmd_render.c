@@ -130,11 +130,12 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->figure.stands || a->body.has_ground;
-    const int hangs = !lives && a->rests && p->figure.hair.is_there;
+    const int hangs = !alive && !a->body.has_ground && a->rests && p->figure.hair.is_there;
     int status = p->shows_bones ? 0 : strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
-    if (!status && (lives || hangs)) status = figure_live(&p->figure, lives ? a->time_s : a->swing, a->turn);
+    if (!status && (lives || hangs))
+        status = figure_live(&p->figure, (lives ? a->time_s : 0.0) + (hangs ? a->swing : 0.0), a->turn);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
