@@ -24,6 +24,11 @@ void web_cast_add_fall(web_cast *cast)
 
 /* ---- push.c ---- */
 
+EMSCRIPTEN_KEEPALIVE const char *web_cannot_fall(void)
+{
+    return web.cast.cannot_fall.what;
+}
+
 EMSCRIPTEN_KEEPALIVE int web_push(float strength)
 {
     (void)strength;
