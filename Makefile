@@ -93,6 +93,9 @@ else
 VIEW_O     := $(VIEW_NOT_C:%.c=$(BUILD)/%.o)
 endif
 
+# Names of the converter as a library are hidden by GNU's tools; without them there is none.
+CONVERT_LIB := $(if $(shell command -v $(OBJCOPY)),$(BUILD)/libnohconvert.a)
+
 ASSERT_O   := $(RUNTIME_C:%.c=$(BUILD)/assert/%.o) $(BUILD)/gen/shaders.gen.o
 RUNTIME_O  := $(if $(SAN),$(ASSERT_O),$(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o)
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
@@ -113,7 +116,7 @@ KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)
 .SECONDARY:
 .DELETE_ON_ERROR:
 
-all: $(BUILD)/noh $(BUILD)/libnoh.a $(BUILD)/libnohconvert.a $(BUILD)/noh.1 $(BUILD)/noh.bash
+all: $(BUILD)/noh $(BUILD)/libnoh.a $(CONVERT_LIB) $(BUILD)/noh.1 $(BUILD)/noh.bash
 
 help:
 	@echo 'make            build/noh, build/libnoh.a and build/libnohconvert.a, the converter as a library'

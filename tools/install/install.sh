@@ -130,9 +130,11 @@ fill tools/install/nohConfigVersion.cmake.in "$LIBDIR/cmake/noh/nohConfigVersion
 if [ "$what" = all ]; then
     put 755 "$BUILD/noh" "$BINDIR/noh"
     put 755 "$BUILD/embed" "$BINDIR/noh-embed"
-    put 644 "$BUILD/libnohconvert.a" "$LIBDIR/libnohconvert.a"
-    put 644 tools/noh/build/noh_convert.h "$INCLUDEDIR/noh_convert.h"
-    fill tools/install/nohconvert.pc.in "$LIBDIR/pkgconfig/nohconvert.pc"
+    if [ -f "$BUILD/libnohconvert.a" ]; then
+        put 644 "$BUILD/libnohconvert.a" "$LIBDIR/libnohconvert.a"
+        put 644 tools/noh/build/noh_convert.h "$INCLUDEDIR/noh_convert.h"
+        fill tools/install/nohconvert.pc.in "$LIBDIR/pkgconfig/nohconvert.pc"
+    fi
     put 644 "$BUILD/noh.1" "$DATADIR/man/man1/noh.1"
     put 644 "$BUILD/noh.bash" "$DATADIR/bash-completion/completions/noh"
 elif [ -f "$list" ]; then
