@@ -103,21 +103,22 @@ static noh_convert_result hand_over(const noh_convert_desc *desc, const byte_buf
     return NOH_CONVERT_OK;
 }
 
-static noh_convert_result convert(const noh_convert_desc *desc, convert_options *o, noh_convert_pack *pack)
+static noh_convert_result convert(const noh_convert_desc *desc, const convert_options *given, noh_convert_pack *pack)
 {
     noh_convert_result result = NOH_CONVERT_FILES;
     byte_buffer made = { NULL, 0, 0, 0 };
     input_list inputs = { NULL, 0, 0 };
     line_stream report, warnings, progress;
+    convert_options o = *given;
     convert_failure failure;
     int count;
     const char *const *names = build_inputs(&count);
     memset(&failure, 0, sizeof failure);
-    o->report = stream_open(&report, desc, NOH_CONVERT_REPORT);
-    o->warnings = stream_open(&warnings, desc, NOH_CONVERT_WARNING);
-    o->progress = stream_open(&progress, desc, NOH_CONVERT_PROGRESS);
-    o->inputs = &inputs;
-    if (convert_files(names, count, o, &made, &failure))
+    o.report = stream_open(&report, desc, NOH_CONVERT_REPORT);
+    o.warnings = stream_open(&warnings, desc, NOH_CONVERT_WARNING);
+    o.progress = stream_open(&progress, desc, NOH_CONVERT_PROGRESS);
+    o.inputs = &inputs;
+    if (convert_files(names, count, &o, &made, &failure))
         (void)build_fail(&failure);
     else
         result = hand_over(desc, &made, pack);
