@@ -182,8 +182,9 @@ static bounds measure(const figure *f, int face)
     return b;
 }
 
-#define FACE_IS_ALL 0.4 /* of the figure's height: a face as high is a head alone */
-#define HAIR_OVER 0.1   /* of the figure's height: hair may reach over its meshes by as much */
+#define FACE_IS_ALL \
+    0.3               /* of the figure's height: a face as high is a head alone or a bust; of a body it is a seventh */
+#define HAIR_OVER 0.1 /* of the figure's height: hair may reach over its meshes by as much */
 
 /* The face with its hair and ears, within the figure. room: of its height, below, above and at the sides */
 static bounds around_face(const figure *f, const bounds *all, bounds face)
