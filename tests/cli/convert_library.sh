@@ -58,6 +58,8 @@ equal 'options' "$in" small.glb -- small.glb --textures raw --error-um 50
 
 # ---- what it tells ----
 
+check 'lines are plain text' sh -c '! LC_ALL=C grep -q "[[:cntrl:]]" "$1"' - "$work/out"
+
 library "$work/none.noh" "$in" models/hero.gltf data.bin -- models/hero.gltf
 check 'a picture that is not given costs a warning' test "$code" = 0
 tells 'warning: '

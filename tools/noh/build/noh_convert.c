@@ -21,6 +21,7 @@ typedef struct line_stream {
     const noh_convert_desc *desc;
     noh_convert_kind kind;
     FILE *file;
+    int escapes; /* 1: within an escape of a terminal, which ends with a letter */
     size_t count;
     char line[LINE_BYTES]; /* longer lines are cut */
 } line_stream;
@@ -31,12 +32,12 @@ static const char *without(const char *line, const char *begin)
     return strncmp(line, begin, length) == 0 ? line + length : line;
 }
 
-/* As a terminal shows progress: a carriage return ends a line too, and an escape clears it. */
+/* As a terminal shows progress: a carriage return ends a line too. */
 static void end_line(line_stream *s)
 {
     s->line[s->count] = '\0';
     while (s->count && s->line[s->count - 1] == ' ') s->line[--s->count] = '\0';
-    const char *line = without(without(s->line, "\033[K"), "warning: ");
+    const char *line = without(s->line, "warning: ");
     if (*line) s->desc->message(s->desc->user, s->kind, line);
     s->count = 0;
 }
@@ -45,7 +46,10 @@ static ssize_t take(void *cookie, const char *bytes, size_t count)
 {
     line_stream *s = cookie;
     for (size_t i = 0; i < count; i++) {
-        if (bytes[i] == '\n' || bytes[i] == '\r')
+        const char lower = (char)(bytes[i] | 32);
+        if (bytes[i] == '\033' || s->escapes)
+            s->escapes = bytes[i] == '\033' || lower < 'a' || lower > 'z';
+        else if (bytes[i] == '\n' || bytes[i] == '\r')
             end_line(s);
         else if (s->count < LINE_BYTES - 1u)
             s->line[s->count++] = bytes[i];
@@ -58,6 +62,7 @@ static FILE *stream_open(line_stream *s, const noh_convert_desc *desc, noh_conve
     const cookie_io_functions_t functions = { NULL, take, NULL, NULL };
     s->desc = desc;
     s->kind = kind;
+    s->escapes = 0;
     s->count = 0;
     s->file = desc->message ? fopencookie(s, "w", functions) : NULL;
     return s->file;
