@@ -145,7 +145,7 @@ int noh_mesh_uv_texel_offset(const noh_mesh *mesh)
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
 {
     NOH_ASSERT(i < mesh->header->index_count);
-    return mesh->header->index_bytes == 2 ? ((const uint16_t *)mesh->indices)[i] : ((const uint32_t *)mesh->indices)[i];
+    return noh_mesh_index_of_all(mesh, i);
 }
 
 static uint32_t load_u32(const uint8_t *bytes)

@@ -2,6 +2,7 @@
 #ifndef NOH_MESH_MESH_INTERNAL_H
 #define NOH_MESH_MESH_INTERNAL_H
 
+#include "core/base/compiler_internal.h"
 #include "noh/low_core.h"
 #include "noh/pack.h"
 
@@ -23,6 +24,12 @@ void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, 
 /* Decode a vertex's normal and tangent without normalising; their lengths are 0.57 to 1. Without tangents the tangent
  * is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
+
+/* The i-th index of a mesh with all its levels, the finest first. */
+NOH_UNUSED static inline uint32_t noh_mesh_index_of_all(const noh_mesh *mesh, uint64_t i)
+{
+    return mesh->header->index_bytes == 2 ? ((const uint16_t *)mesh->indices)[i] : ((const uint32_t *)mesh->indices)[i];
+}
 
 #ifdef __cplusplus
 }

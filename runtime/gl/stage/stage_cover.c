@@ -4,6 +4,7 @@
  * together. A kind has room for cover_count sets; one that nobody has shown since the last frame makes way. */
 #include "gl/device/gl_names_internal.h"
 #include "gl/stage/stage_gl_internal.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/gl_device.h"
@@ -108,12 +109,6 @@ static int is_hidden(const hider *h, uint64_t triangle)
     return 0;
 }
 
-static uint32_t index_at(const noh_mesh *mesh, uint64_t index)
-{
-    return mesh->header->index_bytes == 2 ? ((const uint16_t *)mesh->indices)[index]
-                                          : ((const uint32_t *)mesh->indices)[index];
-}
-
 /* mesh: with all levels of its pack; first, end: its triangles in the buffer */
 static void fill(const noh_gl_api *gl, const noh_mesh *mesh, const hider *h, uint64_t first, uint64_t end)
 {
@@ -123,7 +118,7 @@ static void fill(const noh_gl_api *gl, const noh_mesh *mesh, const hider *h, uin
         const uint32_t count = end - from < FILL_TRIANGLES ? (uint32_t)(end - from) : FILL_TRIANGLES;
         for (uint32_t i = 0; i < 3u * count; i++) {
             const uint64_t triangle = from + i / 3u;
-            const uint32_t index = index_at(mesh, 3u * triangle + (is_hidden(h, triangle) ? 0 : i % 3u));
+            const uint32_t index = noh_mesh_index_of_all(mesh, 3u * triangle + (is_hidden(h, triangle) ? 0 : i % 3u));
             if (each == 2) {
                 ((uint16_t *)(void *)made)[i] = (uint16_t)index;
             } else {

@@ -12,6 +12,7 @@
 
 #include "convert/base/input_file.h"
 #include "convert/light/ray_tree.h"
+#include "core/mesh/mesh_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"
@@ -132,17 +133,12 @@ static int covering(const cloth *c, const noh_vertex *v, ray_meeting *over)
     return 2;
 }
 
-static uint32_t index_at(const noh_mesh *m, uint32_t i)
-{
-    return m->header->index_bytes == 2 ? ((const uint16_t *)m->indices)[i] : ((const uint32_t *)m->indices)[i];
-}
-
 /* hidden: [vertex_count] 1: by the garment */
 static void mark_triangles(covered_mesh *m, const uint8_t *hidden)
 {
     for (uint32_t t = 0; t < m->triangle_count; t++) {
-        if (!hidden[index_at(&m->mesh, 3u * t)] || !hidden[index_at(&m->mesh, 3u * t + 1u)] ||
-            !hidden[index_at(&m->mesh, 3u * t + 2u)])
+        if (!hidden[noh_mesh_index_of_all(&m->mesh, 3u * t)] || !hidden[noh_mesh_index_of_all(&m->mesh, 3u * t + 1u)] ||
+            !hidden[noh_mesh_index_of_all(&m->mesh, 3u * t + 2u)])
             continue;
         m->bits[t / 32u] |= 1u << t % 32u;
         m->hidden_count++;
@@ -153,7 +149,7 @@ static void mark_triangles(covered_mesh *m, const uint8_t *hidden)
 static void mark_seen(const covered_mesh *m, uint8_t *seen)
 {
     for (uint32_t i = 0; i < m->mesh.header->index_count; i++) {
-        if (!(m->bits[i / 3u / 32u] >> i / 3u % 32u & 1u)) seen[index_at(&m->mesh, i)] = 1;
+        if (!(m->bits[i / 3u / 32u] >> i / 3u % 32u & 1u)) seen[noh_mesh_index_of_all(&m->mesh, i)] = 1;
     }
 }
 
