@@ -92,7 +92,7 @@ static void probe_mesh(sole *s, const noh_mesh *mesh, const noh_skin *skin, int 
         float weights[NOH_INFLUENCES_MAX], point[3];
         (void)noh_mesh_influences(mesh, v, joints, weights);
         const uint32_t joint = skin->joints[joints[0]];
-        if (!noh_rig_is_below(&s->source->joints, joint, s->foot)) continue;
+        if (!noh_joint_is_below(&s->source->joints, joint, s->foot)) continue;
         noh_rig_vertex(&s->source->joints, mesh, skin, v, joints[0], point);
         if (pass == 0) take_extent(s, point);
         if (pass == 1) take_length(s, point);

@@ -49,7 +49,7 @@ static int has_legs_below(const noh_ragdoll_source *s, uint32_t joint)
 {
     static const char *const legs[] = { "leg", "thigh", "knee", "shin", "calf", "foot", NULL };
     for (uint32_t i = joint + 1u; i < s->joints.joint_count; i++) {
-        if (noh_rig_is_below(&s->joints, i, joint) && has_any(name_of(s, i), legs)) return 1;
+        if (noh_joint_is_below(&s->joints, i, joint) && has_any(name_of(s, i), legs)) return 1;
     }
     return 0;
 }
@@ -97,8 +97,8 @@ static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[
     uint32_t count = 0;
     for (uint32_t i = head + 1u; i < s->joints.joint_count && count < 2u; i++) {
         const char *name = name_of(s, i);
-        if (!noh_name_has(name, "eye") || has_any(name, no_eye) || !noh_rig_is_below(&s->joints, i, head)) continue;
-        if (count && noh_rig_is_below(&s->joints, i, eyes[0])) continue;
+        if (!noh_name_has(name, "eye") || has_any(name, no_eye) || !noh_joint_is_below(&s->joints, i, head)) continue;
+        if (count && noh_joint_is_below(&s->joints, i, eyes[0])) continue;
         eyes[count++] = i;
     }
     if (count < 2u) eyes[0] = eyes[1] = NOH_NONE;
@@ -119,7 +119,7 @@ static int find_skin(const noh_ragdoll_source *s, uint32_t head, float low[3], f
             uint32_t joints[NOH_INFLUENCES_MAX];
             float weights[NOH_INFLUENCES_MAX], point[3];
             (void)noh_mesh_influences(&mesh, v, joints, weights);
-            if (!noh_rig_is_below(&s->joints, skin.joints[joints[0]], head)) continue;
+            if (!noh_joint_is_below(&s->joints, skin.joints[joints[0]], head)) continue;
             noh_rig_vertex(&s->joints, &mesh, &skin, v, joints[0], point);
             for (int i = 0; i < 3; i++) {
                 low[i] = !count || point[i] < low[i] ? point[i] : low[i];

@@ -5,6 +5,7 @@
 
 #include "core/base/compiler_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "motion/pose/skeleton_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
@@ -14,12 +15,6 @@
 
 /* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */
 void noh_ik_share(const float rotation[4], float share, float out[4]);
-
-NOH_UNUSED static inline int noh_rig_is_below(const noh_skeleton *k, uint32_t joint, uint32_t above)
-{
-    while (joint != above && joint != NOH_JOINT_ROOT) joint = k->parents[joint];
-    return joint == above;
-}
 
 /* The position of a vertex in the bind pose, by its heaviest joint. */
 NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
@@ -42,6 +37,16 @@ NOH_UNUSED static inline void noh_rig_joint(const noh_skeleton *k, const noh_tra
     noh_ragdoll_bind(&posed, joint, position, rotation);
 }
 
+/* The way from a joint of a pose to the next of its limb, in model space. */
+NOH_UNUSED static inline void noh_rig_bone(const noh_skeleton *k, const noh_transform *local, uint32_t joint,
+                                           uint32_t next, float bone[3])
+{
+    float at[3], unused[4];
+    noh_rig_joint(k, local, joint, at, unused);
+    noh_rig_joint(k, local, next, bone, unused);
+    noh_sub3(bone, at, bone);
+}
+
 /* Turn a joint with its descendants, in model space. */
 NOH_UNUSED static inline void noh_rig_turn(const noh_skeleton *k, noh_transform *local, uint32_t joint,
                                            const float by[4])
@@ -53,6 +58,15 @@ NOH_UNUSED static inline void noh_rig_turn(const noh_skeleton *k, noh_transform 
     noh_quat_mul(by, own, own);
     noh_quat_mul(back, own, own);
     noh_quat_normalize(own);
+}
+
+/* The same by an axis times radians. */
+NOH_UNUSED static inline void noh_rig_rotate(const noh_skeleton *k, noh_transform *local, uint32_t joint,
+                                             const float rotation[3])
+{
+    float by[4];
+    noh_quat_from_rotation(rotation, by);
+    noh_rig_turn(k, local, joint, by);
 }
 
 #endif

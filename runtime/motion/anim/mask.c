@@ -1,5 +1,6 @@
 #include "core/base/assert_internal.h"
 #include "motion/anim/clip_set_internal.h"
+#include "motion/pose/skeleton_internal.h"
 #include "noh/clip.h"
 #include "noh/low_motion.h"
 
@@ -13,20 +14,11 @@ void noh_mask_fill(uint8_t *mask, uint32_t count, uint8_t value)
     }
 }
 
-/* Whether `joint` is `above` or one of its descendants. Parents come first, so this climbs no higher than `above`. */
-static int is_below(const noh_skeleton *s, uint32_t joint, uint32_t above)
-{
-    while (joint > above && s->parents[joint] != NOH_JOINT_ROOT) {
-        joint = s->parents[joint];
-    }
-    return joint == above;
-}
-
 void noh_mask_subtree(uint8_t *mask, const noh_skeleton *skeleton, uint32_t joint, uint8_t value)
 {
     NOH_ASSERT(joint < skeleton->joint_count);
     for (uint32_t i = joint; i < skeleton->joint_count; i++) {
-        if (is_below(skeleton, i, joint)) {
+        if (noh_joint_is_below(skeleton, i, joint)) {
             mask[i] = value;
         }
     }

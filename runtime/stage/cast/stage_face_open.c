@@ -3,6 +3,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/face/recipe_internal.h"
+#include "motion/pose/skeleton_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/face.h"
@@ -104,12 +105,6 @@ static int open_joint(const noh_kind_desc *d, const noh_skeleton *skeleton, cons
     return 1;
 }
 
-static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
-{
-    while (joint != above && joint != NOH_JOINT_ROOT) joint = skeleton->parents[joint];
-    return joint == above;
-}
-
 /* Ignore a neck that is not an ancestor of the head, and eyes that are not descendants of the head. Without a head eyes
  * turn alone. */
 static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
@@ -121,7 +116,8 @@ static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
         const int is_eye = i >= 2;
         int hangs = is_eye;
         if (other == NOH_NONE) continue;
-        if (head != NOH_NONE) hangs = is_eye ? is_below(skeleton, other, head) : is_below(skeleton, head, other);
+        if (head != NOH_NONE)
+            hangs = is_eye ? noh_joint_is_below(skeleton, other, head) : noh_joint_is_below(skeleton, head, other);
         if (!hangs || other == head) others[i]->joint = NOH_NONE;
     }
     if (f->eyes[0].joint == NOH_NONE || f->eyes[1].joint == NOH_NONE) f->eyes[0].joint = f->eyes[1].joint = NOH_NONE;

@@ -1,4 +1,5 @@
 /* stage_ragdoll.c: actors that fall. */
+#include "motion/pose/skeleton_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"
@@ -426,12 +427,6 @@ noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error)
     return result;
 }
 
-static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
-{
-    while (joint != above && joint != NOH_JOINT_ROOT) joint = skeleton->parents[joint];
-    return joint == above;
-}
-
 noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint, const noh_body_hold *hold,
                                noh_error *error)
 {
@@ -445,7 +440,7 @@ noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint
     if (!(hold->hertz >= 0.0f) || !noh_is_finite(hold->hertz) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
         return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is below 0, or animated not in 0..1", joint, 0);
     for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < noh_stage_ragdoll_kind_of(k)->rig.body_count; i++) {
-        if (!is_below(&k->skeleton, noh_stage_ragdoll_kind_of(k)->fit.joints[i], joint)) continue;
+        if (!noh_joint_is_below(&k->skeleton, noh_stage_ragdoll_kind_of(k)->fit.joints[i], joint)) continue;
         b->held = (b->held & ~(1u << i)) | (hold->held ? 1u << i : 0u);
         b->hertz[i] = hold->hertz;
         b->animated[i] = hold->animated;

@@ -396,23 +396,6 @@ int noh_stage_begin_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
 
 /* ---- the pose ---- */
 
-static void turn_by(const noh_modifier_work *w, uint32_t joint, const float rotation[3])
-{
-    float q[4];
-    noh_quat_from_rotation(rotation, q);
-    noh_rig_turn(w->skeleton, w->local, joint, q);
-}
-
-/* The way from a joint to the next along the limb, in model space. */
-static void way_of(const noh_modifier_work *w, uint32_t joint, uint32_t next, float way[3])
-{
-    float at[3], unused[4];
-    noh_rig_joint(w->skeleton, w->local, joint, at, unused);
-    noh_rig_joint(w->skeleton, w->local, next, way, unused);
-    noh_sub3(way, at, way);
-    noh_normalize3(way, at);
-}
-
 static void pose_trunk(const noh_stage_ragdoll_kind *shared, const noh_stage_stagger *s, const noh_modifier_work *w)
 {
     static const float shares[3] = { 0.6f, 0.4f, -0.6f };
@@ -422,18 +405,19 @@ static void pose_trunk(const noh_stage_ragdoll_kind *shared, const noh_stage_sta
     noh_quat_rotate(back, axis, axis);
     for (int i = 0; i < 3; i++) {
         const float turn[3] = { axis[0] * shares[i], axis[1] * shares[i], axis[2] * shares[i] };
-        if (bodies[i] != NOH_NONE) turn_by(w, shared->fit.joints[bodies[i]], turn);
+        if (bodies[i] != NOH_NONE) noh_rig_rotate(w->skeleton, w->local, shared->fit.joints[bodies[i]], turn);
     }
     for (uint32_t i = 0; i < shared->parts.arm_count; i++) {
         const uint32_t upper = shared->fit.joints[shared->parts.upper_arms[i]];
         const uint32_t lower = shared->fit.joints[shared->parts.forearms[i]];
         float way[3], turn[3], at[3], unused[4];
         noh_rig_joint(w->skeleton, w->local, upper, at, unused);
-        way_of(w, upper, lower, way);
+        noh_rig_bone(w->skeleton, w->local, upper, lower, way);
+        noh_normalize3(way, at);
         const float out[3] = { at[0] > 0.0f ? 0.9f : -0.9f, 0.0f, 0.45f };
         noh_cross3(way, out, turn);
         for (int n = 0; n < 3; n++) turn[n] *= 0.7f * s->arms * s->weight;
-        turn_by(w, upper, turn);
+        noh_rig_rotate(w->skeleton, w->local, upper, turn);
     }
 }
 

@@ -68,20 +68,11 @@ static float breath_of(const noh_modifier_work *w)
 
 /* ---- arms ---- */
 
-/* The way from a joint to the next of its limb, in model space. */
-static void bone_of(const noh_modifier_work *w, uint32_t joint, uint32_t next, float bone[3])
-{
-    float at[3], unused[4];
-    noh_rig_joint(w->skeleton, w->local, joint, at, unused);
-    noh_rig_joint(w->skeleton, w->local, next, bone, unused);
-    noh_sub3(bone, at, bone);
-}
-
 static void point(const noh_modifier_work *w, uint32_t joint, uint32_t next, const float direction[3])
 {
     static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
     float bone[3], turn[4];
-    bone_of(w, joint, next, bone);
+    noh_rig_bone(w->skeleton, w->local, joint, next, bone);
     noh_quat_between(bone, direction, ahead, turn);
     noh_rig_turn(w->skeleton, w->local, joint, turn);
 }
@@ -90,7 +81,7 @@ static void lower_arm(const noh_modifier_work *w, const noh_reach_arm *arm, floa
 {
     const float upper[3] = { side * ARM_OUT, -1.0f, 0.0f }, fore[3] = { side * FORE_OUT, -1.0f, FORE_AHEAD };
     float bone[3];
-    bone_of(w, arm->upper, arm->fore, bone);
+    noh_rig_bone(w->skeleton, w->local, arm->upper, arm->fore, bone);
     if (-bone[1] >= LOWERED * noh_length3(bone)) return;
     point(w, arm->upper, arm->fore, upper);
     point(w, arm->fore, arm->hand, fore);
@@ -110,10 +101,7 @@ static void lower_arms(const noh_modifier_work *w, const noh_reach_rig *rig)
 
 static void turn_by(const noh_modifier_work *w, uint32_t joint, float x, float y, float z)
 {
-    const float turn[3] = { x, y, z };
-    float q[4];
-    noh_quat_from_rotation(turn, q);
-    noh_rig_turn(w->skeleton, w->local, joint, q);
+    noh_rig_rotate(w->skeleton, w->local, joint, (const float[3]){ x, y, z });
 }
 
 static void shift_weight(const noh_modifier_work *w, const noh_feet_rig *rig, const noh_gaze_rig *trunk)
@@ -160,9 +148,9 @@ static void stand_pose(noh_modifier_work *w)
 
 noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand, noh_error *error)
 {
-    noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
     const noh_skeleton_header *header;
     NOH_ASSERT(kind && stand);
+    noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
     memset(stand, 0, sizeof *stand);
     if (source.skeleton == NOH_NONE || !source.pack->runs[NOH_CHUNK_SKELETON].count) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "core/base/name_internal.h"
+#include "motion/pose/skeleton_internal.h"
 #include "stage/character/character_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
@@ -75,19 +76,13 @@ static uint32_t following_above(const noh_stage_kind *k, const uint16_t *map, ui
     return up;
 }
 
-static int is_below(const noh_skeleton *skeleton, uint32_t joint, uint32_t above)
-{
-    while (joint != NOH_JOINT_ROOT && joint != above) joint = skeleton->parents[joint];
-    return joint == above;
-}
-
 /* A joint follows if what it is below in the garment is above it in the wearer, too. */
 static void map_joints(const noh_stage_kind *k, const noh_stage_kind *wearer, uint16_t *map)
 {
     for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
         const uint32_t up = following_above(k, map, j);
         map[j] = find_joint(wearer, noh_pack_joint_name(k->desc->mesh, k->desc->skeleton, j));
-        if (map[j] != NOH_JOINT_ROOT && up != NOH_JOINT_ROOT && !is_below(&wearer->skeleton, map[j], map[up]))
+        if (map[j] != NOH_JOINT_ROOT && up != NOH_JOINT_ROOT && !noh_joint_is_below(&wearer->skeleton, map[j], map[up]))
             map[j] = NOH_JOINT_ROOT;
     }
 }
