@@ -246,8 +246,8 @@ typedef struct noh_kind_ragdoll {
     float mass;             /* kilograms; default (0) 70 for a height of 1.75 m, by its cube */
     const noh_world *world; /* metres; read by steps, must outlive the stage. NULL: nothing to collide with */
     float stagger_speed;    /* most speed, metres per second, that a hit may give a standing actor that keeps its feet
-                             * by steps; default (0) 0.6 of the square root of 9.82 times its leg: 1.73 for 0.85 m. Below
-                             * 0: every hit makes it fall */
+                             * by steps; default (0) 0.6 of the square root of 9.82 times its leg: 1.73 for 0.85 m.
+                             * Below 0: every hit makes it fall */
 } noh_kind_ragdoll;
 
 /* For noh_kind_desc.ragdoll.
@@ -258,8 +258,8 @@ noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
  * errors  also ARG the actor's scale is not 1, or it is attached; LIMIT `count` actors of the kind are down */
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
-/* Push an actor. The impulse over the actor's mass decides what a standing one with two legs does: it sways on its feet,
- * steps to keep them (NOH_BODY_STAGGERS; its place then moves, also over the ground of `world`), or falls as a whole
+/* Push an actor. The impulse over the actor's mass decides what a standing one with two legs does: it sways on its
+ * feet, steps to keep them (NOH_BODY_STAGGERS; its place then moves, also over the ground of `world`), or falls as a whole
  * over its feet with arms reaching for the ground and joints going limp once it has landed. One without such legs, or
  * one that gets up, falls; one that has fallen is pushed.
  * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, spread

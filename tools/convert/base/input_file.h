@@ -1,5 +1,5 @@
-/* input_file.h: a whole input file in memory, the list of all files that a conversion reads, and files that are in memory
- * from the start. */
+/* input_file.h: a whole input file in memory, the list of all files that a conversion reads, and files that are in
+ * memory from the start. */
 #ifndef NOH_CONVERT_BASE_INPUT_FILE_H
 #define NOH_CONVERT_BASE_INPUT_FILE_H
 

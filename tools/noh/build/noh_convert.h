@@ -1,4 +1,5 @@
-/* noh_convert.h: `noh build` as a library, for editors, pipelines and servers: files in memory in, one pack in memory out.
+/* noh_convert.h: `noh build` as a library, for editors, pipelines and servers: files in memory in, one pack
+ * in memory out.
  * libnohconvert is a library for tools: it needs the C++ runtime and allocates. A game links libnoh alone.
  *
  *     const noh_convert_file file = { "hero.glb", bytes, count };
@@ -58,7 +59,8 @@ typedef struct noh_convert_pack {
     char error[1024]; /* the file, what is wrong with it, and where; "" after success */
 } noh_convert_pack;
 
-/* One conversion at a time in a process: it takes the processors that it can use. It writes no file and prints nothing. */
+/* One conversion at a time in a process: it takes the processors that it can use. It writes no file and prints
+ * nothing. */
 noh_convert_result noh_convert(const noh_convert_desc *desc, noh_convert_pack *pack);
 
 /* The version of noh that packs are made by, "0.3.0". */
