@@ -40,11 +40,13 @@ extern "C" {
 #define NOH_NEVER_INLINE __attribute__((noinline))
 #define NOH_TRAP() __builtin_trap()
 #define NOH_UNUSED __attribute__((unused))
+#define NOH_COLD __attribute__((cold)) /* compiled for size, also at -O2 */
 #else
 #define NOH_ALWAYS_INLINE static inline
 #define NOH_NEVER_INLINE
 #define NOH_TRAP() ((void)(*(volatile char *)0 = 0))
 #define NOH_UNUSED
+#define NOH_COLD
 #endif
 
 /* At -O2 gcc keeps short loops over arrays of lanes in memory; unrolled they stay in registers. */
