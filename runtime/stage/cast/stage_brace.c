@@ -19,7 +19,7 @@
 #define ARM_HERTZ 6.0f
 #define HEAD_HERTZ 5.0f
 #define TRUNK_HERTZ 3.0f
-#define LEG_HERTZ 3.5f
+#define LEG_HERTZ 6.0f
 #define ELBOW 0.6f    /* radians */
 #define LEG_BEND 0.1f /* of knees, and 0.7 of it of hips; to BACK_BEND more of one that falls on its back */
 #define BACK_BEND 0.7f

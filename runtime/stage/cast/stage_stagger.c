@@ -35,6 +35,8 @@
 #define CLOSED 0.025f
 #define SLOW 0.3f        /* legs a second: then the other foot closes up */
 #define GROUND_STEP 0.4f /* ground higher or lower is no place to step on */
+#define WALL 0.45f       /* what is as high as this stops a step */
+#define CHEST 0.25f      /* from the centre of mass to a wall, at least */
 #define LEAN_RATE 6.0f
 #define CROUCH 0.04f
 #define STAGGER_SPEED 0.6f /* default: of the speed of a pendulum as long as a leg */
@@ -145,6 +147,18 @@ static int ground_at(const walk *w, const float off[2], uint32_t foot, float *he
     return *height > -most;
 }
 
+/* The part of a way from the centre of mass that ends at least `margin` before a wall. */
+static float free_part(const walk *w, const float way[2], float margin)
+{
+    const float far = length2(way);
+    const noh_ray ray = { { w->place[0] + w->middle[0], w->place[1] + WALL * w->leg, w->place[2] + w->middle[1] },
+                          { way[0] / far, 0.0f, way[1] / far },
+                          far + margin };
+    if (!w->shared->world || !(far > 0.0f)) return 1.0f;
+    const float room = noh_stage_wall_ahead(w->shared->world, w->body->origin, &ray) - margin;
+    return room >= far ? 1.0f : room > 0.0f ? room / far : 0.0f;
+}
+
 static void aim(const walk *w, uint32_t foot, float seconds, float off[2])
 {
     const noh_stage_foothold *f = &w->s->feet[foot];
@@ -163,10 +177,9 @@ static void aim(const walk *w, uint32_t foot, float seconds, float off[2])
     if (lacks > 0.0f) add2(goal, own > 0.0f ? lacks : -lacks, w->side); /* legs do not cross */
     add2(goal, -1.0f, centre);
     const float far = length2(goal), most = STRIDE * w->leg;
-    for (int i = 0; i < 2; i++) {
-        goal[i] *= far > most ? most / far : 1.0f;
-        off[i] = goal[i] + centre[i] + w->middle[i] - f->stance[2 * i];
-    }
+    for (int i = 0; i < 2; i++) goal[i] = centre[i] + goal[i] * (far > most ? most / far : 1.0f);
+    const float part = free_part(w, goal, SOLE * w->leg);
+    for (int i = 0; i < 2; i++) off[i] = part * goal[i] + w->middle[i] - f->stance[2 * i];
 }
 
 static void begin_step(const walk *w, uint32_t foot, uint32_t ticks)
@@ -261,6 +274,11 @@ static void move_centre(walk *w, float moved[3])
         const float pull = s->foot && !s->steps ? 16.0f * closes - 8.0f * s->speed[i] : -w->omega * w->omega * p[i];
         s->speed[i] += pull * PIECE;
         way[i] = s->speed[i] * PIECE;
+    }
+    const float part = free_part(w, way, CHEST * w->leg); /* a wall takes the speed */
+    for (int i = 0; i < 2; i++) {
+        s->speed[i] *= part;
+        way[i] *= part;
         w->place[2 * i] += way[i];
         moved[2 * i] += way[i];
     }
@@ -304,6 +322,21 @@ static int is_done(const walk *w)
            length2(s->feet[1].off) < CLOSED * w->leg && s->arms < 0.1f;
 }
 
+/* The place goes to where the clips have the pelvis where it is: a clip that travels would slide back to its way. */
+static void end_walk(walk *w, float moved[3])
+{
+    noh_stage_stagger *s = w->s;
+    s->ends = 1;
+    for (int i = 0; i < 2; i++) {
+        w->place[2 * i] -= s->strays[i];
+        moved[2 * i] -= s->strays[i];
+        w->middle[i] += s->strays[i];
+        s->pelvis[i] += s->strays[i];
+        for (int f = 0; f < 2; f++) s->feet[f].stance[2 * i] += s->strays[i];
+        s->strays[i] = 0.0f;
+    }
+}
+
 void noh_stage_step_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_body *b, uint32_t ticks)
 {
     noh_stage_stagger *s = &b->of.stagger;
@@ -317,7 +350,7 @@ void noh_stage_step_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
         if (s->foot && stands) stands = move_foot(&w);
         move_trunk(&w);
         lower_feet(&w);
-        s->ends |= (uint32_t)is_done(&w);
+        if (!s->ends && is_done(&w)) end_walk(&w, moved);
     }
     for (int i = 0; i < 3; i++) {
         float *at = &a->place.position[i], unused = 0.0f, *left = i == 1 ? &unused : &s->left[i / 2];
@@ -347,7 +380,7 @@ static int take_stance(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
-    float back[4];
+    float back[4], at[3], turned[4];
     memset(s, 0, sizeof *s);
     noh_quat_conjugate(frame.rotation, back);
     for (uint32_t i = 0; i < 2; i++) {
@@ -357,6 +390,8 @@ static int take_stance(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
         noh_sub3(f->stance, frame.position, f->stance);
         if (b->bodies[0][0].position[1] - frame.position[1] - f->stance[1] < 0.75f * leg_of(shared)) return 0;
     }
+    joint_of(shared, b, 0, at, turned);
+    for (int i = 0; i < 2; i++) s->pelvis[i] = at[2 * i] - frame.position[2 * i];
     s->weight = 1.0f;
     return 1;
 }
@@ -438,13 +473,31 @@ static void want_foot(const noh_stage_ragdoll_kind *shared, const noh_stage_stag
     }
 }
 
+/* How the pelvis moves, in model space: it stays where it was over the feet, and low while arms are out. */
+static void pelvis_move(const noh_stage_ragdoll_kind *shared, noh_stage_stagger *s, const noh_modifier_work *w,
+                        float by[3])
+{
+    const float unit = shared->metres * w->place.scale;
+    float at[3], back[4];
+    noh_rig_joint(w->skeleton, w->local, shared->fit.joints[0], at, back);
+    noh_quat_rotate(w->place.rotation, at, at);
+    for (int i = 0; i < 2; i++) {
+        s->strays[i] = at[2 * i] * unit - s->pelvis[i];
+        by[2 * i] = -ease(s->weight) * s->strays[i] / unit;
+    }
+    by[1] = -CROUCH * shared->legs.length * s->arms * s->weight;
+    noh_quat_conjugate(w->place.rotation, back);
+    noh_quat_rotate(back, by, by);
+}
+
 void noh_stage_run_stagger(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
-    const noh_stage_stagger *s = &b->of.stagger;
-    const float by[3] = { 0.0f, -CROUCH * shared->legs.length * s->arms * s->weight, 0.0f };
+    noh_stage_stagger *s = &b->of.stagger;
     noh_stage_leg legs[NOH_FEET_LEGS_MAX];
+    float by[3];
     if (w->joint_count <= shared->legs.last) return;
+    pelvis_move(shared, s, w, by);
     pose_trunk(shared, s, w);
     for (uint32_t i = 0; i < NOH_FEET_LEGS_MAX; i++) {
         noh_stage_read_leg(&shared->legs, w, i, &legs[i]);
@@ -458,7 +511,8 @@ const char *noh_stage_check_stagger(const noh_stage_stagger *s)
     float sum = s->to[0] + s->to[1] + s->to_height + s->left[0] + s->left[1] + s->arms + s->weight;
     for (int i = 0; i < 2; i++) {
         const noh_stage_foothold *f = &s->feet[i];
-        sum += s->speed[i] + s->lean[i] + s->lean_speed[i] + f->height + f->height_was + f->off[0] + f->off[1];
+        sum += s->speed[i] + s->lean[i] + s->lean_speed[i] + s->pelvis[i] + s->strays[i] + f->height + f->height_was +
+               f->off[0] + f->off[1];
         sum += f->from[0] + f->from[1] + noh_dot3(f->stance, f->stance) + noh_quat_dot(f->rotation, f->rotation);
     }
     return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= NOH_TICKS_PER_SECOND &&

