@@ -119,6 +119,8 @@ typedef enum noh_half_mode {
 #define NOH_CLIPS_MAX 65535u       /* clips of one set */
 #define NOH_FLOATS_MAX 4096u       /* of one set: morph weights of all nodes and named floats */
 #define NOH_MASKS_MAX 255u         /* of one set */
+#define NOH_MATCH_ROWS_MAX 65536u  /* moments of clips in a table for motion matching */
+#define NOH_MATCH_TAGS_MAX 32u     /* of such a table */
 #define NOH_CLIP_CACHE_CLIPS_MAX 4096u
 #define NOH_CLIP_CACHE_SEGMENTS_MIN 2u /* cached segments; a sample between two segments needs both */
 #define NOH_CLIP_CACHE_SEGMENTS_MAX 32768u

@@ -47,7 +47,8 @@ extern "C" {
     X(SPRINGS, springs, NOH_FOURCC('S', 'P', 'R', 'G'), 1)       \
     X(HAIR, hair, NOH_FOURCC('H', 'A', 'I', 'R'), 0)             \
     X(TERRAIN, terrain, NOH_FOURCC('T', 'E', 'R', 'R'), 0)       \
-    X(COVER, cover, NOH_FOURCC('C', 'O', 'V', 'R'), 1)
+    X(COVER, cover, NOH_FOURCC('C', 'O', 'V', 'R'), 1)           \
+    X(MATCH, match, NOH_FOURCC('M', 'T', 'C', 'H'), 0)
 
 /* NOH_CHUNK_STRINGS and so on: a place in the list. */
 #define NOH_CHUNK_TYPE(NAME, name, tag, many) NOH_CHUNK_##NAME,
@@ -623,6 +624,51 @@ typedef struct noh_pack_cover_header {
     uint32_t reserved[2];
 } noh_pack_cover_header;
 NOH_STATIC_ASSERT(sizeof(noh_pack_cover_header) == 32, pack_cover_header);
+
+/* ---- CHUNK_MATCH, none or one: header, then seven arrays. A table for motion matching (noh_match_module, modules.h;
+ * noh build --match). A row describes a moment of a clip by 27 features in the actor's own space, in model units and
+ * seconds: positions of two feet (0 to 5), their velocities (6 to 11), the velocity of the hips (12 to 14), where the
+ * actor will be on the ground after 1/3, 2/3 and 1 s (15 to 20: x, z) and where it will face then (21 to 26: sine and
+ * cosine of its heading). Feature 27 is 0.
+ *
+ * A number of a row is scale * (feature - mean), rounded, -127..127. Features from 20 on have half the scale, and count
+ * four times. Rows lie in the order of a kd tree, in groups of 8: [14 pairs of features][8 rows][2]; the last group
+ * repeats the last row. Boxes hold the least and the greatest numbers of 16, 64 and 512 rows, in groups of 8 boxes:
+ * [least, greatest][14][8][2]; boxes past the last are 127 and -127. Libraries older than this chunk refuse a pack with
+ * it. ---- */
+
+#define NOH_MATCH_FEATURES 28u    /* with the last, which is 0 */
+#define NOH_MATCH_COARSE 20u      /* features from here on have half the scale */
+#define NOH_MATCH_GROUP_BYTES (8u * NOH_MATCH_FEATURES)
+#define NOH_MATCH_LEVELS 3u /* boxes of 16, 64 and 512 rows */
+
+typedef struct noh_pack_match_header {
+    uint32_t root_axes, root_up;             /* root motion that the features assume: noh_kind_desc has the same */
+    uint32_t row_count;                      /* 1..NOH_MATCH_ROWS_MAX */
+    uint32_t row_ticks;                      /* between two rows of a clip */
+    uint32_t clip_count, clips_offset;       /* noh_pack_match_clip[] */
+    uint32_t tag_count, tags_offset;         /* noh_pack_match_tag[], at most NOH_MATCH_TAGS_MAX */
+    uint32_t numbers_offset;                 /* float[2][NOH_MATCH_FEATURES]: means, scales */
+    uint32_t order_offset;                   /* uint16_t[row_count]: each row's number by clip and time */
+    uint32_t rows_offset;                    /* int8_t[groups of 8][14][8][2] */
+    uint32_t boxes_offset[NOH_MATCH_LEVELS]; /* int8_t[groups of 8 boxes][2][14][8][2] */
+    uint32_t reserved[2];
+} noh_pack_match_header;
+
+typedef struct noh_pack_match_clip {
+    uint32_t name, name_hash;
+    uint32_t first_row, row_count; /* by number; the n-th row is at tick n * row_ticks */
+    uint32_t tags;                 /* a bit for each of the chunk's tags */
+    uint32_t reserved;
+} noh_pack_match_clip;
+
+typedef struct noh_pack_match_tag {
+    uint32_t name, name_hash;
+} noh_pack_match_tag;
+
+NOH_STATIC_ASSERT(sizeof(noh_pack_match_header) == 64, pack_match_header);
+NOH_STATIC_ASSERT(sizeof(noh_pack_match_clip) == 24, pack_match_clip);
+NOH_STATIC_ASSERT(sizeof(noh_pack_match_tag) == 8, pack_match_tag);
 
 /* ---- CHUNK_GRAPH, none or several: header, then ten arrays. An animation graph (low_motion.h) whose nodes,
  * parameters, clips and joints have names; graph.h checks it and binds it to clips and a skeleton when it is opened.

@@ -31,7 +31,8 @@ static void write_pack(const char *folder, const char *name, const test_model_de
 }
 
 /* A skeleton and a clip, from a .bvh; with a ragdoll of two bodies and a haircut, or without. */
-static void write_clip_pack(const char *folder, const char *name, const char *ragdoll, const char *hair)
+static void write_clip_pack(const char *folder, const char *name, const char *ragdoll, const char *hair,
+                            const char *match)
 {
     static const char bvh[] =
         "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation\n"
@@ -51,6 +52,10 @@ static void write_clip_pack(const char *folder, const char *name, const char *ra
     if (hair) {
         options.texts[NOH_CHUNK_HAIR] = test_path("short.hair");
         test_write_file(options.texts[NOH_CHUNK_HAIR], hair, strlen(hair));
+    }
+    if (match) {
+        options.texts[NOH_CHUNK_MATCH] = test_path("all.match");
+        test_write_file(options.texts[NOH_CHUNK_MATCH], match, strlen(match));
     }
     assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
     snprintf(path, sizeof path, "%s/%s.noh", folder, name);
@@ -316,10 +321,11 @@ static void corpus(void **state)
     for (size_t i = 0; i < TEST_COUNT(seeds); i++) {
         write_pack(folder, seeds[i].name, &seeds[i].desc);
     }
-    write_clip_pack(folder, "clip", NULL, NULL);
-    write_clip_pack(folder, "ragdoll", "a\nb forward bend -20 95 side 40 twist 30 friction 5\n", NULL);
+    write_clip_pack(folder, "clip", NULL, NULL, NULL);
+    write_clip_pack(folder, "ragdoll", "a\nb forward bend -20 95 side 40 twist 30 friction 5\n", NULL, NULL);
     write_clip_pack(folder, "hair", NULL,
-                    "skull 0 0 0  0.1 0.12 0.1\naround 3\nrows 2\npoints 3\nstrips 20\nsegments 4\n");
+                    "skull 0 0 0  0.1 0.12 0.1\naround 3\nrows 2\npoints 3\nstrips 20\nsegments 4\n", NULL);
+    write_clip_pack(folder, "match", NULL, NULL, "rows 60\nfeet b a\nclip *\nclip clip low\n");
     write_springs(folder);
     write_weights(folder);
     write_blocks(folder);

@@ -6,6 +6,7 @@
 #include "deform/morph/morph_internal.h"
 #include "motion/graph/graph_internal.h"
 #include "motion/graph/graph_pack_internal.h"
+#include "motion/match/match_internal.h"
 #include "stage/cast/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -372,6 +373,24 @@ static void walk_terrain(walk *w)
     }
 }
 
+/* Search the table of motion matching, down its tree and through all rows. */
+static void walk_match(walk *w)
+{
+    noh_match_table table;
+    if (!noh_match_table_of(w->pack, &table)) return;
+    for (uint32_t i = 0; i < table.header->tag_count; i++) eat_name(w, noh_pack_string(w->pack, table.tags[i].name));
+    for (uint32_t i = 0; i < 16u; i++) {
+        noh_match_hit hit = { INT32_MAX, NOH_NONE, 0 }, all = hit;
+        int16_t query[NOH_MATCH_FEATURES];
+        for (uint32_t k = 0; k < NOH_MATCH_FEATURES; k++) query[k] = noh_match_number(&table, k, weight(w) * 100.0f);
+        noh_match_search(&table, query, i % 3u, &hit);
+        noh_match_search_all(&table, query, i % 3u, &all);
+        if (hit.row != all.row || hit.cost != all.cost) abort();
+        if (hit.row != NOH_NONE)
+            eat_name(w, noh_pack_string(w->pack, table.clips[noh_match_clip_of(&table, hit.row)].name));
+    }
+}
+
 /* Play every clip for a while, in every loop mode, forwards and backwards, at random times. */
 static void walk_clip(walk *w, noh_clip_bank *set, noh_controller *c, noh_pose_scratch *scratch, uint32_t clip)
 {
@@ -567,6 +586,7 @@ uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
     walk_springs(&w);
     walk_meshes(&w);
     walk_terrain(&w);
+    walk_match(&w);
     walk_clips(&w);
     return w.hash;
 }

@@ -35,6 +35,14 @@
  *                               most: exact in 32 bits, then rounded once
  *   store_i16                   rounded, halves up; |v| below 32768
  *
+ * For searches, noh_h8 of eight int16 and noh_i4 of four int32; no operation may overflow:
+ *   noh_h8_load_i8              sixteen int8, widened, as two vectors
+ *   noh_h8_pair                 the same two int16, the first in the low half of the word, four times
+ *   noh_h8_sub, noh_h8_max
+ *   noh_i4_add_squares          sum + x * x + y * y of the four pairs (x, y)
+ *   noh_i4_add_four_times       a + 4 * b
+ *   noh_i4_any_at_most, noh_i4_zero, noh_i4_store
+ *
  * Define NOH_SIMD_SCALAR before the first include of this file for plain C: what vectors are compared with.
  * Threads: no state; any thread. */
 #ifndef NOH_BASE_SIMD_INTERNAL_H
@@ -502,6 +510,98 @@ NOH_UNUSED static inline void noh_v4_store_i16(int16_t *to, noh_v4 v)
     }
 }
 
+#endif
+
+/* ---- whole numbers, for searches ---- */
+
+#if defined(NOH_SIMD_SSE2)
+typedef __m128i noh_h8;
+typedef __m128i noh_i4;
+NOH_UNUSED static inline void noh_h8_load_i8(const int8_t *from, noh_h8 out[2])
+{
+    const __m128i v = _mm_loadu_si128((const __m128i *)(const void *)from);
+    out[0] = _mm_srai_epi16(_mm_unpacklo_epi8(v, v), 8);
+    out[1] = _mm_srai_epi16(_mm_unpackhi_epi8(v, v), 8);
+}
+NOH_UNUSED static inline noh_h8 noh_h8_pair(int32_t pair) { return _mm_set1_epi32(pair); }
+NOH_UNUSED static inline noh_h8 noh_h8_sub(noh_h8 a, noh_h8 b) { return _mm_sub_epi16(a, b); }
+NOH_UNUSED static inline noh_h8 noh_h8_max(noh_h8 a, noh_h8 b) { return _mm_max_epi16(a, b); }
+NOH_UNUSED static inline noh_i4 noh_i4_zero(void) { return _mm_setzero_si128(); }
+NOH_UNUSED static inline noh_i4 noh_i4_add_squares(noh_i4 sum, noh_h8 d) { return _mm_add_epi32(sum, _mm_madd_epi16(d, d)); }
+NOH_UNUSED static inline noh_i4 noh_i4_add_four_times(noh_i4 a, noh_i4 b) { return _mm_add_epi32(a, _mm_slli_epi32(b, 2)); }
+NOH_UNUSED static inline int noh_i4_any_at_most(noh_i4 a, int32_t limit)
+{
+    return _mm_movemask_epi8(_mm_cmpgt_epi32(a, _mm_set1_epi32(limit))) != 0xffff;
+}
+NOH_UNUSED static inline void noh_i4_store(int32_t *to, noh_i4 v) { _mm_storeu_si128((__m128i *)(void *)to, v); }
+#elif defined(NOH_SIMD_NEON)
+typedef int16x8_t noh_h8;
+typedef int32x4_t noh_i4;
+NOH_UNUSED static inline void noh_h8_load_i8(const int8_t *from, noh_h8 out[2])
+{
+    const int8x16_t v = vld1q_s8(from);
+    out[0] = vmovl_s8(vget_low_s8(v));
+    out[1] = vmovl_s8(vget_high_s8(v));
+}
+NOH_UNUSED static inline noh_h8 noh_h8_pair(int32_t pair) { return vreinterpretq_s16_s32(vdupq_n_s32(pair)); }
+NOH_UNUSED static inline noh_h8 noh_h8_sub(noh_h8 a, noh_h8 b) { return vsubq_s16(a, b); }
+NOH_UNUSED static inline noh_h8 noh_h8_max(noh_h8 a, noh_h8 b) { return vmaxq_s16(a, b); }
+NOH_UNUSED static inline noh_i4 noh_i4_zero(void) { return vdupq_n_s32(0); }
+NOH_UNUSED static inline noh_i4 noh_i4_add_squares(noh_i4 sum, noh_h8 d)
+{
+    const int32x4_t low = vmull_s16(vget_low_s16(d), vget_low_s16(d));
+    return vaddq_s32(sum, vpaddq_s32(low, vmull_s16(vget_high_s16(d), vget_high_s16(d))));
+}
+NOH_UNUSED static inline noh_i4 noh_i4_add_four_times(noh_i4 a, noh_i4 b) { return vaddq_s32(a, vshlq_n_s32(b, 2)); }
+NOH_UNUSED static inline int noh_i4_any_at_most(noh_i4 a, int32_t limit) { return vminvq_s32(a) <= limit; }
+NOH_UNUSED static inline void noh_i4_store(int32_t *to, noh_i4 v) { vst1q_s32(to, v); }
+#else
+typedef struct noh_h8 {
+    int16_t s[8];
+} noh_h8;
+typedef struct noh_i4 {
+    int32_t i[4];
+} noh_i4;
+NOH_UNUSED static inline void noh_h8_load_i8(const int8_t *from, noh_h8 out[2])
+{
+    for (int i = 0; i < 16; i++) out[i / 8].s[i % 8] = from[i];
+}
+NOH_UNUSED static inline noh_h8 noh_h8_pair(int32_t pair)
+{
+    noh_h8 r;
+    for (int i = 0; i < 8; i++) r.s[i] = (int16_t)((uint32_t)pair >> (i % 2 ? 16 : 0) & 0xffffu);
+    return r;
+}
+NOH_UNUSED static inline noh_h8 noh_h8_sub(noh_h8 a, noh_h8 b)
+{
+    for (int i = 0; i < 8; i++) a.s[i] = (int16_t)(a.s[i] - b.s[i]);
+    return a;
+}
+NOH_UNUSED static inline noh_h8 noh_h8_max(noh_h8 a, noh_h8 b)
+{
+    for (int i = 0; i < 8; i++) a.s[i] = a.s[i] > b.s[i] ? a.s[i] : b.s[i];
+    return a;
+}
+NOH_UNUSED static inline noh_i4 noh_i4_zero(void)
+{
+    const noh_i4 r = { { 0, 0, 0, 0 } };
+    return r;
+}
+NOH_UNUSED static inline noh_i4 noh_i4_add_squares(noh_i4 sum, noh_h8 d)
+{
+    for (int i = 0; i < 4; i++) sum.i[i] += d.s[2 * i] * d.s[2 * i] + d.s[2 * i + 1] * d.s[2 * i + 1];
+    return sum;
+}
+NOH_UNUSED static inline noh_i4 noh_i4_add_four_times(noh_i4 a, noh_i4 b)
+{
+    for (int i = 0; i < 4; i++) a.i[i] += 4 * b.i[i];
+    return a;
+}
+NOH_UNUSED static inline int noh_i4_any_at_most(noh_i4 a, int32_t limit)
+{
+    return a.i[0] <= limit || a.i[1] <= limit || a.i[2] <= limit || a.i[3] <= limit;
+}
+NOH_UNUSED static inline void noh_i4_store(int32_t *to, noh_i4 v) { memcpy(to, v.i, sizeof v.i); }
 #endif
 /* clang-format on */
 

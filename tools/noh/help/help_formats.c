@@ -175,6 +175,17 @@ const char *const help_formats_text[] = {
     "   LeftUpLeg forward bend -20 95 side 40 twist 30 friction 5",
     "   LeftLeg hinge backward bend 0 140 friction 5",
     "   LeftFoot upward bend -35 20 side 15 twist 10 friction 2",
+    "# motion matching (noh build --match FILE)",
+    "Which clips an actor may play at any moment to go where the game wants (noh/modules.h). Their root moves on x and z and turns about y. "
+    "One statement per line; # begins a comment:",
+    "   clip NAME [TAG ...]                         a clip of this pack; '*' at the end matches any ending. A game may ask for tags",
+    "   feet LEFT RIGHT                             two joints; default: by the names of bones",
+    "   rows N                                      moments a second, 2 to 60 (12); each takes about 35 bytes",
+    "Capture starts, stops, and turns by 45, 90 and 180 degrees to both sides at each speed: five minutes or more. A clip that is no loop "
+    "ends a third of a second early, since nothing follows its end.",
+    "   rows 12",
+    "   clip walk*",
+    "   clip crouch* crouched",
     "# haircuts (noh build --hair FILE)",
     "Simulated hair: control hairs that grow from a skull, and strips between them. One setting per line, lengths in metres, angles in "
     "degrees, in model space in the bind pose; # begins a comment. Only skull is required:",

@@ -6,6 +6,7 @@
 #include "info_graph.h"
 #include "info_hair.h"
 #include "info_joints.h"
+#include "info_match.h"
 #include "info_materials.h"
 #include "info_terrain.h"
 #include "info_transfer.h"
@@ -207,6 +208,7 @@ static int print_info(const pack_file *file)
     }
     info_print_hair(p);
     info_print_terrain(p);
+    info_print_match(p);
     for (uint32_t i = 0; i < p->runs[NOH_CHUNK_GRAPH].count && !status; i++) {
         status = info_print_graph(file, i);
     }
