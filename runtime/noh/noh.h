@@ -163,8 +163,8 @@ typedef struct noh_kind_desc {
     uint32_t skeleton;    /* in `mesh`; default 0; NOH_NONE: only rigid meshes. Meshes skinned to another skeleton are
                            * ignored */
     uint32_t actor_count; /* most actors of this kind at one time; required */
-    uint32_t visible_max; /* most actors drawn per frame; the farthest are culled (noh_stage_stats.left_out). Sizes
-                           * slots and palettes. Default (0) actor_count */
+    uint32_t visible_max; /* most actors drawn per frame; the farthest are culled (noh_stage_stats.left_out), with what
+                           * they wear and carry. Sizes slots and palettes. Default (0) actor_count */
     uint32_t near_count;  /* most actors at the finest level at once */
     uint32_t
         middle_count; /* most at the next level. Both 0: 16, or more for actors spread evenly over 100 m; a bound may

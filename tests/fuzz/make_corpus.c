@@ -201,6 +201,45 @@ static void write_terrain(const char *in)
     buffer_free(&out);
 }
 
+/* A sleeve around a tube that was written before, and what it hides of the tube's levels. */
+static void write_cover(const char *in, const char *wearer)
+{
+    const char *input = test_path("sleeve.obj");
+    FILE *sleeve = fopen(input, "w");
+    char path[4096], worn[4096];
+    convert_options options;
+    convert_failure failure;
+    byte_buffer out = { NULL, 0, 0, 0 };
+    noh_file file;
+    noh_error error;
+    noh_pack pack;
+    noh_mesh mesh;
+    assert_non_null(sleeve);
+    snprintf(worn, sizeof worn, "%s/%s.noh", in, wearer);
+    assert_int_equal(noh_file_map(worn, &file, &error), NOH_OK);
+    pack = test_open(file.data, file.bytes);
+    mesh = test_mesh(&pack, 0);
+    for (uint32_t i = 0; i < mesh.header->vertex_count; i++) {
+        noh_vertex v;
+        noh_mesh_vertex(&mesh, i, &v);
+        for (int k = 0; k < 3; k++) v.position[k] += 0.01f * v.normal[k];
+        fprintf(sleeve, "v %f %f %f\n", v.position[0], v.position[1], v.position[2]);
+    }
+    for (uint32_t i = 0; i + 2u < mesh.header->index_count; i += 3)
+        fprintf(sleeve, "f %u %u %u\n", 1u + noh_mesh_index(&mesh, i), 1u + noh_mesh_index(&mesh, i + 1u),
+                1u + noh_mesh_index(&mesh, i + 2u));
+    fclose(sleeve);
+    noh_file_unmap(&file);
+    memset(&options, 0, sizeof options);
+    options.texts[NOH_CHUNK_COVER] = worn;
+    assert_int_equal(convert_files(&input, 1, &options, &out, &failure), 0);
+    pack = test_open(out.bytes, out.count);
+    assert_int_equal(pack.runs[NOH_CHUNK_COVER].count, 1);
+    snprintf(path, sizeof path, "%s/cover.noh", in);
+    test_write_file(path, out.bytes, out.count);
+    buffer_free(&out);
+}
+
 static const char *folder, *clip_folder, *wire_folder;
 
 /* Encode a clip, take it, and write its bytes. */
@@ -338,6 +377,7 @@ static void corpus(void **state)
     write_levels(folder, "levels_all_touched", lod_face_model(&all_touched), 0);
     write_levels(folder, "levels_skin", lod_tube_model(&tube), 0);
     write_levels(folder, "levels_split", lod_tube_model(&tube), 6);
+    write_cover(folder, "levels_skin");
 }
 
 int main(int argument_count, char **arguments)

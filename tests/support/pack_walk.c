@@ -552,6 +552,15 @@ static void walk_set(walk *w, uint32_t skeleton)
     free(block);
 }
 
+static void walk_covers(walk *w)
+{
+    for (uint32_t i = 0; i < w->pack->runs[NOH_CHUNK_COVER].count; i++) {
+        const noh_pack_cover_header *h = noh_pack_chunk_at(w->pack, NOH_CHUNK_COVER, i);
+        eat_name(w, noh_pack_string(w->pack, h->mesh));
+        eat(w, (const uint8_t *)h + h->bits_offset, (h->triangle_count + 31u) / 32u * sizeof(uint32_t));
+    }
+}
+
 static void walk_clips(walk *w)
 {
     noh_pack_clip clip;
@@ -587,6 +596,7 @@ uint32_t pack_walk(const noh_pack *pack, uint32_t seed)
     walk_meshes(&w);
     walk_terrain(&w);
     walk_match(&w);
+    walk_covers(&w);
     walk_clips(&w);
     return w.hash;
 }

@@ -135,10 +135,9 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     const noh_module_type *type = k->modules[NOH_SLOT_SOURCE].type;
     noh_clip_set set = p->set;
     noh_stage_sampler sampler;
-    const int worn = noh_stage_wearer_of(s, &k->actors[i], NULL) != NULL;
     if (type) type->source->sample(s, job, k, i, ahead, 0, &set, &sampler);
     noh_character_update_begin(ch, &set, &p->scratch); /* local poses, blended */
-    if (worn) noh_stage_wear_pose(s, job, k, i, p->scratch.local);
+    noh_stage_wear_pose(s, job, k, i, p->scratch.local);
     if (k->modifier_bytes) {
         noh_modifier_work w;
         noh_stage_begin_modifiers(s, job, k, i, clock, &p->scratch, &w);
@@ -147,7 +146,7 @@ static void pose(const noh_stage *s, const noh_stage_job_part *job, poser *p, ui
     if (s->shown[k->first_actor + i].worn)
         memcpy(job->wearer, p->scratch.local, k->skeleton.joint_count * sizeof *job->wearer);
     noh_character_update_end(ch, &k->skeleton, k->skeleton.joint_count ? k->joint_radii : NULL, &p->scratch);
-    if (worn) noh_stage_wear_palette(s, k, i);
+    noh_stage_wear_palette(s, k, i);
 }
 
 /* Write weights of targets and palettes, blended from the two latest poses if the actor updates below frame rate. */
@@ -161,7 +160,7 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
         return; /* over budget: not shown yet */
     }
     noh_stage_take_floats(k, i);
-    if (noh_stage_wearer_of(s, a, NULL)) noh_stage_wear_floats(s, k, i);
+    noh_stage_wear_floats(s, k, i);
     if (!a->parent && noh_stage_turns(k)) noh_stage_own_matrix(s, k, a, shown->world);
     if (!a->parent && shown->updates) noh_stage_measure_shown(s, k, i, job->matrices);
     take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);

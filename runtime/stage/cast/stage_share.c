@@ -61,6 +61,17 @@ static void take_slot(noh_stage *s, noh_stage_kind *k, uint32_t i)
     noh_lod_set_limit(d, shown->slot.level);
 }
 
+/* What is worn by an actor that is left out, or attached to it, is left out with it. */
+static void leave_out_attached(noh_stage *s)
+{
+    for (uint32_t i = 0; i < s->actor_count; i++) {
+        const noh_stage_actor *on = &s->actors[i];
+        while (s->shown[i].views && (on = noh_stage_parent_of(s, on, NULL)) != NULL) {
+            if (s->shown[on - s->actors].slot.left_out) leave_out(s, &s->shown[i], i);
+        }
+    }
+}
+
 /* ---- order ---- */
 
 uint32_t noh_stage_influence_levels(const noh_stage_kind *k)
@@ -283,10 +294,12 @@ void noh_stage_share(noh_stage *s)
         noh_stage_kind *k = &s->kinds[i];
         ask(s, k);
         for (uint32_t a = 0; a < k->desc->actor_count; a++) {
+            s->shown[k->first_actor + a].slot.left_out = 0;
             if (s->shown[k->first_actor + a].views) take_slot(s, k, a);
         }
-        put_in_order(s, k);
     }
+    leave_out_attached(s);
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) put_in_order(s, &s->kinds[i]);
     count_levels(s);
     choose_updates(s);
     decode(s);

@@ -217,7 +217,7 @@ void noh_stage_wear_pose(const noh_stage *s, const noh_stage_job_part *job, cons
     noh_stage_kind *wearer = NULL;
     const noh_transform *on = job->wearer;
     const uint16_t *map, *parents;
-    (void)noh_stage_wearer_of(s, &k->actors[index], &wearer);
+    if (!noh_stage_wearer_of(s, &k->actors[index], &wearer)) return;
     map = map_of(s, k, wearer);
     parents = wearer->skeleton.parents;
     for (uint32_t j = 0; j < k->skeleton.joint_count; j++) {
@@ -239,6 +239,7 @@ void noh_stage_wear_palette(const noh_stage *s, const noh_stage_kind *k, uint32_
 {
     noh_stage_kind *wearer = NULL;
     const noh_stage_actor *on = noh_stage_wearer_of(s, &k->actors[index], &wearer);
+    if (!on) return;
     noh_character_follow(noh_stage_character(k, index), noh_stage_character(wearer, noh_stage_index(wearer, on)),
                          map_of(s, k, wearer), s->shown[k->first_actor + index].due == NOH_DUE_AT_ONCE);
 }
@@ -256,9 +257,12 @@ void noh_stage_wear_floats(const noh_stage *s, const noh_stage_kind *k, uint32_t
 {
     noh_stage_kind *wearer = NULL;
     const noh_stage_actor *on = noh_stage_wearer_of(s, &k->actors[index], &wearer);
-    const float *from = wearer->floats + (size_t)noh_stage_index(wearer, on) * wearer->float_count;
     float *floats = k->floats + (size_t)index * k->float_count;
-    const uint16_t *map = map_of(s, k, wearer) + k->skeleton.joint_count;
+    const float *from;
+    const uint16_t *map;
+    if (!on) return;
+    from = wearer->floats + (size_t)noh_stage_index(wearer, on) * wearer->float_count;
+    map = map_of(s, k, wearer) + k->skeleton.joint_count;
     for (uint32_t f = 0; f < k->float_count; f++) {
         if (map[f] != NOH_JOINT_ROOT && !is_held(k, index, k->named.name_hashes[f])) floats[f] = from[map[f]];
     }

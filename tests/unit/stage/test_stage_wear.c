@@ -242,6 +242,37 @@ static void it_is_taken_off(void **state)
     wardrobe_close(&c);
 }
 
+/* More are in view than may be drawn: coats are drawn on those that are. */
+static void coats_of_left_out_wearers_are_left_out(void **state)
+{
+    (void)state;
+    for (uint32_t worn = 0; worn < 2; worn++) { /* or held in a hand */
+        noh_actor bodies[ACTORS], coats[ACTORS];
+        uint32_t coats_seen = 0;
+        cast c;
+        wardrobe_open(&c, 1);
+        cast_close_stage(&c);
+        c.kinds[BODIES].visible_max = 2;
+        cast_make(&c, NULL);
+        enter(&c, bodies, coats);
+        for (uint32_t i = 0; i < ACTORS; i++) {
+            if (worn) wear(&c, coats[i], bodies[i]);
+            if (!worn) assert_int_equal(noh_actor_attach(c.stage, coats[i], bodies[i], 0, &said), NOH_OK);
+        }
+        for (uint32_t f = 0; f < 60; f++) frame(&c, f, 8.0f, 1.0f);
+        assert_int_equal(noh_stage_stats_of(c.stage)->left_out, ACTORS - 2u);
+        for (uint32_t i = 0; i < ACTORS; i++) {
+            const noh_stage_shown *shown = c.stage->shown;
+            const uint32_t body = bodies[i].id & 0xffffu, coat = coats[i].id & 0xffffu;
+            assert_int_equal(shown[coat].views, shown[body].views);
+            coats_seen += shown[coat].views != 0;
+        }
+        assert_int_equal(coats_seen, 2);
+        assert_int_equal(noh_stage_stats_of(c.stage)->seen, 4);
+        wardrobe_close(&c);
+    }
+}
+
 static void what_does_not_fit_is_refused(void **state)
 {
     noh_actor bodies[ACTORS], coats[ACTORS];
@@ -332,10 +363,15 @@ static void lies_about_what_it_hides_are_refused(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_coat_follows_its_wearer), cmocka_unit_test(its_own_joints_swing),
-        cmocka_unit_test(joints_may_be_missing),     cmocka_unit_test(bits_are_the_same),
-        cmocka_unit_test(it_is_taken_off),           cmocka_unit_test(what_does_not_fit_is_refused),
-        cmocka_unit_test(meshes_are_off_and_on),     cmocka_unit_test(lies_about_what_it_hides_are_refused),
+        cmocka_unit_test(a_coat_follows_its_wearer),
+        cmocka_unit_test(its_own_joints_swing),
+        cmocka_unit_test(joints_may_be_missing),
+        cmocka_unit_test(bits_are_the_same),
+        cmocka_unit_test(it_is_taken_off),
+        cmocka_unit_test(what_does_not_fit_is_refused),
+        cmocka_unit_test(coats_of_left_out_wearers_are_left_out),
+        cmocka_unit_test(meshes_are_off_and_on),
+        cmocka_unit_test(lies_about_what_it_hides_are_refused),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
