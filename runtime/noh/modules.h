@@ -382,6 +382,60 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
  * pack has none. */
 noh_module noh_springs_module(void);
 
+/* ======== motion matching ========
+ * Actors that go where the game wants by whatever moment of their clips goes there, without a graph.
+ *
+ *   noh_match_module   for noh_kind_desc.match: a kind whose packs have a table (noh build --match)
+ *   noh_actor_match    how an actor is to move from now on
+ *
+ *   kind.match = noh_match_module(&match), kind.inertia = 1;
+ *   kind.root_axes = NOH_ROOT_GROUND, kind.root_up = 1;
+ *   noh_match_goal goal = { .velocity = { 0, 0, 1.2f } };
+ *   noh_actor_match(stage, actor, &goal, &error);
+ *
+ * A row of the table describes a moment of a clip: where feet and hips are and how they move, and where the actor will
+ * be and face within a second. While an actor has a goal, every search_ticks the stage compares all rows with what
+ * plays and with the path to the goal. If another moment fits better by `bias`, it plays from there, and the difference
+ * between the poses decays as in NOH_PLAY_INERTIA. Root motion of the clips moves the actor; the goal does not.
+ * A search reads about a hundredth of the table. It finds the row that comparing all of them finds, on every processor.
+ *
+ * The game may play on other layers, and on the same layer once the actor has no goal. Ragdolls and attached actors do
+ * not search. In a step the stage searches at most once for each actor.
+ *
+ * Memory: 48 bytes for each actor, part of the stage's state; 2 bytes for each row, and the table in the pack: 35 bytes
+ * for each row, 420 for a second of clips at 12 rows a second.
+ * source   Clavet, Motion Matching and The Road to Next-Gen Animation, GDC 2016
+ * Threads: the stage's, outside of steps and frames */
+
+typedef struct noh_kind_match {
+    uint32_t layer;        /* that clips play on; default (0) the first */
+    uint32_t search_ticks; /* between searches; default (0) 4,800: a tenth of a second */
+    uint32_t blend_ticks;  /* how long a difference between poses decays; default (0) 14,400 */
+    float response_s;      /* time in which half of the way to another velocity or facing is gone, 0.02..10 s; default
+                            * (0) 0.27. Shorter: the actor answers sooner, with more abrupt clips */
+    float bias;            /* how much better another moment must be, in squared standard deviations of features,
+                            * 0.01..1000; default (0) 1 */
+    float steer; /* turns that clips make may be this share faster or slower, to face the goal, 0..1; default (0) 0.5;
+                  * below 0: none */
+} noh_kind_match;
+
+typedef struct noh_match_goal {
+    float velocity[3]; /* in the world, units a second, up to 1e6; y is not used */
+    float facing[3];   /* direction in the world of the model's z axis, of any length; y is not used. Default (0) where
+                        * it goes, or where it faces while the velocity is 0 */
+    const char *tags;  /* names of the table's tags, separated by blanks: clips that have all of them play. Default
+                        * (NULL) all clips. Read by the call */
+} noh_match_goal;
+
+/* match  may be NULL: all defaults. Must outlive the stage */
+noh_module noh_match_module(const noh_kind_match *match);
+
+/* Set how an actor is to move. The first goal starts a clip at the next step, whatever plays on the layer.
+ * goal    NULL: none; the clip that plays goes on
+ * errors  ARG the kind has no match module, a number of the goal is out of range; NOT_FOUND the actor is gone, or the
+ *         table has no such tag (where: its byte in `tags`) */
+noh_result noh_actor_match(noh_stage *stage, noh_actor actor, const noh_match_goal *goal, noh_error *error);
+
 /* ======== faces of actors ========
  * Faces of actors: blinking, gaze, emotions, breathing, and small idle motion.
  *

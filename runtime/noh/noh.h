@@ -137,7 +137,7 @@ struct noh_modifier;
 struct noh_module_type;
 
 /* What actors of a kind can do beyond layers of clips. A function of the module makes it: noh_graph_module,
- * noh_face_module, noh_ragdoll_module, noh_springs_module. A program that calls none of these links none of their
+ * noh_face_module, noh_ragdoll_module, noh_springs_module, noh_match_module. A program that calls none of these links none of their
  * code. All zeros: none. */
 typedef struct noh_module {
     const struct noh_module_type *type; /* private, as `desc` */
@@ -180,6 +180,7 @@ typedef struct noh_kind_desc {
     noh_module face;    /* noh_face_module (modules.h): live faces */
     noh_module ragdoll; /* noh_ragdoll_module (modules.h): ragdolls */
     noh_module springs; /* noh_springs_module (modules.h): the springs of the mesh's pack */
+    noh_module match;   /* noh_match_module (modules.h): motion matching */
     /* Modifiers of poses (modules.h), in the order in which they run; default (NULL) none, at no cost */
     const struct noh_modifier *modifiers; /* [modifier_count] what they point to must outlive the stage */
     uint32_t modifier_count;              /* 0..NOH_MODIFIERS_MAX */

@@ -79,6 +79,14 @@ else
     expect 1 'a pack without a graph is refused'
     check 'by name' grep -q 'graphs of a kind' "$work/err"
 
+    run stick "$build/demo/puppet_levels.noh" "$build/demo/roam.noh" -o stick
+    expect 0 'stick goes where the stick points'
+    check 'as fast as it is pushed' sh -c 'test "$(sed -n "s/.*goes //p" "$1" | tr "\n" ";")" = "0.9;0.9;0.9;0.0;"' - "$work/out"
+    check 'and its pictures show it' differ "$work/stick0.png" "$work/stick1.png"
+    run stick "$build/demo/puppet_levels.noh" "$build/demo/puppet_levels.noh"
+    expect 1 'clips without a table are refused'
+    check 'and it says what to do' grep -q 'noh build --match' "$work/err"
+
     run dressing "$build/demo/puppet_levels.noh" "$build/demo/coat.noh" mask -o room
     expect 0 'dressing puts a coat on and off, in the bytes that were planned'
     for i in 0 1 2; do

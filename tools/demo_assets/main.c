@@ -3,6 +3,7 @@
  * demo_assets --puppet OUT.glb: the same mask, worn by an animated puppet.
  * demo_assets --coat OUT.glb: a coat for the puppet.
  * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
+ * demo_assets --roam OUT.glb: the same skeleton, with clips that walk wherever a stick points.
  * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning.
  * demo_assets --festival OUT: a festival's square, as OUT.obj and OUT.mtl. */
 #include "festival/festival.h"
@@ -67,7 +68,7 @@ static int make_puppet(const char *path)
     return good;
 }
 
-/* What belongs to the puppet: clips that get up, or a coat. */
+/* What belongs to the puppet: clips, or a coat. */
 static int make_part(const char *path, PuppetCensus (*write)(Buffer *file))
 {
     Buffer file = { 0 };
@@ -129,6 +130,9 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--get-up")) {
         return make_part(argv[2], get_up_write) ? 0 : 1;
     }
+    if (argc == 3 && !strcmp(argv[1], "--roam")) {
+        return make_part(argv[2], roam_write) ? 0 : 1;
+    }
     if (argc == 3 && !strcmp(argv[1], "--coat")) {
         return make_part(argv[2], coat_write) ? 0 : 1;
     }
@@ -139,6 +143,6 @@ int main(int argc, char **argv)
         return make_festival(argv[2]) ? 0 : 1;
     }
     fprintf(stderr,
-            "usage: demo_assets [--nell|--puppet|--coat|--get-up|--arm] OUT.glb, or demo_assets --festival OUT\n");
+            "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--arm] OUT.glb, or demo_assets --festival OUT\n");
     return 2;
 }

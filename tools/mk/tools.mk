@@ -164,6 +164,14 @@ $(BUILD)/demo/get_up.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --get-up $@
 
+# For motion matching.
+$(BUILD)/demo/roam.glb: $(BUILD)/demo_assets
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --roam $@
+ROAM_MATCH := tools/demo_assets/puppet/roam.match
+$(BUILD)/demo/roam.noh: $(BUILD)/demo/roam.glb $(ROAM_MATCH) $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --match $(ROAM_MATCH) --quiet
+
 $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --arm $@

@@ -1,6 +1,6 @@
 /* module_internal.h: what a stage asks of its modules.
  *
- * A module is what actors of a kind can do beyond layers of clips: animation graphs, faces, ragdolls, springs. It is a
+ * A module is what actors of a kind can do beyond layers of clips: animation graphs, faces, ragdolls, springs, motion matching. It is a
  * constant table of functions in files of its own, which noh_kind_desc names. The stage finds it through the slots of a
  * kind alone, so that a program which names no module links none of its code. A function that a module has no use for
  * is NULL.
@@ -8,7 +8,7 @@
  *   desc     is_there, bad, hash, measure: of a noh_kind_desc with its defaults filled in
  *   init     once the kind has its meshes, floats, layers and bounds
  *   actors   spawn, shift, check
- *   a step   step_actor, root, carries; step, after all actors of the kind
+ *   a step   step_actor, root, carries, steer; step, after all actors of the kind
  *   a frame  controller, sample; modify, in the order of the slots; turn
  *   names    name_count, name */
 #ifndef NOH_STAGE_MODULE_INTERNAL_H
@@ -39,6 +39,7 @@ typedef enum noh_module_slot {
     NOH_SLOT_MODIFIERS, /* noh_kind_desc.modifiers */
     NOH_SLOT_BODY,
     NOH_SLOT_SPRINGS,
+    NOH_SLOT_MATCH,
     NOH_SLOT_COUNT
 } noh_module_slot;
 
@@ -98,6 +99,8 @@ typedef struct noh_module_type {
     noh_result (*check)(const struct noh_stage_kind *k, const void *state, noh_error *error);
     const char *(*check_pool)(const struct noh_stage_kind *k, const void *pool);
 
+    /* Of an actor, once its clips have moved on and moved it. */
+    void (*steer)(noh_stage *s, struct noh_stage_kind *k, uint32_t index, uint32_t ticks);
     void (*step)(struct noh_stage_kind *k, uint32_t ticks);
     int (*carries)(const struct noh_stage_kind *k, uint32_t index); /* 1: it moves the actor's place, clips do not */
     /* With noh_stage_module.turns: how it turns the model within its place. Points rotate, then move by `at`. */

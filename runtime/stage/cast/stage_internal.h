@@ -26,7 +26,7 @@
  *   view.c           cameras
  *
  * None of these names a module: stage_graph*.c, stage_face*.c and stage_person.c, stage_ragdoll.c, stage_get_up.c and
- * fall.c, springs.c; nor stage_feet.c and stage_gaze.c (tests/check_modules.sh).
+ * fall.c, springs.c, stage_match.c; nor stage_feet.c and stage_gaze.c (tests/check_modules.sh).
  *
  * The block has three parts. The state comes first: all that time or the game changes, without pointers. What is
  * derived from desc and packs follows, then what a frame writes for its own use. */

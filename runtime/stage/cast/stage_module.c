@@ -7,7 +7,8 @@
 #include "noh/noh.h"
 
 /* States of an actor lie in this order, after a head: as they always have, so that their hashes stay. */
-static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_MODIFIERS, NOH_SLOT_SPRINGS };
+static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_MODIFIERS, NOH_SLOT_SPRINGS,
+                                     NOH_SLOT_MATCH };
 
 /* ---- of a desc ---- */
 
@@ -19,6 +20,7 @@ noh_module noh_stage_wanted(const noh_kind_desc *d, uint32_t slot)
     case NOH_SLOT_FACE: return d->face;
     case NOH_SLOT_MODIFIERS: return d->modifier_count ? modifiers : none;
     case NOH_SLOT_BODY: return d->ragdoll;
+    case NOH_SLOT_MATCH: return d->match;
     default: return d->springs;
     }
 }
@@ -34,6 +36,7 @@ void noh_stage_fill_modules(noh_kind_desc *d)
     fill(&d->face, d);
     fill(&d->ragdoll, d);
     fill(&d->springs, d);
+    fill(&d->match, d);
 }
 
 const char *noh_stage_bad_modules(const noh_kind_desc *d)
@@ -42,7 +45,7 @@ const char *noh_stage_bad_modules(const noh_kind_desc *d)
     for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && !what; slot++) {
         const noh_module m = noh_stage_wanted(d, slot);
         if (!m.type) continue;
-        if (m.type->slot != slot) return "graphs, face, ragdoll or springs of a kind holds the module of another field";
+        if (m.type->slot != slot) return "graphs, face, ragdoll, springs or match of a kind holds the module of another field";
         what = m.type->bad ? m.type->bad(d, m.desc) : NULL;
     }
     return what;

@@ -502,6 +502,7 @@ static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan
         hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_FACE));
         hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_BODY));
         if (d.springs.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
+        if (d.match.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_MATCH));
         if (d.weight_rules) hash = mix(hash, 2);
         if (d.worn_by) hash = mix(hash, (uint64_t)d.worn_by << 32);
         for (uint32_t p = 0; p < d.modifier_count; p++) hash = mix(hash, d.modifiers[p].state_bytes);

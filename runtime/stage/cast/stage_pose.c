@@ -118,7 +118,7 @@ static void modify(const noh_stage_kind *k, uint32_t index, noh_modifier_work *w
 {
     for (uint32_t slot = NOH_SLOT_FACE; slot < NOH_SLOT_COUNT; slot++) {
         const noh_stage_module *m = &k->modules[slot];
-        if (!m->type) continue;
+        if (!m->type || !m->type->modify) continue;
         w->state = m->states + index * m->stride;
         w->user = m->shared;
         m->type->modify(w);

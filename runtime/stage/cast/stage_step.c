@@ -106,6 +106,10 @@ static void step_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t
         (void)noh_character_step(ch, &k->set, ticks, noh_stage_on_key, &t);
     }
     if (k->set.roots) move_root(k, index, t.a);
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module_type *module = k->modules[slot].type;
+        if (module && module->steer) module->steer(s, k, index, ticks);
+    }
     t.a->on_its_way = 0;
 }
 

@@ -1,11 +1,11 @@
-/* The puppet's clips: functions from time to stance and face, sampled at 30 Hz. All are loops but those that get up,
- * which are in a file of their own. */
+/* The puppet's clips: functions from time to stance and face, sampled at 30 Hz. All are loops but those that get up
+ * and those that roam, which are in files of their own. */
 #ifndef PUPPET_CLIPS_H
 #define PUPPET_CLIPS_H
 
 #include "stance.h"
 
-enum { CLIP_COUNT = 5, GET_UP_COUNT = 2, CLIP_RATE_HZ = 30, CUES_MAX = 48 };
+enum { CLIP_COUNT = 5, GET_UP_COUNT = 2, ROAM_COUNT = 10, ROAM_STEPS = 900, CLIP_RATE_HZ = 30, CUES_MAX = 48 };
 
 /* A callback key. */
 typedef struct {
@@ -27,6 +27,7 @@ extern const Clip clip_idle, clip_walk, clip_bow, clip_look_round, clip_dance, c
 
 const Clip *clip_number(int number);
 const Clip *get_up_number(int number);
+const Clip *roam_number(int number);
 
 /* A frame of the clip, with sleeves that trail behind the hands. The last frame of a loop equals the first to the bit,
  * but for the root displacement. */

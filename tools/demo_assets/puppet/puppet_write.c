@@ -118,9 +118,10 @@ static PuppetCensus take_census(const Body *body, const Figure *mask)
     return census;
 }
 
-PuppetCensus get_up_write(Buffer *file)
+/* Clips without a mesh. */
+static PuppetCensus clips_write(Buffer *file, const Clip *(*number)(int), int count)
 {
-    PuppetCensus census = { .joints = JOINT_COUNT, .animations = GET_UP_COUNT };
+    PuppetCensus census = { .joints = JOINT_COUNT, .animations = count };
     Writer w = { 0 };
     Buffer json = { 0 };
     buffer_print(&json, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"noh demo_assets\"},\n");
@@ -131,14 +132,24 @@ PuppetCensus get_up_write(Buffer *file)
     buffer_print(&json, "],\n");
     write_skin(&w, &json);
     buffer_print(&json, "\"animations\":[\n");
-    for (int i = 0; i < GET_UP_COUNT; i++) {
+    for (int i = 0; i < count; i++) {
         buffer_print(&json, i ? ",\n" : "");
-        clip_write(&w, &json, get_up_number(i), -1);
+        clip_write(&w, &json, number(i), -1);
     }
     buffer_print(&json, "],\n");
     writer_finish(&w, &json, file);
     buffer_free(&json);
     return census;
+}
+
+PuppetCensus get_up_write(Buffer *file)
+{
+    return clips_write(file, get_up_number, GET_UP_COUNT);
+}
+
+PuppetCensus roam_write(Buffer *file)
+{
+    return clips_write(file, roam_number, ROAM_COUNT);
 }
 
 PuppetCensus puppet_write(Buffer *file)

@@ -11,9 +11,10 @@ typedef struct {
     int body_vertices, mask_vertices, triangles, joints, animations;
 } PuppetCensus;
 
-/* The buffer receives the file: all of it; its skeleton with the clips that get up. */
+/* The buffer receives the file: all of it; its skeleton with the clips that get up, or with those that roam. */
 PuppetCensus puppet_write(Buffer *file);
 PuppetCensus get_up_write(Buffer *file);
+PuppetCensus roam_write(Buffer *file);
 
 /* A coat that the puppet can wear: it has some of the puppet's joints, and a tail with two joints of its own. */
 PuppetCensus coat_write(Buffer *file);

@@ -304,5 +304,5 @@ int bench_clip_rows(bench_job *job)
         close_bench(&b);
     }
     bench_clip_set_close(&set);
-    return status;
+    return status ? status : bench_match(job);
 }

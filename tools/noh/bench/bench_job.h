@@ -12,6 +12,7 @@
  *   bench_crowd.c       rows crowd/100-heads, and cost over pairs
  *   bench_cpu.c         rows morph/cpu
  *   bench_clip*.c       rows clip/ (see bench_clip.h)
+ *   bench_match.c       rows clip/match: the search of motion matching against comparing all rows
  *   bench_crowd_pose.c  rows crowd/pose: a thousand characters, posed at the update rate that pixels need
  *   bench_crowd_frame.c rows crowd/cpu and crowd/gpu: frames of a thousand bodies on a stage, with and without LOD
  *   bench_cast.c        rows stage/: frames of a stage, against its parts joined by hand, and without detail
@@ -231,6 +232,7 @@ int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
 int bench_ear(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
+int bench_match(bench_job *job); /* none where no pack has a table */
 int bench_crowd_pose(bench_job *job);
 int bench_crowd_frame(bench_job *job);
 int bench_face(bench_job *job); /* with the targets of the mesh */

@@ -1,0 +1,339 @@
+/* Motion matching on a stage: a puppet follows a stick by clips alone, soon enough and calmly; saved, restored and
+ * forked in the middle it goes on to the bit, for any number of jobs; tables and descs that do not fit are refused. */
+#include <math.h>
+
+#include "support/stage_fixture.h"
+#include "motion/match/match_internal.h"
+#include "noh/modules.h"
+
+#define PI 3.14159265358979
+#define ROAM 1u /* the second file and pack of the cast */
+
+static noh_error said;
+static const noh_kind_match plain;
+
+static void describe(cast *c, const noh_kind_match *match)
+{
+    memset(c, 0, sizeof *c);
+    cast_map(c, PUPPETS, "demo/puppet_levels.noh");
+    cast_map(c, ROAM, "demo/roam.noh");
+    c->kinds[0].mesh = &c->packs[0];
+    c->kinds[0].clips = &c->packs[ROAM];
+    c->kinds[0].actor_count = 2;
+    c->kinds[0].root_axes = NOH_ROOT_GROUND;
+    c->kinds[0].root_up = 1;
+    c->kinds[0].inertia = 1;
+    c->kinds[0].match = noh_match_module(match);
+    c->desc.kinds = c->kinds;
+    c->desc.kind_count = 1;
+}
+
+static noh_actor spawn(cast *c)
+{
+    noh_actor actor;
+    assert_int_equal(noh_stage_spawn(c->stage, 0, NULL, &actor, NULL), NOH_OK);
+    return actor;
+}
+
+static void cast_end(cast *c)
+{
+    cast_close_stage(c);
+    for (int i = 0; i < 2; i++) noh_file_unmap(&c->files[i]);
+}
+
+static void push(cast *c, noh_actor actor, double angle, double speed)
+{
+    const noh_match_goal goal = { .velocity = { (float)(speed * sin(angle)), 0.0f, (float)(speed * cos(angle)) } };
+    if (noh_actor_match(c->stage, actor, &goal, &said) != NOH_OK) fail_msg("%s", said.what);
+}
+
+/* Where an actor is and faces, and what it plays. */
+typedef struct seen {
+    double x, z, heading;
+    const noh_track *track;
+} seen;
+
+static seen see(const cast *c, noh_actor actor)
+{
+    noh_place place;
+    seen out;
+    assert_int_equal(noh_actor_place(c->stage, actor, &place, NULL), NOH_OK);
+    out.x = (double)place.position[0];
+    out.z = (double)place.position[2];
+    out.heading = 2.0 * atan2((double)place.rotation[1], (double)place.rotation[3]);
+    out.track = noh_actor_track(c->stage, actor, 0);
+    return out;
+}
+
+static void step(cast *c)
+{
+    assert_int_equal(noh_stage_frame(c->stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+}
+
+/* Whether another moment plays than the one that follows the last. */
+static int has_leapt(const noh_track *before, const noh_track *after)
+{
+    return before->clip != after->clip ||
+           llabs(after->position - before->position - (int64_t)CAST_STEP * 65536) > 65536;
+}
+
+static double middle(double *values, int count)
+{
+    for (int i = 1; i < count; i++) {
+        for (int k = i; k > 0 && values[k] < values[k - 1]; k--) {
+            const double kept = values[k];
+            values[k] = values[k - 1];
+            values[k - 1] = kept;
+        }
+    }
+    return values[count / 2];
+}
+
+#define TURNS 24
+
+/* A stick that is turned by 180 degrees every 4 s. */
+static void a_turned_stick_is_followed(void **state)
+{
+    double speeds[TURNS], faces[TURNS], angle = 0.0;
+    int leaps = 0, steps = 0;
+    cast c;
+    noh_actor actor;
+    noh_track before;
+    (void)state;
+    describe(&c, &plain);
+    cast_make(&c, NULL);
+    actor = spawn(&c);
+    push(&c, actor, angle, 0.9);
+    for (int i = 0; i < 4 * 60; i++) step(&c);
+    for (int n = 0; n < TURNS; n++) {
+        speeds[n] = faces[n] = 9.0;
+        angle += PI;
+        push(&c, actor, angle, 0.9);
+        for (int i = 0; i < 4 * 60; i++, steps++) {
+            const seen a = see(&c, actor);
+            seen b;
+            double along;
+            before = *a.track;
+            step(&c);
+            b = see(&c, actor);
+            leaps += has_leapt(&before, b.track);
+            along = 60.0 * ((b.x - a.x) * sin(angle) + (b.z - a.z) * cos(angle));
+            if (speeds[n] > 8.0 && along >= 0.45) speeds[n] = (i + 1) / 60.0;
+            if (faces[n] > 8.0 && fabs(remainder(b.heading - angle, 2.0 * PI)) < PI / 4.0) faces[n] = (i + 1) / 60.0;
+        }
+    }
+    print_message("# half speed after %.2f s, facing after %.2f s, %.2f transitions a second\n", middle(speeds, TURNS),
+                  middle(faces, TURNS), 60.0 * leaps / steps);
+    assert_true(middle(speeds, TURNS) <= 0.9);
+    assert_true(middle(faces, TURNS) <= 0.8);
+    assert_true(60.0 * leaps / steps <= 3.0);
+    cast_end(&c);
+}
+
+/* It goes as fast as the stick says, and there, and stops. */
+static void it_goes_and_stops(void **state)
+{
+    cast c;
+    noh_actor actor;
+    seen from, to;
+    (void)state;
+    describe(&c, &plain);
+    cast_make(&c, NULL);
+    actor = spawn(&c);
+    for (int n = 0; n < 4; n++) {
+        const double angle = n * PI / 2.0, speed = n % 2 ? 0.5 : 0.9;
+        push(&c, actor, angle, speed);
+        for (int i = 0; i < 2 * 60; i++) step(&c);
+        from = see(&c, actor);
+        for (int i = 0; i < 4 * 60; i++) step(&c);
+        to = see(&c, actor);
+        const double along = ((to.x - from.x) * sin(angle) + (to.z - from.z) * cos(angle)) / 4.0;
+        const double across = ((to.x - from.x) * cos(angle) - (to.z - from.z) * sin(angle)) / 4.0;
+        print_message("# asked for %.2f: %.2f along, %.2f across\n", speed, along, across);
+        assert_true(fabs(along - speed) < 0.15);
+        assert_true(fabs(across) < 0.15);
+    }
+    push(&c, actor, 0.0, 0.0);
+    for (int i = 0; i < 2 * 60; i++) step(&c);
+    from = see(&c, actor);
+    for (int i = 0; i < 2 * 60; i++) step(&c);
+    to = see(&c, actor);
+    assert_true(hypot(to.x - from.x, to.z - from.z) < 0.05);
+    cast_end(&c);
+}
+
+/* ---- tags ---- */
+
+/* A clip with the tag plays, and no other. */
+static void tags_are_kept(void **state)
+{
+    noh_match_goal goal = { .velocity = { 0.0f, 0.0f, 0.5f }, .tags = "first" };
+    cast c;
+    noh_actor actor;
+    (void)state;
+    describe(&c, &plain);
+    cast_make(&c, NULL);
+    actor = spawn(&c);
+    for (int n = 0; n < 8; n++) {
+        goal.velocity[n % 2 ? 0 : 2] = n % 4 ? 0.9f : -0.5f;
+        assert_int_equal(noh_actor_match(c.stage, actor, &goal, NULL), NOH_OK);
+        for (int i = 0; i < 90; i++) {
+            step(&c);
+            assert_string_equal(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, see(&c, actor).track->clip), "roam_0");
+        }
+    }
+    cast_end(&c);
+}
+
+/* ---- state ---- */
+
+static void drive(cast *c, const noh_actor *actors, int from, int to)
+{
+    for (int i = from; i < to; i++) {
+        if (i % 45 == 0) push(c, actors[i / 45 % 2], i * 0.7, i % 90 ? 0.9 : 0.5);
+        step(c);
+    }
+}
+
+static void it_is_saved_and_forked(void **state)
+{
+    cast a, b;
+    noh_actor actors[2], others[2];
+    const void *now;
+    size_t bytes;
+    void *kept;
+    uint64_t end;
+    (void)state;
+    describe(&a, &plain);
+    describe(&b, &plain);
+    b.desc.job_count = 3;
+    cast_make(&a, NULL);
+    cast_make(&b, NULL);
+    for (int i = 0; i < 2; i++) {
+        actors[i] = spawn(&a);
+        others[i] = spawn(&b);
+    }
+    drive(&a, actors, 0, 200);
+    now = noh_stage_state(a.stage, &bytes);
+    kept = test_aligned(now, bytes);
+    drive(&a, actors, 200, 500);
+    end = noh_stage_hash(a.stage);
+    assert_int_equal(noh_stage_set_state(a.stage, kept, bytes, NULL), NOH_OK);
+    drive(&a, actors, 200, 500);
+    assert_true(noh_stage_hash(a.stage) == end);
+    assert_int_equal(noh_stage_set_state(b.stage, kept, bytes, NULL), NOH_OK);
+    drive(&b, others, 200, 500);
+    assert_true(noh_stage_hash(b.stage) == end);
+    free(kept);
+    cast_end(&a);
+    cast_end(&b);
+}
+
+/* Whatever bits a state has, it is refused, or stepped without harm. */
+static void damaged_states_do_no_harm(void **state)
+{
+    test_random r = test_random_from(5);
+    cast c;
+    noh_actor actors[2];
+    const void *now;
+    size_t bytes;
+    uint8_t *kept;
+    int opened = 0;
+    (void)state;
+    describe(&c, &plain);
+    cast_make(&c, NULL);
+    for (int i = 0; i < 2; i++) actors[i] = spawn(&c);
+    drive(&c, actors, 0, 100);
+    now = noh_stage_state(c.stage, &bytes);
+    kept = test_aligned(now, bytes);
+    for (int i = 0; i < test_rounds(400); i++) {
+        const uint32_t at = test_random_below(&r, (uint32_t)bytes), bit = test_random_below(&r, 8);
+        kept[at] = (uint8_t)(kept[at] ^ 1u << bit);
+        if (noh_stage_set_state(c.stage, kept, bytes, NULL) == NOH_OK) {
+            step(&c);
+            opened++;
+        }
+        kept[at] = (uint8_t)(kept[at] ^ 1u << bit);
+    }
+    assert_true(opened > 0);
+    free(kept);
+    cast_end(&c);
+}
+
+/* ---- what is refused ---- */
+
+static void refused(cast *c, const char *what)
+{
+    noh_stage_plan plan;
+    if (noh_stage_plan_make(&c->desc, NULL, &plan, &said) == NOH_OK || !strstr(said.what, what)) {
+        fail_msg("'%s', not '%s'", said.what, what);
+    }
+}
+
+static void bad_descs_are_refused(void **state)
+{
+    noh_kind_match match = { 0 };
+    cast c;
+    (void)state;
+    describe(&c, &match);
+    c.kinds[0].inertia = 0;
+    refused(&c, "room for inertia");
+    c.kinds[0].inertia = 1;
+    c.kinds[0].root_axes = NOH_ROOT_X;
+    refused(&c, "root_axes");
+    c.kinds[0].root_axes = NOH_ROOT_GROUND;
+    c.kinds[0].clips = NULL;
+    refused(&c, "noh build --match");
+    c.kinds[0].clips = &c.packs[ROAM];
+    match.layer = 3;
+    refused(&c, "layer");
+    match.layer = 0;
+    match.response_s = 11.0f;
+    refused(&c, "response_s");
+    match.response_s = 0.0f;
+    match.bias = -1.0f;
+    refused(&c, "bias");
+    match.bias = 0.0f;
+    match.steer = 1.5f;
+    refused(&c, "steer");
+    match.steer = 0.0f;
+    c.kinds[0].match.type = NULL;
+    c.kinds[0].springs = noh_match_module(&match);
+    refused(&c, "module of another field");
+    for (int i = 0; i < 2; i++) noh_file_unmap(&c.files[i]);
+}
+
+static void bad_goals_are_refused(void **state)
+{
+    noh_match_goal goal = { .velocity = { NAN, 0, 0 } };
+    const noh_actor nobody = { 0 };
+    cast c;
+    noh_actor actor;
+    (void)state;
+    describe(&c, NULL);
+    cast_make(&c, NULL);
+    actor = spawn(&c);
+    assert_int_equal(noh_actor_match(c.stage, actor, &goal, &said), NOH_ERR_ARG);
+    goal.velocity[0] = 0.0f;
+    assert_int_equal(noh_actor_match(c.stage, nobody, &goal, &said), NOH_ERR_NOT_FOUND);
+    goal.tags = "nowhere";
+    assert_int_equal(noh_actor_match(c.stage, actor, &goal, &said), NOH_ERR_NOT_FOUND);
+    goal.tags = "";
+    assert_int_equal(noh_actor_match(c.stage, actor, &goal, &said), NOH_OK);
+    step(&c);
+    assert_non_null(see(&c, actor).track);
+    assert_int_equal(noh_actor_match(c.stage, actor, NULL, &said), NOH_OK);
+    cast_end(&c);
+}
+
+static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(a_turned_stick_is_followed),
+    cmocka_unit_test(it_goes_and_stops),
+    cmocka_unit_test(tags_are_kept),
+    cmocka_unit_test(it_is_saved_and_forked),
+    cmocka_unit_test(damaged_states_do_no_harm),
+    cmocka_unit_test(bad_descs_are_refused),
+    cmocka_unit_test(bad_goals_are_refused),
+};
+
+TEST_MAIN(tests, NULL, NULL)
