@@ -5,7 +5,7 @@
  *   NOH_LIT          defined: the renderer is lit (noh_gl_renderer_desc.lit)
  *   NOH_AT_VERTICES  defined in vertex shaders: only ambient light
  *   NOH_SHADOW_TAPS  with NOH_LIT, 1 to 4 (default): how often the shadow map is read, so that no pixel makes more than 8
- *                    fetches */
+ *                    fetches; 0: the map is soft, and read once */
 #if defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
 #ifndef NOH_SHADOW_TAPS
 #define NOH_SHADOW_TAPS 4
@@ -24,7 +24,11 @@ vec3 noh_ambient(vec3 n)
 
 #ifndef NOH_AT_VERTICES
 uniform mediump samplerCube noh_environment;
+#if NOH_SHADOW_TAPS > 0
 uniform highp sampler2DShadow noh_shadow_map;
+#else
+uniform highp sampler2D noh_shadow_map;
+#endif
 
 #define noh_key_color noh_lighting[12].rgb /* the light reflected by a white matte surface that faces it */
 #define noh_key_gloss noh_lighting[12].w   /* share of it in highlights */
@@ -36,10 +40,27 @@ vec3 noh_mirror(vec3 r, float roughness)
     return textureLod(noh_environment, d, 4.0 * roughness).rgb;
 }
 
+#if NOH_SHADOW_TAPS == 0
+/* noh_lighting[0].w: the blur's width by the lamp's; [1].w: the farthest depth.
+ * Chebyshev's bound on the light at a depth, by two moments of the casters' depth (Donnelly, Lauritzen: Variance shadow
+ * maps, I3D 2006). A blurred edge is made as narrow as the lamp's penumbra, by the distance of the caster: of two
+ * planes the moments give it exactly. What leaks is cut (A. Lauritzen: Summed-area variance shadow maps, GPU Gems 3,
+ * 2007). */
+float noh_shadow_soft(vec3 at)
+{
+    vec2 m = texture(noh_shadow_map, at.xy).rg;
+    float behind = max(min(4.0 * at.z - 3.0, noh_lighting[1].w) - m.x, 0.0), spread = max(m.y - m.x * m.x, 0.000036);
+    float light = spread / (spread + behind * behind);
+    float narrow = noh_lighting[0].w * (1.0 - light) / max(behind, 1e-5);
+    light = (light - 0.5) * clamp(narrow, 1.0, 5.0) + 0.5;
+    return clamp(1.25 * light - 0.25, 0.0, 1.0);
+}
+#else
 float noh_shadow_tap(vec3 at, float x, float y)
 {
     return texture(noh_shadow_map, at + noh_lighting[13].w * vec3(x, y, 0.0)); /* w: three quarters of a texel */
 }
+#endif
 
 #if NOH_SHADOW_TAPS == 4
 /* A tent four texels wide, in two dimensions the product of two, from four hardware-filtered taps: each reads the
@@ -57,8 +78,8 @@ float noh_shadow_tent(vec3 at)
 }
 #endif
 
-/* 1: the key light reaches the point, 0: the point is in shadow. Hardware-filtered taps. The point is offset along the
- * normal, by the depth that a texel of the map may span on a slope. */
+/* 1: the key light reaches the point, 0: the point is in shadow. Filtered taps, or one of a soft map. The point is
+ * offset along the normal, by the depth that a texel of the map may span on a slope. */
 float noh_key_shadow(vec3 position, vec3 normal)
 {
     if (noh_lighting[13].z <= 0.0) {
@@ -67,6 +88,9 @@ float noh_key_shadow(vec3 position, vec3 normal)
     float facing = clamp(dot(normal, noh_key), 0.0, 1.0), slope = sqrt(1.0 - facing * facing);
     vec4 p = vec4(position + normal * (noh_lighting[13].z * (0.7 + 2.0 * slope)), 1.0);
     vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz * 0.5 + 0.5;
+#if NOH_SHADOW_TAPS == 0
+    float sum = noh_shadow_soft(at);
+#else
     at.z = min(at.z, 1.0) - 0.0003;
 #if NOH_SHADOW_TAPS == 1
     float sum = noh_shadow_tap(at, 0.0, 0.0);
@@ -77,9 +101,10 @@ float noh_key_shadow(vec3 position, vec3 normal)
 #else
     float sum = noh_shadow_tent(at);
 #endif
+#endif
     vec2 edge = noh_lighting[13].w * 2.0 + abs(at.xy - 0.5);
     bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map there is no shadow */
-    return inside ? sum / float(NOH_SHADOW_TAPS) : 1.0;
+    return inside ? sum / float(max(NOH_SHADOW_TAPS, 1)) : 1.0;
 }
 
 /* Khronos PBR Neutral Tone Mapper, 2024: colours up to 0.8 less the reflection of a dielectric stay, peaks above are

@@ -39,6 +39,7 @@ check 'optional functions are compared with NULL before they are called' sh -c '
 cat >"$work/finders" <<'END'
 runtime/gl/device/gl_caps.c
 runtime/gl/device/gl_program.c
+runtime/gl/draw/gl_shadow.c
 runtime/gl/draw/gl_variants.c
 runtime/gl/morph/gl_morph_blend.c
 runtime/gl/morph/gl_morph_shared.c

@@ -111,6 +111,8 @@ int web_light_shadow(noh_stage_view *view)
     sphere[3] = sphere[3] > 1e-6f ? sphere[3] : 1e-6f;
     noh_view_shadow(view, sphere, web.light.told.key_direction);
     noh_lighting_shadow(&web.light.told, view->view_projection, sphere[3], web.cast.light.shadow_px);
+    web.light.told.has_floor = web.light.on_floor && web.light.ground.drawable.gl;
+    web.light.told.floor = web.light.floor;
     return 1;
 }
 

@@ -374,7 +374,9 @@ typedef struct noh_gl_texture {
 /* The context for making objects. The struct is not kept; the table and the ledger must outlive the objects. */
 typedef struct noh_gl_device {
     const noh_gl_api *api;
-    const noh_gl_caps *caps; /* read by noh_gl_morph_init and noh_gl_skin_init; may be NULL for the renderer */
+    /* The same for all that is drawn together, since shadows are soft by its render_f16. NULL: they are not; then no
+     * noh_gl_morph_init, noh_gl_skin_init and stages. */
+    const noh_gl_caps *caps;
     noh_gl_ledger *ledger;
     char *log; /* [log_bytes] receives compile errors of shaders, as in noh_gl_program_create; NULL: no log */
     size_t log_bytes;

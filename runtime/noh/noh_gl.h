@@ -70,6 +70,8 @@ typedef struct noh_lighting {
     noh_tonemap tonemap;
     float shadow[16];   /* world to the shadow map's clip space, column-major */
     float shadow_texel; /* size of a shadow texel, world; 0: no shadow */
+    float floor;        /* world height of a level floor that takes the shadow (noh_stage_floor) */
+    int has_floor;      /* 0: none. Set both before noh_stage_draw_shadow */
 } noh_lighting;
 
 /* Split light, rotated by `rotation`, into a key light and the rest, with no shadow, exposure 1 and no tone map.
@@ -85,16 +87,19 @@ void noh_lighting_shadow(noh_lighting *lighting, const float view_projection[16]
 
 typedef struct noh_gl_light_desc {
     const noh_reflection *reflection; /* required; must stay, with its texels, as long as the light */
-    uint32_t shadow_px;               /* side of the shadow map; 0: none */
+    uint32_t shadow_px;               /* side of the shadow map, even; 0: none */
 } noh_gl_light_desc;
 
 typedef struct noh_gl_light {
     const noh_gl_api *gl;
     noh_gl_ledger *ledger;
     noh_gl_light_desc desc;
-    noh_gl_texture cube, shadow; /* GL_RGB9_E5; GL_DEPTH_COMPONENT16 with comparison, one texel without shadows */
-    unsigned framebuffer;        /* 0 without shadows */
-    noh_gl_offscreen kept;       /* state restored after the shadow map */
+    int is_soft; /* 1: noh_gl_caps.render_f16, so shadows are soft: shaders read `moments`; 0: they read `depth` */
+    noh_gl_texture cube, depth;   /* GL_RGB9_E5; GL_DEPTH_COMPONENT16 of casters, one texel without shadows */
+    noh_gl_texture rows, moments; /* blurred along x, along both: GL_RG16F of half the side; none if not soft */
+    unsigned framebuffer, soft_framebuffer, blur, vertex_array; /* 0 without shadows */
+    int u_blur;
+    noh_gl_offscreen kept; /* state restored after the shadow map */
 } noh_gl_light;
 
 /* Upload the reflection's texels again, after noh_reflection_init in the same memory with the same side.
@@ -231,6 +236,8 @@ typedef enum noh_debug_view {
     NOH_VIEW_WRINKLE    /* wrinkle weights of a pixel by model: area orange, regions blue, channels green */
 } noh_debug_view;
 
+#define NOH_LIT_SOFT 2u /* noh_gl_variant_key.lit where noh_gl_light.is_soft */
+
 typedef struct noh_gl_variant_key {
     uint8_t influences;      /* stored per vertex: 1, 2, 4 or 8; 0: rigid, or the bind pose */
     uint8_t drawn;           /* used of them: 1, 2, 4 or 8; 0 if influences is 0 */
@@ -246,7 +253,7 @@ typedef struct noh_gl_variant_key {
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
     uint16_t features;       /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: NOH_FEATURE_ALPHA */
-    uint8_t lit;             /* 1: lit by noh_gl.h; with depth 0 */
+    uint8_t lit;             /* 1: lit by noh_gl.h; NOH_LIT_SOFT: its shadows are soft; with depth 0 */
     uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
     uint8_t uv_targets;      /* 1: the mesh has NOH_MESH_UV_TARGETS; with depth only if cut */
 } noh_gl_variant_key;
@@ -342,6 +349,7 @@ typedef struct noh_gl_drawable {
     const noh_gl_api *gl; /* NULL: not created */
     noh_gl_ledger *ledger;
     uint32_t units;       /* texture units that its programs read, from 0 on */
+    int is_soft;          /* as in noh_gl_light */
     unsigned programs[2]; /* 0: colour, 1: depth alone */
     unsigned vertex_array;
     noh_gl_texture texture;
@@ -539,7 +547,7 @@ noh_result noh_stage_decals_draw(noh_stage_decals *decals, uint32_t view, noh_ac
  *
  * Draw it after the background and before characters, once the shadow map is drawn. It multiplies the colours in the
  * framebuffer and the floor itself is invisible, so it works on any background. It takes no GPU memory besides its
- * program.
+ * program. Set noh_lighting.floor and has_floor before the shadow map is drawn: otherwise the edge is hard and too wide.
  *
  * Threads: the context's own thread. */
 

@@ -223,6 +223,7 @@ static void take(scene *s, float x, float z, uint8_t *out[2])
         noh_view_orbit(&views[0], target, 0.04f * (float)i, 0.25f, 5.0f, SIDE, SIDE);
         noh_view_shadow(&views[1], sphere, s->lighting.key_direction);
         noh_lighting_shadow(&s->lighting, views[1].view_projection, sphere[3], SHADOW_PX);
+        s->lighting.has_floor = 1; /* at 0 */
         assert_int_equal(noh_stage_step(s->stage, TICKS, NULL, NULL, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame_begin(s->stage, views, 2, NULL), NOH_OK);
         assert_int_equal(noh_stage_frame_end(s->stage, NULL), NOH_OK);

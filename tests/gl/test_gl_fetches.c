@@ -292,7 +292,7 @@ static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t t
 {
     noh_gl_variant_key key = { 0 };
     key.features = (uint16_t)features;
-    key.lit = lit || transfer;
+    key.lit = (uint8_t)(transfer && !lit ? 1 : lit);
     key.transfer = (uint8_t)transfer;
     key.crowd = key.texture = crowd != 0;
     key.fade = key.encode_srgb = 1;
@@ -371,6 +371,8 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
     assert_int_equal(fetches_of(0, 0, 0), 1);
     assert_int_equal(fetches_of(0, 1, 0), 6); /* base colour, environment, four of the shadow map */
     assert_int_equal(fetches_of(NOH_FEATURE_PHONE, 1, 0), 3);
+    assert_int_equal(fetches_of(0, NOH_LIT_SOFT, 0), 3); /* one of a soft map */
+    assert_int_equal(fetches_of(MAPS | NOH_FEATURE_SKIN, NOH_LIT_SOFT, 0), 7);
 }
 
 /* One more anywhere is a ninth. */

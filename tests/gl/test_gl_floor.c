@@ -33,7 +33,7 @@ typedef struct scene {
     noh_stage_floor level;
 } scene;
 
-static void open_scene(scene *s)
+static void open_scene(scene *s, int is_soft)
 {
     const noh_environment *room = noh_environment_at(noh_environment_find("room"));
     const noh_reflection_desc desc = { 0, noh_reflection_of_environment, room };
@@ -44,7 +44,7 @@ static void open_scene(scene *s)
     noh_stage_view view;
     noh_light all;
     s->g = fixture_gpu();
-    const noh_gl_device device = { &s->g->gl, &s->g->caps, &s->g->ledger, NULL, 0 };
+    const noh_gl_device device = { &s->g->gl, is_soft ? &s->g->caps : NULL, &s->g->ledger, NULL, 0 };
     s->texels = malloc(bytes);
     assert_int_equal(noh_reflection_init(s->texels, bytes, scratch, scratch_bytes, &desc, &s->reflection, NULL),
                      NOH_OK);
@@ -73,7 +73,7 @@ static void picture(scene *s, float nearest, const noh_stage_view *view, float b
     assert_int_equal(canvas_open(&c, s->g, SIDE, SIDE), 0);
     noh_gl_light_begin_shadow(&s->light);
     s->g->gl.ClearBufferfv(GL_DEPTH, 0, &nearest);
-    noh_gl_light_end_shadow(&s->light);
+    noh_gl_light_end_shadow(&s->light, s->lighting.shadow, &s->lighting);
     canvas_begin(&c);
     s->g->gl.DepthMask(GL_TRUE);
     s->g->gl.ClearBufferfv(GL_DEPTH, 0, &before);
@@ -121,12 +121,11 @@ static void expect(const scene *s, const uint8_t *rgba, int in_shadow)
     assert_true(worst < 2.0);
 }
 
-static void pixels_are_what_is_left_of_the_light(void **state)
+static void check_pixels(int is_soft)
 {
     static uint8_t first[SIDE * SIDE * 4], again[SIDE * SIDE * 4];
     scene s;
-    (void)state;
-    open_scene(&s);
+    open_scene(&s, is_soft);
     picture(&s, 0.0f, &above, 1.0f, first);
     expect(&s, first, 1);
     assert_int_equal(noh_stage_floor_restore(&s.level, NULL, 0, NULL), NOH_OK);
@@ -134,7 +133,17 @@ static void pixels_are_what_is_left_of_the_light(void **state)
     assert_memory_equal(first, again, sizeof first);
     picture(&s, 1.0f, &above, 1.0f, again); /* the light comes through */
     expect(&s, again, 0);
+    s.lighting.has_floor = 1; /* where it stands in for what was not drawn, the light comes through, too */
+    picture(&s, 1.0f, &above, 1.0f, again);
+    expect(&s, again, 0);
     close_scene(&s);
+}
+
+static void pixels_are_what_is_left_of_the_light(void **state)
+{
+    (void)state;
+    check_pixels(0);
+    check_pixels(1);
 }
 
 static void it_is_seen_from_above_alone(void **state)
@@ -143,7 +152,7 @@ static void it_is_seen_from_above_alone(void **state)
     noh_stage_view below = above;
     scene s;
     (void)state;
-    open_scene(&s);
+    open_scene(&s, 0);
     below.eye[1] = -1.0f;
     picture(&s, 0.0f, &below, 1.0f, rgba);
     expect(&s, rgba, 0);

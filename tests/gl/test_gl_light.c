@@ -189,7 +189,7 @@ static void a_square_casts_its_shadow(void **state)
     scene_draw_mesh(&s, SQUARE, scene_identity, NOH_DRAW_DEPTH);
     scene_draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
     noh_gl_draw_end(&s.renderer);
-    noh_gl_light_end_shadow(&s.light);
+    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
     rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE) - shift[0], y = -pixel_at(p / SIDE) - shift[1];
@@ -208,8 +208,59 @@ static void a_square_casts_its_shadow(void **state)
     scene_close(&s);
 }
 
+/* How many pixels of the lit square are between dark and lit where the square above, this high, casts its shadow; with
+ * those as dark as light that does not reach them, and those in full light. */
+static uint32_t edge_pixels(float height, uint32_t *dark, uint32_t *lit)
+{
+    static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, sphere[4] = { 0.0f, 0.0f, 0.0f, 1.6f };
+    const float above[12] = { 0.3f, 0, 0, 0, 0, 0.3f, 0, 0, 0, 0, 1, height }, to_light[3] = { 0.0f, 0.0f, 1.0f };
+    noh_stage_view view;
+    noh_gl_camera from_light = scene_front();
+    noh_lighting lighting;
+    uint32_t between = 0;
+    scene s;
+    open_scene(&s, &scene_black, SHADOW_PX | SCENE_SOFT, flat);
+    key_alone(to_light, &lighting);
+    noh_view_shadow(&view, sphere, to_light);
+    noh_lighting_shadow(&lighting, view.view_projection, sphere[3], SHADOW_PX);
+    memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
+    noh_gl_light_begin_shadow(&s.light);
+    noh_gl_draw_begin(&s.renderer, &from_light);
+    scene_draw_mesh(&s, SQUARE, scene_identity, NOH_DRAW_DEPTH);
+    scene_draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
+    noh_gl_draw_end(&s.renderer);
+    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
+    uint8_t *rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
+    *dark = *lit = 0;
+    for (uint32_t p = 0; p < SIDE * SIDE; p++) {
+        const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE), out = fmax(fabs(x), fabs(y)) - 0.3;
+        const int is_dark = rgba[4 * p] <= 1, is_lit = fabs(rgba[4 * p] - encoded(0.9)) <= 2.0;
+        if (out < -0.16) assert_true(is_dark);
+        if (out > 0.16) assert_true(is_lit);
+        *dark += (uint32_t)is_dark;
+        *lit += (uint32_t)is_lit;
+        between += !is_dark && !is_lit;
+    }
+    free(rgba);
+    scene_close(&s);
+    return between;
+}
+
+/* A penumbra grows with the distance of what casts it. */
+static void a_soft_shadow_is_harder_where_things_touch(void **state)
+{
+    uint32_t dark[2], lit[2];
+    (void)state;
+    if (!fixture_gpu()->caps.render_f16) test_skip("no half floats can be drawn to");
+    const uint32_t near_by = edge_pixels(0.05f, &dark[0], &lit[0]), far = edge_pixels(0.8f, &dark[1], &lit[1]);
+    print_message("pixels of a penumbra: near %u, far %u; dark %u and %u, lit %u and %u\n", near_by, far, dark[0],
+                  dark[1], lit[0], lit[1]);
+    assert_true(near_by > 0 && 3 * near_by < 2 * far);
+    assert_true(dark[1] > 60 && dark[0] > dark[1] && lit[0] > lit[1]);
+}
+
 /* A sphere shadows its own far side and never its near side. */
-static void no_surface_shadows_itself(void **state)
+static void check_itself(uint32_t shadow_px)
 {
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, all[4] = { 0.0f, 0.0f, 0.0f, 1.1f };
     const float to_light[3] = { 0.6f, 0.0f, 0.8f };
@@ -218,8 +269,7 @@ static void no_surface_shadows_itself(void **state)
     noh_lighting lighting;
     scene s;
     uint8_t *with, *without;
-    (void)state;
-    open_scene(&s, &scene_black, SHADOW_PX, flat);
+    open_scene(&s, &scene_black, shadow_px, flat);
     key_alone(to_light, &lighting);
     without = scene_draw(&s, SPHERE, scene_identity, &lighting);
     noh_view_shadow(&view, all, to_light);
@@ -229,7 +279,7 @@ static void no_surface_shadows_itself(void **state)
     noh_gl_draw_begin(&s.renderer, &from_light);
     scene_draw_mesh(&s, SPHERE, scene_identity, NOH_DRAW_DEPTH);
     noh_gl_draw_end(&s.renderer);
-    noh_gl_light_end_shadow(&s.light);
+    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
     with = scene_draw(&s, SPHERE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE), z2 = 1.0 - x * x - y * y;
@@ -241,6 +291,13 @@ static void no_surface_shadows_itself(void **state)
     scene_close(&s);
 }
 
+static void no_surface_shadows_itself(void **state)
+{
+    (void)state;
+    check_itself(SHADOW_PX);
+    check_itself(SHADOW_PX | SCENE_SOFT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -249,6 +306,7 @@ int main(void)
         cmocka_unit_test(a_plane_and_a_wall_are_the_analytic_ones),
         cmocka_unit_test(a_key_light_falls_by_the_cosine),
         cmocka_unit_test(a_square_casts_its_shadow),
+        cmocka_unit_test(a_soft_shadow_is_harder_where_things_touch),
         cmocka_unit_test(no_surface_shadows_itself),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

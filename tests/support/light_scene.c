@@ -83,12 +83,12 @@ static void open_light(scene *s, const noh_gl_device *device, const noh_environm
     static __attribute__((aligned(16))) uint32_t texels[2 * 6 * 32 * 32];
     static __attribute__((aligned(16))) uint8_t scratch[3 * 4 * 2 * 6 * 32 * 32];
     const noh_reflection_desc baked = { 32, noh_reflection_of_environment, environment };
-    const noh_gl_light_desc desc = { &s->reflection, shadow_px };
+    const noh_gl_light_desc desc = { &s->reflection, shadow_px & ~SCENE_SOFT };
     const uint64_t before = noh_gl_ledger_bytes(&s->ledger);
     assert_int_equal(noh_reflection_init(texels, sizeof texels, scratch, sizeof scratch, &baked, &s->reflection, NULL),
                      NOH_OK);
     assert_int_equal(noh_gl_light_create(device, &desc, &s->light, NULL), NOH_OK);
-    assert_int_equal(noh_gl_ledger_bytes(&s->ledger) - before, noh_gl_light_bytes(&desc));
+    assert_int_equal(noh_gl_ledger_bytes(&s->ledger) - before, noh_gl_light_bytes(&desc, s->light.is_soft));
 }
 
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,
@@ -116,7 +116,8 @@ void scene_open_pack(scene *s, uint8_t *bytes, size_t count, const noh_environme
         s->meshes[i] = test_mesh(&s->pack, i);
         assert_int_equal(noh_gl_mesh_create(&s->g->gl, &s->ledger, &s->meshes[i], &s->drawn[i], NULL), NOH_OK);
     }
-    const noh_gl_device device = { &s->g->gl, NULL, &s->ledger, log, sizeof log };
+    const noh_gl_caps *caps = shadow_px & SCENE_SOFT ? &s->g->caps : NULL;
+    const noh_gl_device device = { &s->g->gl, caps, &s->ledger, log, sizeof log };
     if (s->pack.runs[NOH_CHUNK_TEXTURE].count) {
         noh_texture texture;
         assert_int_equal(noh_pack_texture_at(&s->pack, 0, &texture, NULL), NOH_OK);

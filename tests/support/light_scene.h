@@ -37,6 +37,8 @@ typedef struct scene {
 /* Two-sided, of base colour, roughness, metallic and f0. */
 model_material scene_material(const float values[4]);
 
+#define SCENE_SOFT 0x80000000u /* with shadow_px: a soft map, if this GPU has it (noh_gl_light.is_soft) */
+
 /* lit: by an environment and a shadow map of that side, 0 none; NULL: by the plain light.
  * own: a fragment shader in place of the library's, for colour alone; or NULL */
 void scene_open(scene *s, const model_material *material, const noh_environment *lit, uint32_t shadow_px,

@@ -57,35 +57,48 @@ static void put_mesh(const char *name, noh_gl_variant_key key)
 /* Fragment shaders, on a rigid mesh: surfaces by maps and by light, in both tiers. */
 static void put_surfaces(void)
 {
-    enum { UNLIT = 1, LIT = 2, TRANSFER = 4, PHONE_UNLIT = 8, PHONE_LIT = 16, PHONE_TRANSFER = 32 };
+    enum { UNLIT = 1, LIT = 2, TRANSFER = 4, PHONE_UNLIT = 8, PHONE_LIT = 16, PHONE_TRANSFER = 32, SOFT = 64 };
+    enum { PHONE_SOFT = 128 };
     static const struct {
         const char *name;
         uint16_t features;
         unsigned lights;
     } surfaces[] = {
-        { "plain", 0, UNLIT | LIT | TRANSFER | PHONE_UNLIT | PHONE_LIT },
+        { "plain", 0, UNLIT | LIT | TRANSFER | PHONE_UNLIT | PHONE_LIT | SOFT | PHONE_SOFT },
         { "plain-alpha", NOH_FEATURE_ALPHA, LIT | PHONE_LIT },
         { "plain-maps", NORMAL_AND_SURFACE, UNLIT | LIT | PHONE_LIT },
         { "plain-all", ALL_MAPS, LIT | PHONE_LIT },
-        { "skin", NOH_FEATURE_SKIN, UNLIT | LIT | TRANSFER | PHONE_UNLIT | PHONE_LIT | PHONE_TRANSFER },
-        { "skin-maps", NOH_FEATURE_SKIN | NORMAL_AND_SURFACE, LIT | PHONE_LIT },
+        { "skin", NOH_FEATURE_SKIN,
+          UNLIT | LIT | TRANSFER | PHONE_UNLIT | PHONE_LIT | PHONE_TRANSFER | SOFT | PHONE_SOFT },
+        { "skin-maps", NOH_FEATURE_SKIN | NORMAL_AND_SURFACE, LIT | PHONE_LIT | SOFT | PHONE_SOFT },
         { "skin-wrinkles", NOH_FEATURE_SKIN | NORMAL_AND_SURFACE | NOH_FEATURE_WRINKLES, LIT | PHONE_LIT },
         { "skin-codes", NOH_FEATURE_SKIN | NORMAL_AND_SURFACE | NOH_FEATURE_WRINKLES | NOH_FEATURE_WRINKLE_PIXEL, LIT },
         { "eye", NOH_FEATURE_EYE, UNLIT | LIT | TRANSFER | PHONE_LIT },
         { "teeth", NOH_FEATURE_TEETH, LIT | PHONE_LIT },
         { "toon", NOH_FEATURE_TOON, UNLIT | LIT },
     };
-    static const char *const lights[] = { "unlit", "lit", "transfer", "unlit-phone", "lit-phone", "transfer-phone" };
+    static const struct {
+        const char *name;
+        uint16_t features;
+        uint8_t lit, transfer;
+    } lights[] = { { "unlit", 0, 0, 0 },
+                   { "lit", 0, 1, 0 },
+                   { "transfer", 0, 1, 4 },
+                   { "unlit-phone", NOH_FEATURE_PHONE, 0, 0 },
+                   { "lit-phone", NOH_FEATURE_PHONE, 1, 0 },
+                   { "transfer-phone", NOH_FEATURE_PHONE, 1, 4 },
+                   { "soft", 0, NOH_LIT_SOFT, 0 },
+                   { "soft-phone", NOH_FEATURE_PHONE, NOH_LIT_SOFT, 0 } };
     for (size_t s = 0; s < COUNT(surfaces); s++) {
         for (unsigned i = 0; i < COUNT(lights); i++) {
-            const uint16_t tier = i > 2 ? NOH_FEATURE_PHONE : 0, features = (uint16_t)(surfaces[s].features | tier);
+            const uint16_t features = (uint16_t)(surfaces[s].features | lights[i].features);
             const noh_gl_variant_key key = { .features = features,
                                              .two_layers = !(features & NOH_FEATURE_NORMAL_MAP),
-                                             .lit = i % 3 > 0,
-                                             .transfer = i % 3 == 2 ? 4 : 0 };
+                                             .lit = lights[i].lit,
+                                             .transfer = lights[i].transfer };
             char name[NAME_BYTES];
             if (!(surfaces[s].lights >> i & 1u)) continue;
-            snprintf(name, sizeof name, "%s-%s", surfaces[s].name, lights[i]);
+            snprintf(name, sizeof name, "%s-%s", surfaces[s].name, lights[i].name);
             put_mesh(name, key);
         }
     }
@@ -183,6 +196,9 @@ static void put_drawables(void)
         put(all[i].name, "frag", NULL, before, all[i].fragment);
         puts(all[i].name);
     }
+    put("soft-shadow", "vert", NULL, "", &noh_shader_probe_triangle_vert);
+    put("soft-shadow", "frag", NULL, "", &noh_shader_shadow_blur_frag);
+    puts("soft-shadow");
     put("blob", "vert", NULL, "#define NOH_BLOBS_DRAWN 16\n", &noh_shader_blob_vert);
     put("blob", "frag", NULL, "", &noh_shader_blob_frag);
     puts("blob");

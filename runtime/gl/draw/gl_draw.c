@@ -131,7 +131,7 @@ static void set_lighting(const noh_gl_renderer *r, const noh_gl_variant *v)
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_ENVIRONMENT);
     r->gl->BindTexture(GL_TEXTURE_CUBE_MAP, r->light->cube.name);
     r->gl->ActiveTexture(GL_TEXTURE0 + NOH_UNIT_SHADOW);
-    r->gl->BindTexture(GL_TEXTURE_2D, r->light->shadow.name);
+    r->gl->BindTexture(GL_TEXTURE_2D, noh_gl_light_map(r->light));
 }
 
 /* Use a variant's program, with the camera of this pass. */

@@ -52,6 +52,8 @@ void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float r
         const uint32_t band = i > 3u ? 2u : i > 0u;
         for (uint32_t c = 0; c < 3u; c++) rows[i][c] = l->rest.coefs[i][c] * scale[i] * noh_sh_cosine_lobe[band];
     }
+    rows[1][3] = l->has_floor ? NOH_SOFT_DEEPEST : 1.0f;
+    if (shadow_px) rows[0][3] = noh_gl_soft_hardness(0.5f * l->shadow_texel * (float)shadow_px, shadow_px);
     for (uint32_t i = 0; i < 9u; i++) rows[9u + i / 3u][i % 3u] = l->turn[i];
     memcpy(rows[12], l->key, sizeof l->key);
     rows[12][3] = l->key_gloss;
@@ -84,18 +86,19 @@ static noh_gl_texture_desc cube_desc(const noh_gl_light_desc *d)
     return cube;
 }
 
-static noh_gl_texture_desc shadow_desc(const noh_gl_light_desc *d)
+static noh_gl_texture_desc depth_desc(const noh_gl_light_desc *d, int is_soft)
 {
     const uint32_t side = d->shadow_px ? d->shadow_px : 1u; /* a sampler needs a texture */
-    const noh_gl_texture_desc shadow = { GL_DEPTH_COMPONENT16, side, side, 0, 1, GL_LINEAR, 0 };
-    return shadow;
+    const noh_gl_texture_desc depth = { GL_DEPTH_COMPONENT16, side, side, 0, 1, is_soft ? GL_NEAREST : GL_LINEAR, 0 };
+    return depth;
 }
 
-uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc)
+uint64_t noh_gl_light_bytes(const noh_gl_light_desc *desc, int is_soft)
 {
     NOH_ASSERT(desc);
-    const noh_gl_texture_desc cube = cube_desc(desc), shadow = shadow_desc(desc);
-    return noh_gl_texture_bytes(&cube) + noh_gl_texture_bytes(&shadow);
+    const noh_gl_texture_desc cube = cube_desc(desc), depth = depth_desc(desc, is_soft);
+    const uint64_t soft = is_soft && desc->shadow_px ? noh_gl_soft_bytes(desc->shadow_px) : 0;
+    return noh_gl_texture_bytes(&cube) + noh_gl_texture_bytes(&depth) + soft;
 }
 
 noh_result noh_gl_light_upload(const noh_gl_light *light, noh_error *error)
@@ -131,35 +134,38 @@ static noh_result create_cube(noh_gl_light *l, noh_error *error)
 
 static noh_result create_shadow(noh_gl_light *l, noh_error *error)
 {
-    const noh_gl_texture_desc desc = shadow_desc(&l->desc);
+    const noh_gl_texture_desc desc = depth_desc(&l->desc, l->is_soft);
     const GLenum none = GL_NONE;
     int kept[2];
-    noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->shadow, error);
+    noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->depth, error);
     if (!result && l->desc.shadow_px) result = noh_gl_framebuffer_create(l->gl, l->ledger, &l->framebuffer, error);
     if (result) return result;
-    l->gl->BindTexture(GL_TEXTURE_2D, l->shadow.name);
-    noh_gl_label(l->gl, GL_TEXTURE, l->shadow.name, "shadow map", NULL);
-    l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
-    l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    l->gl->BindTexture(GL_TEXTURE_2D, l->depth.name);
+    noh_gl_label(l->gl, GL_TEXTURE, l->depth.name, "shadow map", NULL);
+    if (!l->is_soft) {
+        l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_MODE, GL_COMPARE_REF_TO_TEXTURE);
+        l->gl->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_COMPARE_FUNC, GL_LEQUAL);
+    }
     l->gl->BindTexture(GL_TEXTURE_2D, 0);
     if (l->desc.shadow_px) {
         noh_gl_framebuffers_keep(l->gl, kept);
         l->gl->BindFramebuffer(GL_FRAMEBUFFER, l->framebuffer);
-        l->gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, l->shadow.name, 0);
+        l->gl->FramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, l->depth.name, 0);
         l->gl->DrawBuffers(1, &none);
         if (l->gl->CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) {
             result = noh_fail(error, NOH_ERR_GL, "the driver cannot draw to the shadow map", 0, 0);
         }
         noh_gl_framebuffers_put_back(l->gl, kept);
     }
-    return result == NOH_OK ? noh_gl_error_check(l->gl, "the driver refused a shadow map", l->shadow.bytes, error)
+    return result == NOH_OK ? noh_gl_error_check(l->gl, "the driver refused a shadow map", l->depth.bytes, error)
                             : result;
 }
 
-static noh_result create_objects(noh_gl_light *l, noh_error *error)
+static noh_result create_objects(noh_gl_light *l, char *log, size_t log_bytes, noh_error *error)
 {
     noh_result result = create_cube(l, error);
     if (result == NOH_OK) result = create_shadow(l, error);
+    if (result == NOH_OK && l->is_soft && l->desc.shadow_px) result = noh_gl_soft_create(l, log, log_bytes, error);
     if (result != NOH_OK) noh_gl_light_delete(l);
     return result;
 }
@@ -175,7 +181,8 @@ noh_result noh_gl_light_create(const noh_gl_device *device, const noh_gl_light_d
     out->gl = device->api;
     out->ledger = device->ledger;
     out->desc = *desc;
-    return create_objects(out, error);
+    out->is_soft = noh_gl_has_soft_shadows(device->caps);
+    return create_objects(out, device->log, device->log_bytes, error);
 }
 
 void noh_gl_light_delete(noh_gl_light *light)
@@ -183,7 +190,8 @@ void noh_gl_light_delete(noh_gl_light *light)
     NOH_ASSERT(light && light->gl && light->ledger);
     noh_gl_framebuffer_delete(light->gl, light->ledger, &light->framebuffer);
     noh_gl_texture_delete(light->gl, light->ledger, &light->cube);
-    noh_gl_texture_delete(light->gl, light->ledger, &light->shadow);
+    noh_gl_texture_delete(light->gl, light->ledger, &light->depth);
+    noh_gl_soft_delete(light);
 }
 
 void noh_gl_light_forget(noh_gl_light *light)
@@ -199,7 +207,7 @@ void noh_gl_light_forget(noh_gl_light *light)
 noh_result noh_gl_light_restore(noh_gl_light *light, noh_error *error)
 {
     noh_gl_light_forget(light);
-    return create_objects(light, error);
+    return create_objects(light, NULL, 0, error);
 }
 
 /* ---- the shadow map ---- */
@@ -222,9 +230,10 @@ void noh_gl_light_begin_shadow(const noh_gl_light *light)
     light->gl->ClearBufferfv(GL_DEPTH, 0, &far_away);
 }
 
-void noh_gl_light_end_shadow(const noh_gl_light *light)
+void noh_gl_light_end_shadow(const noh_gl_light *light, const float view_projection[16], const noh_lighting *lighting)
 {
-    NOH_ASSERT(light && light->framebuffer);
+    NOH_ASSERT(light && light->framebuffer && view_projection);
+    if (light->is_soft) noh_gl_soft_blur(light, view_projection, lighting);
     noh_gl_offscreen_end(light->gl, &light->kept);
     noh_gl_group_end(light->gl);
 }

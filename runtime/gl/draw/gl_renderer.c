@@ -16,6 +16,7 @@
 #include "noh/pack.h"
 #include "gl/draw/gl_material_internal.h"
 #include "gl/device/gl_names_internal.h"
+#include "gl/draw/gl_light_internal.h"
 #include "gl/draw/gl_renderer_internal.h"
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
@@ -45,7 +46,7 @@ static noh_gl_variant_key completed(noh_gl_variant_key key, int encode_srgb, int
 {
     if (shading == NOH_SHADING_PHONE && !key.depth) key.features |= NOH_FEATURE_PHONE;
     key.encode_srgb = (uint8_t)(encode_srgb && !key.depth);
-    key.lit = (uint8_t)(lit && !key.depth);
+    key.lit = (uint8_t)(key.depth ? 0 : lit);
     if (!key.lit) key.transfer = 0;
     key.two_layers = (uint8_t)(without_tangents && !key.depth);
     return key;
@@ -254,8 +255,11 @@ NOH_NEVER_INLINE static noh_result put_keys(const noh_gl_renderer_desc *desc, vo
 noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_renderer_desc *desc, void *memory,
                                   size_t bytes, noh_gl_renderer *out, noh_error *error)
 {
+    noh_gl_renderer_desc d;
     noh_result result;
     NOH_ASSERT(device && device->api && device->ledger && desc && out);
+    d = *desc;
+    d.lit = !desc->lit ? 0 : noh_gl_has_soft_shadows(device->caps) ? NOH_LIT_SOFT : 1;
     memset(out, 0, sizeof *out);
     out->gl = device->api;
     out->ledger = device->ledger;
@@ -263,13 +267,13 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     out->without_tangents = desc->without_tangents != 0;
     out->encode_srgb = desc->encode_srgb != 0;
     out->fades = desc->fades != 0;
-    out->lit = desc->lit != 0;
+    out->lit = d.lit;
     out->shading = (uint8_t)desc->shading;
     out->view = view_of(desc);
     if (desc->shaders) {
         out->shaders = *desc->shaders;
     }
-    result = put_keys(desc, memory, bytes, out, error);
+    result = put_keys(&d, memory, bytes, out, error);
     return result ? result : create_objects(out, device->log, device->log_bytes, error);
 }
 

@@ -123,7 +123,8 @@ static size_t put_digit(char *text, size_t at, const char *name, unsigned digit)
     return put_text(text, at, value);
 }
 
-/* Shadow map fetches of a lit pixel: 1 in the phone tier, else 4, or fewer if its other textures leave fewer of 8. */
+/* Shadow map fetches of a lit pixel, if the map is not soft: 1 in the phone tier, else 4, or fewer if its other textures
+ * leave fewer of 8. */
 static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
@@ -176,7 +177,9 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
     at = put_digit(text, at, "#define NOH_DEBUG_VIEW ", key.view);
-    if (key.lit) at = put_digit(text, at, "#define NOH_SHADOW_TAPS ", shadow_taps(key.features));
+    if (key.lit) {
+        at = put_digit(text, at, "#define NOH_SHADOW_TAPS ", key.lit == NOH_LIT_SOFT ? 0 : shadow_taps(key.features));
+    }
     at = put_digit(text, at, "#define NOH_TRANSFER ", key.lit ? key.transfer & ~NOH_TRANSFER_ON_NORMAL : 0);
     for (size_t i = 0; i < sizeof flags / sizeof flags[0]; i++) {
         at = put_text(text, at, flags[i].on ? flags[i].line : "");

@@ -35,8 +35,9 @@ static noh_result create_program(noh_gl_drawable *d, const noh_gl_device *device
                                                  "noh_shadow_map" };
     const char *pieces[PIECES_MAX] = { "precision highp float;\nprecision highp int;\n",
                                        which == NOH_DRAWABLE_DEPTH ? "#define NOH_DEPTH_ONLY\n"
-                                       : desc->lit                 ? "#define NOH_LIT\n"
-                                                                   : "",
+                                       : !desc->lit                ? ""
+                                       : d->is_soft                ? "#define NOH_LIT\n#define NOH_SHADOW_TAPS 0\n"
+                                                                   : "#define NOH_LIT\n",
                                        noh_gl_shader_text("common_fade.glsl"),
                                        noh_gl_shader_text("common_fragment.glsl"),
                                        noh_gl_shader_text("common_environment.glsl") };
@@ -86,6 +87,7 @@ noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_draw
     memset(out, 0, sizeof *out);
     out->gl = gl;
     out->ledger = device->ledger;
+    out->is_soft = noh_gl_has_soft_shadows(device->caps);
     if (desc->texture.width) result = noh_gl_texture_create(gl, out->ledger, &desc->texture, &out->texture, error);
     if (!result && desc->index_bytes) {
         noh_gl_error_take(gl);
@@ -124,7 +126,8 @@ noh_result noh_gl_drawable_restore(noh_gl_drawable *d, const noh_gl_drawable_des
                                    noh_error *error)
 {
     NOH_ASSERT(d && d->gl);
-    const noh_gl_device device = { d->gl, NULL, d->ledger, log, log_bytes };
+    const noh_gl_caps caps = { .render_f16 = d->is_soft };
+    const noh_gl_device device = { d->gl, &caps, d->ledger, log, log_bytes };
     delete_objects(d, noh_gl_lost_api());
     return noh_gl_drawable_create(&device, desc, d, error);
 }
@@ -148,6 +151,7 @@ void noh_gl_drawable_light(const noh_gl_drawable *d, const noh_gl_light *light, 
     const int *uniforms = d->uniforms[NOH_DRAWABLE_COLOR];
     float rows[NOH_LIGHTING_ROWS][4];
     noh_lighting near_by;
+    NOH_ASSERT(d->is_soft == light->is_soft); /* both were made with the same noh_gl_device.caps */
     noh_gl_lighting_less(lighting, origin, &near_by);
     noh_lighting_pack(&near_by, light->desc.shadow_px, rows);
     d->gl->Uniform4fv(uniforms[NOH_DRAWABLE_LIGHTING], (GLsizei)NOH_LIGHTING_ROWS, rows[0]);
@@ -155,7 +159,7 @@ void noh_gl_drawable_light(const noh_gl_drawable *d, const noh_gl_light *light, 
     d->gl->ActiveTexture(GL_TEXTURE0 + NOH_DRAWABLE_UNIT_ENVIRONMENT);
     d->gl->BindTexture(GL_TEXTURE_CUBE_MAP, light->cube.name);
     d->gl->ActiveTexture(GL_TEXTURE0 + NOH_DRAWABLE_UNIT_SHADOW);
-    d->gl->BindTexture(GL_TEXTURE_2D, light->shadow.name);
+    d->gl->BindTexture(GL_TEXTURE_2D, noh_gl_light_map(light));
 }
 
 void noh_gl_drawable_end(const noh_gl_drawable *d, const noh_gl_raster *raster)

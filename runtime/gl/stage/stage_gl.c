@@ -251,7 +251,7 @@ static void carve_light(measure *m)
     noh_gl_light *light;
     if (!m->desc->light) return;
     light = CARVE(m, 1, noh_gl_light);
-    add(m, "light", NOH_NONE, from, noh_gl_light_bytes(m->desc->light));
+    add(m, "light", NOH_NONE, from, noh_gl_light_bytes(m->desc->light, noh_gl_has_soft_shadows(m->caps)));
     if (!m->gl) return;
     memset(light, 0, sizeof *light);
     m->gl->light = light;

@@ -342,6 +342,7 @@ void noh_gl_lighting_less(const noh_lighting *lighting, const float origin[3], n
 {
     *out = *lighting;
     noh_projection_less(out->shadow, origin, NULL);
+    out->floor -= origin[1];
 }
 
 static void begin_draw(drawing *d, const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view)
@@ -455,6 +456,6 @@ noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *err
     }
     noh_gl_light_begin_shadow(gl->light);
     result = noh_stage_draw(stage, NOH_PASS_DEPTH, view, NULL, error);
-    noh_gl_light_end_shadow(gl->light);
+    noh_gl_light_end_shadow(gl->light, stage->views[view].view_projection, gl->lighting ? &gl->lighting_less : NULL);
     return result;
 }

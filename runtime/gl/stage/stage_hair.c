@@ -362,10 +362,11 @@ void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t 
 void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, uint32_t view)
 {
     NOH_ASSERT(hair && hair->drawable.gl && stage && stage->gpu);
-    const noh_gl_light *light = ((const noh_stage_gl *)stage->gpu)->light;
+    const noh_stage_gl *gl = stage->gpu;
+    const noh_gl_light *light = gl->light;
     if (!light || !light->framebuffer) return;
     noh_gl_group_begin(hair->drawable.gl, "noh hair's shadow", NULL);
     noh_gl_light_bind_shadow(light);
     noh_stage_hair_draw(hair, stage, view, NOH_PASS_DEPTH);
-    noh_gl_light_end_shadow(light);
+    noh_gl_light_end_shadow(light, stage->views[view].view_projection, gl->lighting ? &gl->lighting_less : NULL);
 }

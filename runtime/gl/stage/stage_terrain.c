@@ -189,5 +189,5 @@ void noh_stage_terrain_draw_shadow(noh_stage_terrain *terrain, const noh_stage *
     noh_gl_depth_only_begin(terrain->drawable.gl, &raster);
     draw_blocks(terrain, NOH_DRAWABLE_DEPTH, 1);
     noh_gl_drawable_end(&terrain->drawable, &raster);
-    noh_gl_light_end_shadow(gl->light);
+    noh_gl_light_end_shadow(gl->light, view->view_projection, gl->lighting);
 }

@@ -423,6 +423,8 @@ int figure_shade(figure *f)
     if (!f->desc.light || !f->g || !f->desc.light->desc.shadow_px) {
         return 0;
     }
+    f->desc.light->told.has_floor = f->shows_floor;
+    f->desc.light->told.floor = f->floor;
     if (noh_stage_draw_shadow(f->stage, 1, &error)) return tool_fail_error(f->desc.file->path, &error);
     drawn_hair_draw_shadow(&f->hair, f->stage, 1);
     return 0;
