@@ -1,4 +1,5 @@
-/* graph.h: animation graphs of a pack, found and read by name. noh.h plays them: noh_actor_play_graph. */
+/* graph.h: animation graphs: of a pack, found and read by name, and made in code. noh.h plays them:
+ * noh_actor_play_graph. */
 
 #ifndef NOH_GRAPH_H
 #define NOH_GRAPH_H
@@ -143,6 +144,88 @@ typedef struct noh_graph_pack {
 
 /* Get the name of a clip of a pack's graph by index; "" past the last. */
 const char *noh_graph_pack_clip_name(const noh_pack_graph *graph, uint32_t clip);
+
+/* ======== graphs made in code ========
+ * What a .graph text says (noh help FORMATS), as structs. Nodes, parameters and masks refer to each other by name. A
+ * graph becomes a pack of its own, which goes into noh_kind_desc.clip_packs with the packs of the clips that it
+ * plays: from there on nothing tells it from a graph that noh build has made. */
+
+typedef struct noh_graph_param_desc {
+    const char *name;          /* required */
+    uint32_t kind;             /* NOH_PARAM_*; default (0) NOH_PARAM_NUMBER */
+    float minimum, maximum;    /* NUMBER, INTEGER */
+    float initial;             /* not TRIGGER */
+    const char *const *values; /* ENUM: [value_count] names of the numbers from 0 */
+    uint32_t value_count;
+} noh_graph_param_desc;
+
+/* Of a MACHINE; tested in their order. */
+typedef struct noh_graph_transition_desc {
+    const char *from, *to; /* states: names of children; from NULL: any but `to` */
+    noh_condition condition;
+    const char *param; /* NULL with NOH_WHEN_ENDING */
+    float threshold;
+    uint32_t duration_ticks; /* default (0) immediate, never inertial */
+    noh_curve curve;         /* of a cross-fade */
+    uint32_t flags;          /* NOH_TRANSITION_* */
+} noh_graph_transition_desc;
+
+/* Fields that a kind does not have are 0. */
+typedef struct noh_graph_node_desc {
+    const char *name; /* required; a state has the name of its node */
+    noh_node_kind kind;
+    const char *const
+        *children;        /* [child_count] names of nodes; not CLIP. A node is a child of one other; the root, which
+                                  * gives the pose, of none */
+    uint32_t child_count; /* 1..NOH_GRAPH_CHILDREN_MAX; BLEND, ADD, MASK, ONE_SHOT: 2 */
+    const float *points;  /* SPACE_1D: [child_count], increasing; SPACE_2D: [child_count][2] */
+    const char *param, *param_y; /* t or x, and y of SPACE_2D; default (NULL) the constant `value` and 0. SELECT,
+                                  * ONE_SHOT: required */
+    float value;                 /* constant t or x; ONE_SHOT: triggered by a parameter above this */
+    const char *mask;            /* MASK: required; ONE_SHOT: default (NULL) everywhere */
+    const char *clip;            /* CLIP: default (NULL) `name`; ADD: the reference, default (NULL) the bind pose */
+    const char *sync;            /* CLIP: name of its sync group; default (NULL) none */
+    int32_t speed;               /* CLIP: 1/65,536; default (0) 65,536 */
+    uint32_t start_tick;         /* CLIP */
+    noh_loop loop;               /* CLIP: default the clip's own */
+    uint32_t paused;             /* CLIP: 1: starts at speed 0 */
+    const noh_graph_transition_desc *transitions; /* MACHINE: [transition_count] */
+    uint32_t transition_count;
+    noh_curve curve;                     /* SELECT, ONE_SHOT */
+    uint32_t flags;                      /* SELECT: NOH_TRANSITION_* */
+    uint32_t fade_ticks, fade_out_ticks; /* SELECT: fade_ticks; ONE_SHOT: in and out */
+} noh_graph_node_desc;
+
+typedef struct noh_graph_joint_desc {
+    const char *joint; /* required */
+    uint8_t weight;    /* 255: full */
+    uint8_t subtree;   /* 1: with all its descendants */
+} noh_graph_joint_desc;
+
+/* Joints start at weight 0, then entries apply in order. */
+typedef struct noh_graph_mask_desc {
+    const char *name; /* required */
+    const noh_graph_joint_desc *joints;
+    uint32_t joint_count;
+    uint8_t floats; /* weight of all floats */
+} noh_graph_mask_desc;
+
+typedef struct noh_graph_desc {
+    const char *name;                   /* required */
+    const noh_graph_node_desc *nodes;   /* [node_count], in any order */
+    const noh_graph_param_desc *params; /* [param_count] */
+    const noh_graph_mask_desc *masks;   /* [mask_count] */
+    uint32_t node_count;                /* 1..NOH_GRAPH_NODES_MAX */
+    uint32_t param_count, mask_count;
+} noh_graph_desc;
+
+/* Size and make a pack with one graph. The desc may go afterwards; the memory must outlive the pack. Clips and joints
+ * are looked up by noh_stage_plan_make and noh_stage_init, with the errors of a graph that noh build made.
+ * memory  aligned to NOH_MEMORY_ALIGN; some 60 bytes a node, and all names. The size is 0 where init says LIMIT
+ * errors  ARG a field (where: index of the node, parameter or mask; `what` is then text in `memory` that names it);
+ *         LIMIT a count, or a name that is missing or too long; MEMORY need: the bytes */
+size_t noh_graph_size(const noh_graph_desc *desc);
+noh_result noh_graph_init(void *memory, size_t bytes, const noh_graph_desc *desc, noh_pack *pack, noh_error *error);
 
 #ifdef __cplusplus
 }

@@ -538,8 +538,8 @@ noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t inde
 /* ---- graphs ---- */
 
 /* For noh_kind_desc.graphs.
- * names  of graphs in the kind's packs of clips (noh build --graph), separated by blanks; '*' at the end matches any
- *        rest. An actor plays one of them at a time. Read by plans and by init. NULL: none */
+ * names  of graphs in the kind's packs of clips (noh build --graph, noh_graph_init), separated by blanks; '*' at the
+ *        end matches any rest. An actor plays one of them at a time. Read by plans and by init. NULL: none */
 noh_module noh_graph_module(const char *names);
 
 /* Play an animation graph (graph.h) on a base or over layer, from its beginning: all its parameters as the pack

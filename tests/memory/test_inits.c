@@ -191,6 +191,14 @@ INIT(pose_scratch_init)
     return noh_pose_scratch_init(memory, bytes, s.controller.set, 1, &scratch, error);
 }
 
+INIT(graph_init)
+{
+    static const noh_graph_node_desc node = { .name = "walk" };
+    const noh_graph_desc desc = { .name = "one", .nodes = &node, .node_count = 1 };
+    noh_pack pack;
+    return noh_graph_init(memory, bytes, &desc, &pack, error);
+}
+
 INIT(graph_state_init)
 {
     noh_graph_state *graph;
@@ -478,6 +486,7 @@ static const struct {
     ROW(clip_bank_view_init),
     ROW(controller_init),
     ROW(pose_scratch_init),
+    ROW(graph_init),
     ROW(graph_state_init),
     ROW(graph_scratch_init),
     ROW(graph_pack_init),

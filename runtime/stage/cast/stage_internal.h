@@ -493,7 +493,8 @@ const noh_pack_cover_header *noh_stage_cover_of(const noh_pack *garment, const n
 /* Before updates are chosen: list the garments of each wearer that are posed or shown. */
 void noh_stage_link_worn(noh_stage *s);
 void noh_stage_update_worn(noh_stage *s); /* and after: they are updated when their wearers are */
-/* In a job: the local pose of a garment from job->wearer; its floats after the wearer's. Nothing of what is not worn. */
+/* In a job: the local pose of a garment from job->wearer; its floats after the wearer's. Actors that are not worn stay
+ * as they are. */
 void noh_stage_wear_pose(const noh_stage *s, const noh_stage_job_part *job, const noh_stage_kind *k, uint32_t index,
                          noh_transform *local);
 void noh_stage_wear_palette(const noh_stage *s, const noh_stage_kind *k, uint32_t index);

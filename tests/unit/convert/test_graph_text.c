@@ -142,7 +142,7 @@ static void parameters_are_checked(void **state)
 static void nodes_are_checked(void **state)
 {
     (void)state;
-    refused(TWO, 7, "'run' is not a child of a node, and neither is 'walk' in line 6");
+    refused(TWO, 7, "'run': it is the child of no node, and neither is 'walk'");
     refused(TWO "blend b walk\n", 8, "a second node is missing");
     refused(TWO "blend b walk run\n", 8, "'b' needs by=PARAMETER");
     refused(TWO "blend b walk run by=2\n", 8, "must be 0 to 1");
@@ -165,10 +165,10 @@ static void nodes_are_checked(void **state)
     refused(TWO "one-shot b walk run\n", 8, "'b' needs on=TRIGGER");
     refused(TWO "one-shot b walk run on=v\n", 8, "'v' must be a trigger here");
     refused(TWO "clip c wave loop=repeat\nblend d walk run by=v\none-shot b d c on=t\n", 10, "'c' never ends");
-    refused("graph a\nnumber v 0 1\nclip walk\nblend b c walk by=v\nblend c b d by=v\nclip d run\n", 1,
-            "every node is a child");
-    refused("graph a\nnumber v 0 1\nclip walk\nblend b c d by=v\nblend c b e by=v\nclip d run\nclip e run\n", 4,
-            "'b' is its own descendant");
+    refused("graph a\nnumber v 0 1\nclip walk\nblend b c walk by=v\nblend c b d by=v\nclip d run\n", 5,
+            "'c': it is its own descendant");
+    refused("graph a\nnumber v 0 1\nclip walk\nblend b c d by=v\nblend c b e by=v\nclip d run\nclip e run\n", 5,
+            "'c': it is its own descendant");
 }
 
 static void transitions_are_checked(void **state)

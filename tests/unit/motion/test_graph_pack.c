@@ -3,6 +3,8 @@
 #include "support/graph_fixture.h"
 
 #include "support/pack_walk.h"
+
+#include <math.h>
 #include "motion/anim/tracks_internal.h"
 #include "motion/graph/graph_internal.h"
 #include "motion/graph/graph_pack_internal.h"
@@ -583,6 +585,167 @@ static void forged_graphs_are_refused(void **state)
 #undef X
 }
 
+/* ---- made in code ---- */
+
+/* A graph that is right, and what each lie changes of it. */
+typedef struct draft {
+    noh_graph_node_desc nodes[6];
+    noh_graph_transition_desc ways[2];
+    noh_graph_param_desc params[3];
+    noh_graph_joint_desc joints[2];
+    noh_graph_mask_desc mask;
+    noh_graph_desc desc;
+    const char *states[3], *shot[2], *values[2];
+    float points[6];
+} draft;
+
+static void start(draft *d)
+{
+    memset(d, 0, sizeof *d);
+    d->states[0] = "walk", d->states[1] = "run", d->states[2] = "wave";
+    d->shot[0] = "moves", d->shot[1] = "jump";
+    d->values[0] = "low", d->values[1] = "high";
+    d->points[2] = 1.0f;
+    d->params[0] = (noh_graph_param_desc){ .name = "speed", .maximum = 2.0f };
+    d->params[1] = (noh_graph_param_desc){ .name = "mood", .kind = NOH_PARAM_ENUM };
+    d->params[1].values = d->values, d->params[1].value_count = 2;
+    d->params[2] = (noh_graph_param_desc){ .name = "leap", .kind = NOH_PARAM_TRIGGER };
+    d->ways[0] = (noh_graph_transition_desc){ "walk", "run", NOH_WHEN_ABOVE, "speed", 1.0f, 4800, NOH_CURVE_LINEAR, 0 };
+    d->ways[1] = (noh_graph_transition_desc){ .to = "walk", .condition = NOH_WHEN_TRIGGERED, .param = "leap" };
+    d->joints[0] = (noh_graph_joint_desc){ "joint2", 255, 1 };
+    d->joints[1] = (noh_graph_joint_desc){ "joint3", 64, 0 };
+    d->mask = (noh_graph_mask_desc){ "upper", d->joints, 2, 128 };
+    d->nodes[0] = (noh_graph_node_desc){ .name = "leaps", .kind = NOH_NODE_ONE_SHOT, .param = "leap", .mask = "upper" };
+    d->nodes[0].children = d->shot, d->nodes[0].child_count = 2;
+    d->nodes[1] = (noh_graph_node_desc){ .name = "jump", .clip = "clip1", .loop = NOH_LOOP_ONCE };
+    d->nodes[2] = (noh_graph_node_desc){ .name = "moves", .kind = NOH_NODE_MACHINE };
+    d->nodes[2].children = d->states, d->nodes[2].child_count = 3;
+    d->nodes[2].transitions = d->ways, d->nodes[2].transition_count = 2;
+    for (uint32_t i = 0; i < 3; i++) d->nodes[3 + i] = (noh_graph_node_desc){ .name = d->states[i], .clip = "clip0" };
+    d->desc = (noh_graph_desc){ "draft", d->nodes, d->params, &d->mask, 6, 3, 1 };
+}
+
+/* The machine as a node that chooses by a parameter. */
+static void start_choice(draft *d, noh_node_kind kind, const char *param)
+{
+    start(d);
+    d->nodes[2].transition_count = 0;
+    d->nodes[2].kind = kind;
+    d->nodes[2].param = param;
+    d->nodes[2].points = d->points;
+}
+
+static noh_result draw_up(const draft *d, noh_pack *pack, noh_error *error)
+{
+    static uint64_t memory[512];
+    const size_t bytes = noh_graph_size(&d->desc);
+    uint8_t *at = (uint8_t *)memory + (64u - (uintptr_t)memory % 64u) % 64u;
+    noh_result result;
+    assert_true(bytes + 128u < sizeof memory);
+    memset(memory, 0xa5, sizeof memory);
+    result = noh_graph_init(at, bytes, &d->desc, pack, error);
+    for (size_t i = bytes; i < bytes + 32u; i++) assert_int_equal(at[i], 0xa5);
+    return result;
+}
+
+static void a_graph_made_in_code_is_a_pack(void **state)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_graph_pack_desc desc;
+    noh_graph_pack *made;
+    noh_pack pack;
+    draft d;
+    (void)state;
+    start(&d);
+    if (draw_up(&d, &pack, &error)) fail_msg("%s", error.what);
+    desc = desc_of(&pack);
+    desc.mesh = &fixture.pack;
+    made = make(&desc);
+    assert_string_equal(made->source.name, "draft");
+    assert_int_equal(noh_graph_pack_find_state(made, noh_graph_pack_find_machine(made, "moves"), "wave"), 2);
+    assert_int_equal(noh_graph_pack_find_value(made, noh_graph_pack_find_param(made, "mood"), "high"), 1);
+    free(made);
+}
+
+static void refused_by_name(const draft *d, const char *what)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_pack pack;
+    assert_int_equal(draw_up(d, &pack, &error), NOH_ERR_ARG);
+    if (!strstr(error.what, what)) fail_msg("'%s' instead of '%s'", error.what, what);
+}
+
+/* what, then what changes */
+#define LIE(what, ...)             \
+    do {                           \
+        start(&d);                 \
+        __VA_ARGS__;               \
+        refused_by_name(&d, what); \
+    } while (0)
+
+/* Names that are not there, and links that make no tree. */
+static void names_in_code_are_checked(void **state)
+{
+    draft d;
+    (void)state;
+    LIE("'moves': it has no child 'rum': add it, or correct the name", d.ways[0].to = "rum");
+    LIE("'moves': there is no parameter 'sped'", d.ways[0].param = "sped");
+    LIE("'moves': there is no node 'wawe'", d.states[2] = "wawe");
+    LIE("'leaps': there is no mask 'lower'", d.nodes[0].mask = "lower");
+    LIE("'walk': its name is given twice", d.nodes[4].name = "walk");
+    LIE("'moves': there is a second parent for the child 'run'", d.states[2] = "run");
+    LIE("'run': it is the child of no node, and neither is 'leaps'", d.states[1] = "walk", d.states[0] = "wave",
+        d.nodes[2].child_count = 2, d.nodes[2].transition_count = 0);
+    LIE("'moves': it is its own descendant: remove the circle", d.states[2] = "moves", d.shot[0] = "wave",
+        d.nodes[2].transition_count = 0);
+}
+
+/* What the checker of packs says, with the name of the node. */
+static void values_in_code_are_checked(void **state)
+{
+    draft d;
+    (void)state;
+    LIE("'moves': a transition's condition does not suit the parameter 'speed'",
+        d.ways[0].condition = NOH_WHEN_TRIGGERED);
+    LIE("'leaps': it needs a trigger, and has the parameter 'speed'", d.nodes[0].param = "speed");
+    LIE("'moves': it needs a value for each child, of an enum or an integer, and has 'mood'",
+        start_choice(&d, NOH_NODE_SELECT, "mood"));
+    LIE("'moves': two points are equal: wave", start_choice(&d, NOH_NODE_SPACE_2D, "speed"));
+    LIE("'moves': points of a blend space do not rise", start_choice(&d, NOH_NODE_SPACE_1D, "speed"));
+    LIE("'moves': transition has an unknown condition", d.ways[1].threshold = NAN);
+    LIE("'moves': transition is not between two states", d.ways[0].to = "walk");
+    LIE("'run': clip of a graph has no speed, or an unknown loop", d.nodes[4].loop = (noh_loop)7);
+    LIE("'jump': graph node has a field that its kind does not have", d.nodes[1].value = 1.0f);
+    LIE("'speed': range of a parameter does not fit", d.params[0].initial = 3.0f);
+    LIE("'leaps': graph node of an unknown kind", d.nodes[0].kind = (noh_node_kind)300);
+}
+
+static void counts_and_names_in_code_have_limits(void **state)
+{
+    static char name[300];
+    noh_error error;
+    noh_pack pack;
+    (void)state;
+    memset(name, 'x', sizeof name - 1u);
+    for (uint32_t lie = 0; lie < 8; lie++) {
+        draft d;
+        start(&d);
+        switch (lie) {
+        case 0: d.desc.node_count = 0; break;
+        case 1: d.desc.node_count = NOH_GRAPH_NODES_MAX + 1u; break;
+        case 2: d.desc.param_count = NOH_GRAPH_PARAMS_MAX + 1u; break;
+        case 3: d.nodes[2].child_count = NOH_GRAPH_CHILDREN_MAX + 1u; break;
+        case 4: d.nodes[2].transition_count = NOH_GRAPH_TRANSITIONS_MAX + 1u; break;
+        case 5: d.nodes[3].name = name; break;
+        case 6: d.desc.name = NULL; break;
+        default: d.mask.joint_count = NOH_GRAPH_NAMES_MAX + 1u; break;
+        }
+        assert_int_equal(noh_graph_size(&d.desc), 0);
+        assert_int_equal(draw_up(&d, &pack, &error), NOH_ERR_LIMIT);
+        assert_int_equal(error.where, lie == 3 || lie == 4 ? 2 : lie == 5 ? 3 : 0);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(graphs_are_found_by_name),
     cmocka_unit_test(parameters_have_names_ranges_and_values),
@@ -598,6 +761,10 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_flip_is_refused),
     cmocka_unit_test(repaired_flips_of_a_graph_stay_in_bounds),
     cmocka_unit_test(forged_graphs_are_refused),
+    cmocka_unit_test(a_graph_made_in_code_is_a_pack),
+    cmocka_unit_test(names_in_code_are_checked),
+    cmocka_unit_test(values_in_code_are_checked),
+    cmocka_unit_test(counts_and_names_in_code_have_limits),
 };
 
 TEST_MAIN(tests, set_up, tear_down)

@@ -17,10 +17,75 @@ typedef struct ball { /* the indices that a game looks up once */
     uint32_t speed, attention, act, bow, dances, bows;
 } ball;
 
+/* The graph of the pack, and the same one made in code. */
+static int in_code;
+static noh_pack made_in_code;
+static const noh_pack *both[2];
+
+static void make_moves(void)
+{
+    static const char *const acts[] = { "go", "dance" }, *const paces[] = { "stand", "stroll", "hurry", "look_round" };
+    static const char *const dances[] = { "paces", "dance" }, *const bows[] = { "acts", "bowing" };
+    static const float points[] = { 0.0f, 0.0f, 0.5f, 0.0f, 0.9f, 0.0f, 0.0f, 1.0f };
+    static const noh_graph_param_desc params[] = {
+        { .name = "speed", .maximum = 0.9f },
+        { .name = "attention", .maximum = 1.0f },
+        { .name = "act", .kind = NOH_PARAM_ENUM, .values = acts, .value_count = 2 },
+        { .name = "bow", .kind = NOH_PARAM_TRIGGER },
+    };
+    static const noh_graph_node_desc nodes[] = {
+        { .name = "bows",
+          .kind = NOH_NODE_ONE_SHOT,
+          .children = bows,
+          .child_count = 2,
+          .param = "bow",
+          .curve = NOH_CURVE_SMOOTHSTEP,
+          .fade_ticks = 12000,
+          .fade_out_ticks = 24000 },
+        { .name = "acts",
+          .kind = NOH_NODE_SELECT,
+          .children = dances,
+          .child_count = 2,
+          .param = "act",
+          .flags = NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP,
+          .fade_ticks = 19200 },
+        { .name = "paces",
+          .kind = NOH_NODE_SPACE_2D,
+          .children = paces,
+          .child_count = 4,
+          .points = points,
+          .param = "speed",
+          .param_y = "attention" },
+        { .name = "stand", .clip = "idle" },
+        { .name = "stroll", .clip = "walk", .sync = "feet" },
+        { .name = "hurry", .clip = "walk", .sync = "feet", .speed = 117965 },
+        { .name = "look_round" },
+        { .name = "dance" },
+        { .name = "bowing", .clip = "bow", .loop = NOH_LOOP_ONCE },
+    };
+    const noh_graph_desc desc = { .name = "moves",
+                                  .nodes = nodes,
+                                  .params = params,
+                                  .node_count = TEST_COUNT(nodes),
+                                  .param_count = TEST_COUNT(params) };
+    static uint8_t memory[4096];
+    const size_t bytes = noh_graph_size(&desc);
+    assert_true(bytes > 0 && bytes + 64u < sizeof memory);
+    if (noh_graph_init(memory + (64u - (uintptr_t)memory % 64u), bytes, &desc, &made_in_code, &said))
+        fail_msg("%s", said.what);
+}
+
 static void open_cast(cast *c, uint32_t actors)
 {
     memset(c, 0, sizeof *c);
     cast_map(c, PUPPETS, "demo/puppet_levels.noh");
+    if (in_code) {
+        both[0] = &c->packs[0];
+        both[1] = &made_in_code;
+        c->kinds[0].clip_packs = both;
+        c->kinds[0].clip_pack_count = 2;
+        make_moves();
+    }
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
@@ -521,7 +586,7 @@ static void open_crowd(cast *c, uint32_t jobs)
 /* A state put back is followed by the same frames, whatever was between; and so is a fork with other jobs. */
 static void a_state_put_back_plays_on_the_same(void **state)
 {
-    uint64_t hashes[160];
+    static uint64_t hashes[160]; /* of the pack's graph, and then of the one made in code */
     uint8_t *saved;
     size_t bytes;
     ball b;
@@ -532,7 +597,11 @@ static void a_state_put_back_plays_on_the_same(void **state)
     b = names_of(c.stage);
     for (uint32_t f = 0; f < 130; f++) crowd_frame(&c, &b, f);
     saved = test_aligned(noh_stage_state(c.stage, &bytes), (size_t)c.plan.state_bytes);
-    for (uint32_t f = 130; f < 290; f++) crowd_frame(&c, &b, f), hashes[f - 130] = noh_stage_hash(c.stage);
+    for (uint32_t f = 130; f < 290; f++) {
+        crowd_frame(&c, &b, f);
+        if (in_code && noh_stage_hash(c.stage) != hashes[f - 130]) fail_msg("frame %u differs in code", (unsigned)f);
+        hashes[f - 130] = noh_stage_hash(c.stage);
+    }
     assert_int_equal(noh_stage_set_state(c.stage, saved, bytes, NULL), NOH_OK);
     assert_int_equal(noh_stage_set_state(fork.stage, saved, bytes, NULL), NOH_OK);
     for (uint32_t f = 130; f < 290; f++) {
@@ -577,6 +646,25 @@ static void a_broken_state_does_no_harm(void **state)
     close_cast(&c);
 }
 
+/* The poses of the pack's graph, in a stage whose graph was made in code; its bytes are counted. */
+static void a_graph_made_in_code_is_the_same(void **state)
+{
+    uint64_t plain;
+    cast c;
+    open_cast(&c, 3);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    plain = c.plan.cpu_bytes;
+    close_cast(&c);
+    in_code = 1;
+    open_cast(&c, 3);
+    assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &c.plan, NULL), NOH_OK);
+    assert_int_equal(c.plan.cpu_bytes, plain);
+    close_cast(&c);
+    an_actor_shows_the_graphs_own_pose(state);
+    a_state_put_back_plays_on_the_same(state);
+    in_code = 0;
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
@@ -589,6 +677,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(clips_and_graphs_fade_into_each_other),
         cmocka_unit_test(a_graph_plays_on_a_layer),
         cmocka_unit_test(a_state_put_back_plays_on_the_same),
+        cmocka_unit_test(a_graph_made_in_code_is_the_same),
         cmocka_unit_test(a_broken_state_does_no_harm),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -55,7 +55,9 @@ int graph_option_ticks(graph_reader *r, const char *key, uint32_t *out);
 /* An option that is one of the words, as its index; words end with NULL. */
 int graph_option_word(graph_reader *r, const char *key, const char *const *words, uint32_t *out);
 
-/* graph_link.c: resolve all names of a graph and order its nodes. */
+/* graph_link.c: resolve all names of a graph, with its nearest name for one that is not there. */
 int graph_link(graph_reader *r, graph_def *g);
+/* graph_desc.c: check the rest and lay it out, as for a graph made in code. After graph_link. */
+int graph_make(graph_reader *r, graph_def *g);
 
 #endif

@@ -1,4 +1,4 @@
-/* graph_link.c: resolves the names of a graph, orders its nodes and makes the runtime's checks. */
+/* graph_link.c: resolves the names of a graph. What needs no hint is left to the library (graph_desc.c). */
 #include <stdio.h>
 #include <string.h>
 
@@ -115,64 +115,15 @@ static int link_children(graph_reader *r, graph_def *g, uint32_t index)
     return 0;
 }
 
-/* The one node without a parent. */
-static int find_root(graph_reader *r, const graph_def *g, uint32_t *root)
-{
-    *root = NOH_NONE;
-    for (uint32_t i = 0; i < g->node_count; ++i) {
-        if (g->nodes[i].parent != NOH_NONE) continue;
-        if (*root != NOH_NONE)
-            return graph_fail(
-                r, g->nodes[i].line,
-                "'%.60s' is not a child of a node, and neither is '%.60s' in line %u: only the root may have no parent",
-                g->nodes[i].name, g->nodes[*root].name, g->nodes[*root].line);
-        *root = i;
-    }
-    if (!g->node_count) return graph_fail(r, g->line, "the graph '%.60s' has no nodes", g->name);
-    return *root == NOH_NONE ? graph_fail(r, g->line, "every node is a child: one node must be the root") : 0;
-}
-
-/* Children first: a walk with a stack of nodes and of the children done. */
-static int order_nodes(graph_reader *r, graph_def *g, uint32_t root)
-{
-    uint32_t stack[NOH_GRAPH_NODES_MAX], done[NOH_GRAPH_NODES_MAX], depth = 1, count = 0;
-    uint8_t seen[NOH_GRAPH_NODES_MAX] = { 0 };
-    stack[0] = root;
-    done[0] = 0;
-    while (depth) {
-        const graph_node *n = &g->nodes[stack[depth - 1]];
-        if (done[depth - 1] < n->child_count) {
-            stack[depth] = n->children[done[depth - 1]++].node.index;
-            done[depth++] = 0;
-        } else {
-            seen[stack[depth - 1]] = 1;
-            g->order[count++] = stack[--depth];
-        }
-    }
-    for (uint32_t i = 0; i < g->node_count && count < g->node_count; ++i)
-        if (!seen[i])
-            return graph_fail(r, g->nodes[i].line, "'%.60s' is its own descendant: remove the circle",
-                              g->nodes[i].name);
-    return 0;
-}
-
 /* ---- nodes ---- */
 
 static int check_space(graph_reader *r, const graph_node *n)
 {
-    float points[2 * NOH_GRAPH_CHILDREN_MAX];
-    uint8_t triangles[3 * NOH_BLEND_SPACE_TRIANGLES_MAX];
-    uint32_t count;
-    noh_error error = { NOH_OK, "", 0, 0 };
-    for (uint32_t i = 0; i < n->child_count; ++i) {
-        if (n->kind == NOH_PACK_NODE_SPACE_1D && i && !(n->children[i].at[0] > n->children[i - 1].at[0]))
+    for (uint32_t i = 1; i < n->child_count; ++i) {
+        if (!(n->children[i].at[0] > n->children[i - 1].at[0]))
             return graph_fail(r, n->line, "coordinates in a blend space must increase: '%.60s' is not above '%.60s'",
                               n->children[i].node.name, n->children[i - 1].node.name);
-        memcpy(points + 2 * i, n->children[i].at, sizeof n->children[i].at);
     }
-    if (n->kind == NOH_PACK_NODE_SPACE_1D) return 0;
-    if (noh_blend_space_2d_triangulate(n->child_count, points, triangles, &count, &error))
-        return graph_fail(r, n->line, "'%.60s', child %u: %s", n->name, (unsigned)error.where, error.what);
     return 0;
 }
 
@@ -180,7 +131,8 @@ static int check_space(graph_reader *r, const graph_node *n)
 static int check_one_shot(graph_reader *r, graph_def *g, const graph_node *n)
 {
     graph_node *first = &g->nodes[n->children[1].node.index];
-    while (first->child_count) first = &g->nodes[first->children[0].node.index];
+    for (uint32_t i = 0; first->child_count && i < g->node_count; ++i) /* circles are refused later */
+        first = &g->nodes[first->children[0].node.index];
     if (!first->loop) first->loop = LOOP_ONCE;
     return first->loop == LOOP_ONCE
                ? 0
@@ -214,38 +166,16 @@ static int link_node(graph_reader *r, graph_def *g, uint32_t index)
     return link_children(r, g, index) || link_params(r, g, n) || (n->mask.name && resolve(r, &masks, &n->mask));
 }
 
-static int check_sync_groups(graph_reader *r, const graph_def *g)
-{
-    const char *seen[NOH_SYNC_GROUPS_MAX];
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < g->node_count; ++i) {
-        const graph_node *n = &g->nodes[i];
-        uint32_t k = 0;
-        while (n->sync && k < count && strcmp(seen[k], n->sync) != 0) ++k;
-        if (!n->sync || k < count) continue;
-        if (count == NOH_SYNC_GROUPS_MAX)
-            return graph_fail(r, n->line, "more than %u sync groups in one graph", NOH_SYNC_GROUPS_MAX);
-        seen[count++] = n->sync;
-    }
-    return 0;
-}
-
 int graph_link(graph_reader *r, graph_def *g)
 {
-    uint32_t root, clips = 0;
-    for (uint32_t i = 0; i < g->node_count; ++i) {
+    if (!g->node_count) return graph_fail(r, g->line, "the graph '%.60s' has no nodes", g->name);
+    for (uint32_t i = 0; i < g->node_count; ++i)
         if (link_node(r, g, i)) return 1;
-        clips += g->nodes[i].kind == NOH_PACK_NODE_CLIP;
-    }
-    if (clips > NOH_TRACKS_MAX)
-        return graph_fail(r, g->line, "the graph '%.60s' has %u clips: the limit is %u", g->name, clips,
-                          NOH_TRACKS_MAX);
-    if (check_sync_groups(r, g) || find_root(r, g, &root) || order_nodes(r, g, root)) return 1;
     for (uint32_t i = 0; i < g->transition_count; ++i)
         if (link_transition(r, g, &g->transitions[i])) return 1;
     for (uint32_t i = 0; i < g->node_count; ++i) {
         const graph_node *n = &g->nodes[i];
-        if ((n->kind == NOH_PACK_NODE_SPACE_1D || n->kind == NOH_PACK_NODE_SPACE_2D) && check_space(r, n)) return 1;
+        if (n->kind == NOH_PACK_NODE_SPACE_1D && check_space(r, n)) return 1;
         if (n->kind == NOH_PACK_NODE_ONE_SHOT && check_one_shot(r, g, n)) return 1;
     }
     return 0;

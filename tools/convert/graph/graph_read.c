@@ -410,7 +410,7 @@ static int read_from(graph_reader *r)
 static int read_graph(graph_reader *r)
 {
     graph_word name;
-    if (r->g && graph_link(r, r->g)) return 1;
+    if (r->g && (graph_link(r, r->g) || graph_make(r, r->g))) return 1;
     if (r->file->count == GRAPHS_MAX) return graph_fail(r, r->words[0].line, "more than %u graphs", GRAPHS_MAX);
     if (graph_take_needed(r, "a name", &name)) return 1;
     for (uint32_t i = 0; i < r->file->count; ++i)
@@ -488,7 +488,7 @@ int graph_text_read(const char *path, graph_file **out, uint32_t *line, model_er
     r.file = calloc(1, sizeof *r.file);
     failed = r.file ? 0 : graph_fail(&r, 0, "there is not enough memory to read this file");
     while (!failed && text_next_line(&r.text)) failed = read_line(&r);
-    if (!failed) failed = r.g ? graph_link(&r, r.g) : graph_fail(&r, 0, "the file has no graph");
+    if (!failed) failed = r.g ? graph_link(&r, r.g) || graph_make(&r, r.g) : graph_fail(&r, 0, "the file has no graph");
     if (failed)
         graph_text_free(r.file);
     else
@@ -500,7 +500,10 @@ int graph_text_read(const char *path, graph_file **out, uint32_t *line, model_er
 void graph_text_free(graph_file *file)
 {
     if (!file) return;
-    for (uint32_t i = 0; i < file->count; ++i) free(file->graphs[i]);
+    for (uint32_t i = 0; i < file->count; ++i) {
+        free(file->graphs[i]->bytes);
+        free(file->graphs[i]);
+    }
     for (uint32_t i = 0; i < file->pool_count; ++i) free(file->pool[i]);
     free(file->pool);
     free(file);

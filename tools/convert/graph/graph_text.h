@@ -4,7 +4,7 @@
  * `noh help FORMATS`. Statements may come in any order but two: `from` lines follow their machine, `below` and `joint`
  * lines their mask. Each node is the child of one other, except the one that gives the pose.
  *
- *   graph_text_read   a file: every graph in it, checked and linked
+ *   graph_text_read   a file: every graph in it, checked, linked and laid out
  *   graph_text_bind   its names against the clips and joints of the inputs
  *   graph_text_warn   what waits for an end that never comes */
 #ifndef NOH_CONVERT_GRAPH_GRAPH_TEXT_H
@@ -13,6 +13,7 @@
 #include "convert/clips/raw_clip.h"
 #include "convert/model/model.h"
 #include "noh/base.h"
+#include "noh/pack.h"
 
 /* A name that another statement defines. */
 typedef struct graph_ref {
@@ -73,11 +74,12 @@ typedef struct graph_def {
     uint32_t line;
     uint32_t node_count, transition_count, param_count, mask_count, name_count;
     graph_node nodes[NOH_GRAPH_NODES_MAX];
-    uint32_t order[NOH_GRAPH_NODES_MAX]; /* children first */
     graph_transition transitions[NOH_GRAPH_TRANSITIONS_MAX];
     graph_param params[NOH_GRAPH_PARAMS_MAX];
     graph_mask masks[NOH_MASKS_MAX];
     graph_name names[NOH_GRAPH_NAMES_MAX];
+    noh_pack pack; /* with this graph alone */
+    void *bytes;   /* its */
 } graph_def;
 
 #define GRAPHS_MAX 64u /* of one file */

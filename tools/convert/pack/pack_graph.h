@@ -6,8 +6,7 @@
 #include "convert/graph/graph_text.h"
 #include "noh/pack.h"
 
-/* Append the bytes of a graph's chunk. Its arrays follow the order of its nodes, so the same graph has the same bytes
- * whatever the order of its text. */
+/* Append the bytes of a graph's chunk. */
 void pack_graph(const graph_def *g, string_table *strings, byte_buffer *out);
 
 /* Bind every graph of a finished pack to its clips, as a game does: a graph that the runtime would refuse is an error.
