@@ -49,6 +49,7 @@ libosmesa6:a second GL
 ?espeak-ng-data:noh speak
 ?libsndfile1:noh speak on recordings
 ?libwebp7:WebP textures
+?astcenc:noh build --textures astc
 binutils:the check of the archive'"'"'s symbols
 patch:mutants of the table of techniques'
 packages_fuzz='clang:libFuzzer

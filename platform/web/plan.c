@@ -34,7 +34,8 @@ static noh_gl_caps browser_device(void)
     caps.uniform_block_bytes_max = 16384;
     caps.vertex_textures_max = caps.vertex_attributes_max = 16;
     caps.mrt3 = caps.render_f32 = caps.render_f16 = caps.render_u32 = 1;
-    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = caps.block_points = 1;
+    caps.blend_f32 = caps.blend_f16 = caps.blend_f32_exact = caps.layered = caps.etc2 = caps.astc = caps.block_points =
+        1;
     return caps;
 }
 

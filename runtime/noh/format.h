@@ -392,8 +392,9 @@ typedef struct noh_material {
 
 #define NOH_TEXTURE_LINEAR 1u /* the bytes are data; otherwise sRGB with straight alpha */
 
-/* Format of a level's bytes: texels, or blocks of 4 x 4 texels, which cover the level from its top left corner and may
- * extend past its edges (OpenGL ES 3.0, appendix C). Packs older than block formats have zeros here. */
+/* Format of a level's bytes: texels, or blocks of texels, which cover the level from its top left corner and may extend
+ * past its edges (ETC2 and EAC: OpenGL ES 3.0, appendix C, 4 x 4 texels; ASTC: OpenGL ES 3.2, appendix C). Packs older
+ * than block formats have zeros here. */
 #define NOH_TEXTURE_RGBA8 0u     /* uint8_t[height][width][4] */
 #define NOH_TEXTURE_ETC2_RGB 1u  /* 8 bytes per block; alpha is 1 */
 #define NOH_TEXTURE_ETC2_RGBA 2u /* 16 bytes per block: alpha as EAC, then RGB */
@@ -402,6 +403,13 @@ typedef struct noh_material {
 /* 8 bytes per block: alpha is 0 or 1, and colours are 0 where alpha is 0, so a filtered colour divided by its alpha
  * ignores such texels */
 #define NOH_TEXTURE_ETC2_RGBA1 4u
+/* 16 bytes per block of as many texels, LDR. A normal map without blue has x and y alone; z completes the unit vector.
+ * The library does not decode them: noh_gl_api.astc is needed, and picking takes their alpha as 1. `noh build` keeps
+ * textures in ETC2 whose alpha cuts or blends */
+#define NOH_TEXTURE_ASTC_4X4 5u /* 8 bits per texel */
+#define NOH_TEXTURE_ASTC_5X5 6u /* 5.12 */
+#define NOH_TEXTURE_ASTC_6X6 7u /* 3.56 */
+#define NOH_TEXTURE_ASTC_8X8 8u /* 2 */
 
 typedef struct noh_texture_header {
     uint32_t width, height;

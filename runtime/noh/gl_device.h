@@ -247,6 +247,8 @@ typedef struct noh_gl_api {
                        * 0 if core or absent */
     int etc2;         /* 1: the context supports ETC2 and EAC textures, as OpenGL ES does, desktop GL from 4.3 or with
                        * GL_ARB_ES3_compatibility, and WebGL 2 with WEBGL_compressed_texture_etc */
+    int astc;         /* 1: the context supports LDR ASTC textures, as OpenGL ES 3.2 does, others with
+                       * GL_KHR_texture_compression_astc_ldr, and WebGL 2 with WEBGL_compressed_texture_astc */
 
     /* Decoder for contexts without ETC2. NULL after noh_gl_api_load: set it to noh_etc2_decode (low_core.h) before
      * making textures; otherwise the decoder is not linked. */
@@ -309,7 +311,7 @@ typedef struct noh_gl_caps {
     int layered;         /* a geometry shader can draw to all three layers by gl_Layer */
     int block_points;    /* a point of size 4 covers exactly the 4 x 4 texels around its centre, once each */
     int timer_query;     /* EXT_disjoint_timer_query, or desktop GL's */
-    int etc2;            /* not tested: noh_gl_api.etc2, for plans of textures */
+    int etc2, astc;      /* not tested: of noh_gl_api, for plans of textures */
 
     /* How this GPU rounds a float to a half. UNKNOWN: like none of the models, so results are known only within a
      * bound. */

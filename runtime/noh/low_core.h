@@ -149,7 +149,7 @@ float noh_acos(float x);
 
 /* ======== packs ======== */
 
-/* The bytes of a block of 4 x 4 texels; 0: the format has no blocks. */
+/* The bytes of a block of texels; 0: the format has no blocks. */
 uint32_t noh_texture_block_bytes(uint32_t format);
 
 /* ======== meshes ========

@@ -43,7 +43,7 @@ extern "C" {
 #define NOH_GL_CUBE UINT32_MAX
 
 typedef struct noh_gl_texture_desc {
-    unsigned format; /* a sized internal format that noh uses, an ETC2 format, or RG11_EAC */
+    unsigned format; /* a sized internal format that noh uses, an ETC2 or ASTC format, or RG11_EAC */
     uint32_t width;  /* texels, 1..65536 */
     uint32_t height; /* texels, 1..65536 */
     uint32_t layers; /* 0: GL_TEXTURE_2D; NOH_GL_CUBE: GL_TEXTURE_CUBE_MAP with six square faces; 1..65536:
@@ -557,13 +557,13 @@ void noh_gl_mesh_unbind(const noh_gl_api *api, const noh_gl_mesh *mesh, const no
 noh_mesh noh_gl_mesh_lod(const noh_gl_mesh *mesh, uint32_t level, size_t *first);
 
 /* The exact GPU bytes of a pack's texture with its mip levels.
- * etc2  noh_gl_caps.etc2; 0: blocks are decoded to 4 bytes per texel */
+ * etc2  noh_gl_caps.etc2; 0: ETC2 and EAC blocks are decoded to 4 bytes per texel */
 uint64_t noh_gl_picture_bytes(const noh_texture *texture, int etc2);
 
 /* Upload a pack's texture with its mip levels, as sRGB or, with NOH_TEXTURE_LINEAR, as data. If the context does not
  * support ETC2 (noh_gl_api.etc2), noh_gl_api.decode decodes its blocks.
- * errors  as noh_gl_texture_create; UNSUPPORTED the texture has blocks, the context does not support them, and
- *         noh_gl_api.decode is NULL */
+ * errors  as noh_gl_texture_create; UNSUPPORTED the texture has ETC2 blocks, the context does not support them, and
+ *         noh_gl_api.decode is NULL; or it has ASTC blocks and the context does not support them (noh_gl_api.astc) */
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                  noh_gl_texture *out, noh_error *error);
 

@@ -110,6 +110,24 @@ noh info "$work/corner.noh" --json
 check 'in JSON, too' grep -q '"whole_width": 64' "$work/out"
 noh verify "$work/corner.noh"
 expect 0 'it verifies'
+noh build "$work/corner.gltf" -o "$work/corner.noh" --textures pvrtc
+expect 2 'build with textures of an unknown format'
+says "--textures must be etc2, astc or raw, not 'pvrtc'"
+if command -v astcenc >/dev/null 2>&1; then
+    noh build "$work/corner.gltf" -o "$work/astc.noh" --textures astc --quiet
+    expect 0 'build --textures astc'
+    noh info "$work/astc.noh"
+    check 'and info says its blocks' grep -q ': 20 x 20, .*, ASTC [4-8]x[4-8] [0-9.]* dB, .* bytes on the GPU$' "$work/out"
+    noh budget "$work/astc.noh"
+    check 'and so does the budget' grep -q "^texture .*, ASTC [4-8]x" "$work/out"
+    noh pack "$work/astc.noh" -o "$work/astc.nohz"
+    noh info "$work/astc.nohz"
+    check 'its wire form keeps them' grep -q "^texture .*, ASTC [4-8]x" "$work/out"
+    noh verify "$work/astc.noh"
+    expect 0 'it verifies'
+else
+    skip 'build --textures astc' 'astcenc is not installed'
+fi
 noh build "$work/corner.gltf" -o "$work/corner.noh" --whole-textures
 expect 0 'build --whole-textures'
 noh info "$work/corner.noh"

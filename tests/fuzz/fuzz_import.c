@@ -76,7 +76,7 @@ static convert_options options_of(int more, int split_eyes)
     o.lod.level_count = more ? 2 : 0;
     o.source.clean = more ? ~0u : 0u;
     o.source.split_eyes = split_eyes;
-    o.etc2 = 1;
+    o.blocks = MODEL_BLOCKS_ETC2;
     o.texture_max = 256;
     return o;
 }

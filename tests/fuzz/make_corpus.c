@@ -91,7 +91,8 @@ static void write_blocks(const char *in)
         to->rgba = test_zeros(6 * 5 * 4);
         for (uint32_t i = 0; i < 6 * 5 * 4; i++) to->rgba[i] = (uint8_t)(128u + (i * (t + 1u)) % 7u);
         to->use = t < 3 ? (model_texture_use)t : MODEL_TEXTURE_COLOR;
-        to->etc2 = to->with_alpha = 1;
+        to->blocks = MODEL_BLOCKS_ETC2;
+        to->with_alpha = 1;
         if (t < 3) continue;
         to->cut_alone = 1;
         to->alpha_cutoff = 0.5f;

@@ -1,6 +1,7 @@
 /* Textures in blocks of ETC2 and EAC: what the driver reads in them against noh_etc2_decode, for random blocks of every
  * mode, sides that are no multiple of 4, and mip levels; decoded for a context without ETC2, and refused without a
- * decoder; bytes as planned both ways; edges of what one bit of alpha cuts. */
+ * decoder; bytes as planned both ways; edges of what one bit of alpha cuts. Blocks of ASTC: read as they lie, refused
+ * without the extension, and a picture of what astcenc makes near the exact one. */
 #include "support/gl_fixture.h"
 
 #include "support/lit_quad.h"
@@ -9,6 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include "core/base/half_internal.h"
+#include "convert/texture/texture_astc.h"
 #include "noh/low_core.h"
 
 #define WIDTH 70u
@@ -228,7 +230,9 @@ static void edges_are_as_bright_as_what_they_are_of(void **state)
 {
     static const float uv[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
     static uint8_t disk[32 * 32 * 4];
-    model_texture t = { .width = 32, .height = 32, .rgba = disk, .etc2 = 1, .with_alpha = 1, .alpha_cutoff = 0.5f };
+    model_texture t = {
+        .width = 32, .height = 32, .rgba = disk, .blocks = MODEL_BLOCKS_ETC2, .with_alpha = 1, .alpha_cutoff = 0.5f
+    };
     gpu *g = fixture_gpu();
     const int had = g->gl.etc2;
     lit_quad q = lit_quad_of();
@@ -269,6 +273,137 @@ static void edges_are_as_bright_as_what_they_are_of(void **state)
     fixture_expect_no_errors();
 }
 
+/* ---- ASTC ---- */
+
+/* Blocks of one random colour each (a void extent without bounds). */
+static blocks plain_blocks(uint32_t format, uint32_t flags)
+{
+    blocks b = random_blocks(format, flags, 5);
+    for (uint32_t i = 0; i < BYTES_MAX / 16u; i++) {
+        uint8_t *block = b.bytes + 16u * i;
+        memset(block, 0xff, 8);
+        block[0] = 0xfc;
+        block[1] = 0xfd;
+        for (int c = 0; c < 4; c++) block[8 + 2 * c] = block[9 + 2 * c];
+    }
+    return b;
+}
+
+static void astc_blocks_are_read_as_they_lie(void **state)
+{
+    static const uint32_t sides[] = { 4, 5, 6, 8 };
+    static float got[WIDTH * HEIGHT * 4u];
+    gpu *g = fixture_gpu();
+    (void)state;
+    if (!g->gl.astc) skip();
+    for (uint32_t i = 0; i < 8; i++) {
+        const uint32_t side = sides[i % 4u];
+        blocks b = plain_blocks(NOH_TEXTURE_ASTC_4X4 + i % 4u, i < 4 ? NOH_TEXTURE_LINEAR : 0u);
+        const noh_texture *t = texture_of(&b);
+        const uint64_t before = noh_gl_ledger_bytes(&g->ledger);
+        noh_gl_texture made;
+        reader r;
+        reader_open(&r);
+        const uint64_t opened = noh_gl_ledger_bytes(&g->ledger);
+        assert_int_equal(noh_gl_picture_create(&g->gl, &g->ledger, t, &made, NULL), NOH_OK);
+        assert_int_equal(noh_gl_ledger_bytes(&g->ledger) - opened, noh_gl_picture_bytes(t, 0));
+        for (uint32_t level = 0; level < LEVELS; level++) {
+            const noh_texture_level at = noh_texture_level_at(t, level);
+            const uint32_t columns = (at.width + side - 1u) / side;
+            read_level(&r, made.name, level, got);
+            for (uint32_t k = 0; k < at.width * at.height; k++) {
+                const uint8_t *block = at.pixels + 16u * (k / at.width / side * columns + k % at.width / side);
+                for (uint32_t c = i < 4 ? 0 : 3; c < 4u; c++) { /* of sRGB, alpha is as it is */
+                    assert_true(fabsf(got[4 * k + c] - (float)block[8 + 2 * c] / 255.0f) < 1e-3f);
+                }
+            }
+        }
+        noh_gl_texture_delete(&g->gl, &g->ledger, &made);
+        reader_close(&r);
+        assert_int_equal(noh_gl_ledger_bytes(&g->ledger), before);
+    }
+}
+
+static void astc_without_the_extension_is_refused(void **state)
+{
+    gpu *g = fixture_gpu();
+    blocks b = plain_blocks(NOH_TEXTURE_ASTC_6X6, 0);
+    noh_gl_texture texture;
+    noh_gl_api gl = g->gl;
+    const uint64_t before = noh_gl_ledger_bytes(&g->ledger);
+    noh_error error;
+    (void)state;
+    gl.astc = 0;
+    assert_int_equal(noh_gl_picture_create(&gl, &g->ledger, texture_of(&b), &texture, &error), NOH_ERR_UNSUPPORTED);
+    assert_non_null(strstr(error.what, "--textures etc2"));
+    assert_int_equal(noh_gl_ledger_bytes(&g->ledger), before);
+    fixture_expect_no_errors();
+}
+
+/* The plan of a stage says it, before there is anything. */
+static void plans_refuse_astc_without_the_extension(void **state)
+{
+    const test_model_desc sheet = { 1, 5, 0, TEST_UVS | TEST_SCENE, 3 };
+    size_t count;
+    uint8_t *bytes = test_pack(&sheet, &count);
+    noh_pack pack = test_open(bytes, count);
+    noh_kind_desc kind = { .mesh = &pack, .actor_count = 1 };
+    noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .gpu = &noh_stage_on_gl };
+    noh_gl_caps caps;
+    noh_stage_plan plan;
+    noh_texture texture;
+    noh_error error;
+    (void)state;
+    noh_gl_caps_nominal(&caps);
+    assert_int_equal(noh_stage_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    const uint64_t exact = plan.gpu_bytes;
+    assert_int_equal(noh_pack_texture_at(&pack, 0, &texture, NULL), NOH_OK);
+    const uint64_t texels = noh_gl_picture_bytes(&texture, 1);
+    ((noh_texture_header *)(uintptr_t)texture.header)->format = NOH_TEXTURE_ASTC_6X6;
+    assert_int_equal(noh_stage_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    assert_int_equal(exact - plan.gpu_bytes, texels - noh_gl_picture_bytes(&texture, 1));
+    caps.astc = 0;
+    assert_int_equal(noh_stage_plan_make(&desc, &caps, &plan, &error), NOH_ERR_UNSUPPORTED);
+    assert_non_null(strstr(error.what, "--textures etc2"));
+    free(bytes);
+}
+
+/* Waves in three channels, drawn out of the largest blocks: at most 16 of 255 off, 2 in the mean. */
+static void astc_is_drawn_near_the_exact_picture(void **state)
+{
+    static const float uv[8] = { 0, 0, 1, 0, 0, 1, 1, 1 };
+    static uint8_t waves[64 * 64 * 4];
+    model_texture t = { .width = 64, .height = 64, .rgba = waves, .wrap_s = 33071, .wrap_t = 33071 };
+    gpu *g = fixture_gpu();
+    lit_quad q = lit_quad_of();
+    uint32_t sum = 0;
+    (void)state;
+    if (!g->gl.astc || texture_astc_find(NULL)) skip();
+    for (int i = 0; i < 64 * 64; i++) {
+        for (int c = 0; c < 3; c++) {
+            waves[4 * i + c] = (uint8_t)(128.0 + 70.0 * sin(i % 64 * 0.06 + c) * cos(i / 64 * 0.05 - c));
+        }
+        waves[4 * i + 3] = 255;
+    }
+    for (int i = 0; i < 4; i++) q.base[i] = 1.0f;
+    q.uv = uv;
+    q.unlit = q.double_sided = 1;
+    q.base_map = &t;
+    t.mag_filter = t.min_filter = 9729;
+    uint8_t *exact = lit_quad_draw(g, &q, NOH_DRAW_OPAQUE);
+    t.blocks = MODEL_BLOCKS_ASTC;
+    uint8_t *rgba = lit_quad_draw(g, &q, NOH_DRAW_OPAQUE);
+    for (uint32_t i = 0; i < LIT_QUAD_SIDE * LIT_QUAD_SIDE * 4u; i++) {
+        const uint32_t off = (uint32_t)abs(rgba[i] - exact[i]);
+        assert_in_range(off, 0, 16);
+        sum += off;
+    }
+    assert_in_range(sum, 1, 2u * LIT_QUAD_SIDE * LIT_QUAD_SIDE * 4u);
+    free(exact);
+    free(rgba);
+    fixture_expect_no_errors();
+}
+
 static void blocks_without_etc2_and_decoder_are_refused(void **state)
 {
     gpu *g = fixture_gpu();
@@ -296,6 +431,10 @@ int main(void)
     const struct CMUnitTest tests[] = { cmocka_unit_test(the_driver_reads_what_is_decoded),
                                         cmocka_unit_test(colours_are_srgb_both_ways),
                                         cmocka_unit_test(edges_are_as_bright_as_what_they_are_of),
-                                        cmocka_unit_test(blocks_without_etc2_and_decoder_are_refused) };
+                                        cmocka_unit_test(blocks_without_etc2_and_decoder_are_refused),
+                                        cmocka_unit_test(astc_blocks_are_read_as_they_lie),
+                                        cmocka_unit_test(astc_without_the_extension_is_refused),
+                                        cmocka_unit_test(plans_refuse_astc_without_the_extension),
+                                        cmocka_unit_test(astc_is_drawn_near_the_exact_picture) };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

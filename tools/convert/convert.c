@@ -19,6 +19,7 @@
 #include "convert/model/tint.h"
 #include "convert/pack/size_warn.h"
 #include "convert/skin/skin_mirror.h"
+#include "convert/texture/texture_astc.h"
 #include "convert/texture/texture_trim.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -239,13 +240,14 @@ static int make_wrinkles(const source *s, const recipe_text *recipe, const conve
     return options->only != CONVERT_CLIPS && wrinkles_make(s->m, &settings, error);
 }
 
-static void set_textures(const source *s, const convert_options *options)
+static int set_textures(const source *s, const convert_options *options, model_error *error)
 {
     texture_cut_mark(s->m);
     for (uint32_t i = 0; i < s->m->texture_count; i++) {
-        s->m->textures[i].etc2 = options->etc2 != 0;
+        s->m->textures[i].blocks = options->blocks;
         s->m->textures[i].size_max = options->texture_max;
     }
+    return options->blocks == MODEL_BLOCKS_ASTC && s->m->texture_count && texture_astc_find(error);
 }
 
 /* Once the levels are known, since a level's triangles read the textures too. */
@@ -281,7 +283,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
     failed = make_wrinkles(s, chunks[NOH_CHUNK_RECIPE], options, error);
-    set_textures(s, options);
+    failed = failed || set_textures(s, options, error);
     if (!failed && options->only != CONVERT_MESH &&
         (size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm) ||
          clips_mirror_warn(s->m, s->sets, s->set_count))) {

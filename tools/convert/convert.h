@@ -29,7 +29,7 @@ typedef struct convert_options {
     const char *const *priorities; /* [priority_count] "MATERIAL=N", see priority.h */
     uint32_t priority_count;
     joint_match_options joints; /* how clips of other files find their joints */
-    int etc2;                   /* 1: textures are compressed */
+    uint8_t blocks;             /* MODEL_BLOCKS_*: how textures are compressed */
     uint32_t texture_max;       /* textures are halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     int whole_textures;         /* 1: textures are not trimmed (texture/texture_trim.h) */
     convert_only only;

@@ -17,7 +17,8 @@ const mapped = {
 };
 
 const COMPRESSED_ETC = 'WEBGL_compressed_texture_etc';
-const extensions = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float', 'EXT_float_blend', COMPRESSED_ETC];
+const COMPRESSED_ASTC = 'WEBGL_compressed_texture_astc';
+const extensions = ['EXT_color_buffer_float', 'EXT_color_buffer_half_float', 'EXT_float_blend', COMPRESSED_ETC, COMPRESSED_ASTC];
 
 // The memory view for texels of a type, and the bytes per element as a shift.
 function viewOf(gl, type) {

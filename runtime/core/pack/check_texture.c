@@ -28,7 +28,7 @@ static uint64_t level_bytes(const noh_texture_header *h)
 static noh_result check_texture_format(const noh_check *check, const noh_texture_header *h)
 {
     const noh_check_field format[] = {
-        { offsetof(noh_texture_header, format), h->format > NOH_TEXTURE_ETC2_RGBA1 },
+        { offsetof(noh_texture_header, format), h->format > NOH_TEXTURE_ASTC_8X8 },
         { offsetof(noh_texture_header, format),
           h->format == NOH_TEXTURE_EAC_RG && (!(h->flags & NOH_TEXTURE_LINEAR) || h->nearest) },
     };

@@ -256,10 +256,16 @@ uint32_t noh_texture_block_bytes(uint32_t format)
     return format == NOH_TEXTURE_ETC2_RGB || format == NOH_TEXTURE_ETC2_RGBA1 ? 8u : 16u;
 }
 
+uint32_t noh_texture_block_side(uint32_t format)
+{
+    static const uint8_t astc[] = { 4, 5, 6, 8 };
+    return format < NOH_TEXTURE_ASTC_4X4 ? 4u : astc[format - NOH_TEXTURE_ASTC_4X4];
+}
+
 uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height)
 {
-    const uint32_t block = noh_texture_block_bytes(format);
-    return block ? ((width + 3u) / 4u) * ((height + 3u) / 4u) * block : width * height * 4u;
+    const uint32_t block = noh_texture_block_bytes(format), side = noh_texture_block_side(format);
+    return block ? (width + side - 1u) / side * ((height + side - 1u) / side) * block : width * height * 4u;
 }
 
 noh_texture_level noh_texture_level_at(const noh_texture *texture, uint32_t level)

@@ -10,6 +10,9 @@
 extern "C" {
 #endif
 
+/* The width and height of a block, texels. */
+uint32_t noh_texture_block_side(uint32_t format);
+
 /* The bytes of a mip level; format is NOH_TEXTURE_RGBA8 or another of format.h. */
 uint32_t noh_texture_bytes(uint32_t format, uint32_t width, uint32_t height);
 

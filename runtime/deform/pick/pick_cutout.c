@@ -41,7 +41,10 @@ static float alpha_of(const noh_texture *texture, const noh_texture_level *level
     if (texture->header->format == NOH_TEXTURE_RGBA8) {
         return (float)level->pixels[((size_t)y * level->width + x) * 4u + 3u] / 255.0f;
     }
-    if (texture->header->format == NOH_TEXTURE_ETC2_RGB || texture->header->format == NOH_TEXTURE_EAC_RG) return 1.0f;
+    if (texture->header->format == NOH_TEXTURE_ETC2_RGB || texture->header->format == NOH_TEXTURE_EAC_RG ||
+        texture->header->format >= NOH_TEXTURE_ASTC_4X4) {
+        return 1.0f;
+    }
     const uint8_t *block = level->pixels + ((size_t)(y / 4u) * ((level->width + 3u) / 4u) + x / 4u) *
                                                noh_texture_block_bytes(texture->header->format);
     if (texture->header->format == NOH_TEXTURE_ETC2_RGBA1) {

@@ -168,6 +168,15 @@ static int has_etc2(const noh_gl_api *api)
     return api->is_es || api->version >= 430 || noh_gl_has_extension(api, "GL_ARB_ES3_compatibility");
 }
 
+static int has_astc(const noh_gl_api *api)
+{
+    if (is_webgl(api)) {
+        return noh_gl_has_extension(api, "WEBGL_compressed_texture_astc") ||
+               noh_gl_has_extension(api, "GL_WEBGL_compressed_texture_astc");
+    }
+    return (api->is_es && api->version >= 320) || noh_gl_has_extension(api, "GL_KHR_texture_compression_astc_ldr");
+}
+
 static noh_gl_proc get_suffixed(noh_gl_get_proc get, void *user, const char *name, const char *suffix)
 {
     char full[PROC_NAME_BYTES];
@@ -201,6 +210,7 @@ noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh
     if (result != NOH_OK) return result;
     load_optional(&table, get, user);
     table.etc2 = has_etc2(&table);
+    table.astc = has_astc(&table);
     *api = table;
     return NOH_OK;
 }

@@ -543,6 +543,7 @@ static void run_probes(const probe *p, noh_gl_caps *caps)
     caps->block_points = probe_points(p);
     caps->timer_query = probe_timer(p->api);
     caps->etc2 = p->api->etc2;
+    caps->astc = p->api->astc;
 }
 
 noh_result noh_gl_caps_probe(const noh_gl_api *api, noh_gl_caps *out, noh_error *error)
@@ -588,5 +589,6 @@ void noh_gl_caps_nominal(noh_gl_caps *out)
     out->vertex_textures_max = 16;
     out->vertex_attributes_max = 16;
     out->mrt3 = out->render_f32 = out->render_f16 = out->render_u32 = 1;
-    out->blend_f32 = out->blend_f16 = out->blend_f32_exact = out->layered = out->etc2 = 1;
+    out->blend_f32 = out->blend_f16 = out->blend_f32_exact = out->layered = 1;
+    out->etc2 = out->astc = 1;
 }

@@ -36,9 +36,10 @@ static const texel_size texel_sizes[] = {
 };
 /* clang-format on */
 
-/* The bytes of a block of 4 x 4 texels; 0: a format without blocks. */
-static uint32_t block_bytes(GLenum format)
+/* The bytes of a block and its side in texels; 0: a format without blocks. */
+static uint32_t block_bytes(GLenum format, uint32_t *side)
 {
+    *side = 4;
     switch (format) {
     case GL_COMPRESSED_RGB8_ETC2:
     case GL_COMPRESSED_SRGB8_ETC2:
@@ -46,7 +47,15 @@ static uint32_t block_bytes(GLenum format)
     case GL_COMPRESSED_SRGB8_PUNCHTHROUGH_ALPHA1_ETC2: return 8;
     case GL_COMPRESSED_RGBA8_ETC2_EAC:
     case GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC:
-    case GL_COMPRESSED_RG11_EAC: return 16;
+    case GL_COMPRESSED_RG11_EAC:
+    case GL_COMPRESSED_RGBA_ASTC_4x4:
+    case GL_COMPRESSED_SRGB8_ALPHA8_ASTC_4x4: return 16;
+    case GL_COMPRESSED_RGBA_ASTC_5x5:
+    case GL_COMPRESSED_SRGB8_ALPHA8_ASTC_5x5: return *side = 5, 16;
+    case GL_COMPRESSED_RGBA_ASTC_6x6:
+    case GL_COMPRESSED_SRGB8_ALPHA8_ASTC_6x6: return *side = 6, 16;
+    case GL_COMPRESSED_RGBA_ASTC_8x8:
+    case GL_COMPRESSED_SRGB8_ALPHA8_ASTC_8x8: return *side = 8, 16;
     default: return 0;
     }
 }
@@ -70,7 +79,8 @@ static uint32_t levels_max(uint32_t width, uint32_t height)
 uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
 {
     NOH_ASSERT(desc);
-    const uint32_t block = block_bytes(desc->format);
+    uint32_t side;
+    const uint32_t block = block_bytes(desc->format, &side);
     const uint64_t unit = block ? block : noh_gl_texel_bytes(desc->format);
     uint32_t width = desc->width, height = desc->height;
     uint64_t layers = desc->layers == NOH_GL_CUBE ? 6 : desc->layers ? desc->layers : 1;
@@ -79,7 +89,8 @@ uint64_t noh_gl_texture_bytes(const noh_gl_texture_desc *desc)
     if (levels > levels_max(width, height) || (desc->layers == NOH_GL_CUBE && width != height)) return 0;
     uint64_t units = 0;
     for (uint32_t level = 0; level < levels; level++) {
-        units += block ? (uint64_t)((width + 3u) / 4u) * ((height + 3u) / 4u) : (uint64_t)width * height;
+        units += block ? (uint64_t)((width + side - 1u) / side) * ((height + side - 1u) / side)
+                       : (uint64_t)width * height;
         width = width > 1 ? width / 2 : 1;
         height = height > 1 ? height / 2 : 1;
     }

@@ -24,6 +24,10 @@ void noh_gl_draw_triangles(noh_gl_renderer *renderer, const noh_gl_triangles *tr
  * noh_gl_draw_begin resets it to 0, the mesh's own. */
 void noh_gl_draw_cover(noh_gl_renderer *renderer, unsigned indices);
 
+/* Whether a context, or a plan for one, can hold a texture. ETC2 and EAC are decoded for those without.
+ * errors  UNSUPPORTED the texture has ASTC blocks and `astc` is 0 */
+noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error);
+
 #ifdef __cplusplus
 }
 #endif

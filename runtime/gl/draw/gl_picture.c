@@ -1,7 +1,7 @@
 /* gl_picture.c: a pack's textures as GL objects.
  *
- * ETC2 and EAC blocks go from the pack to the GPU unchanged. For a context without these formats, noh_gl_api.decode
- * decodes a strip of blocks at a time to texels, in stack memory. */
+ * Blocks go from the pack to the GPU unchanged. For a context without ETC2 and EAC, noh_gl_api.decode decodes a strip of
+ * blocks at a time to texels, in stack memory; ASTC is not decoded. */
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
@@ -13,12 +13,18 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
+#include "gl/draw/gl_draw_internal.h"
 
 #define STRIP_BLOCKS 16u
 
 static GLenum blocks_format(const noh_texture_header *h)
 {
+    static const GLenum astc[2][4] = { { GL_COMPRESSED_SRGB8_ALPHA8_ASTC_4x4, GL_COMPRESSED_SRGB8_ALPHA8_ASTC_5x5,
+                                         GL_COMPRESSED_SRGB8_ALPHA8_ASTC_6x6, GL_COMPRESSED_SRGB8_ALPHA8_ASTC_8x8 },
+                                       { GL_COMPRESSED_RGBA_ASTC_4x4, GL_COMPRESSED_RGBA_ASTC_5x5,
+                                         GL_COMPRESSED_RGBA_ASTC_6x6, GL_COMPRESSED_RGBA_ASTC_8x8 } };
     const int is_data = (h->flags & NOH_TEXTURE_LINEAR) != 0;
+    if (h->format >= NOH_TEXTURE_ASTC_4X4) return astc[is_data][h->format - NOH_TEXTURE_ASTC_4X4];
     switch (h->format) {
     case NOH_TEXTURE_ETC2_RGB: return is_data ? GL_COMPRESSED_RGB8_ETC2 : GL_COMPRESSED_SRGB8_ETC2;
     case NOH_TEXTURE_ETC2_RGBA: return is_data ? GL_COMPRESSED_RGBA8_ETC2_EAC : GL_COMPRESSED_SRGB8_ALPHA8_ETC2_EAC;
@@ -34,10 +40,16 @@ static GLenum texels_format(const noh_texture_header *h)
     return h->flags & NOH_TEXTURE_LINEAR ? GL_RGBA8 : GL_SRGB8_ALPHA8;
 }
 
+/* Whether the GPU takes the bytes of a pack as they are. */
+static int is_taken(const noh_texture_header *h, int etc2)
+{
+    return h->format && (etc2 || h->format >= NOH_TEXTURE_ASTC_4X4);
+}
+
 static noh_gl_texture_desc picture_desc(const noh_texture *texture, int etc2)
 {
     const noh_texture_header *h = texture->header;
-    const noh_gl_texture_desc desc = { .format = etc2 && h->format ? blocks_format(h) : texels_format(h),
+    const noh_gl_texture_desc desc = { .format = is_taken(h, etc2) ? blocks_format(h) : texels_format(h),
                                        .width = h->width,
                                        .height = h->height,
                                        .levels = h->level_count,
@@ -88,12 +100,20 @@ static void send_level(const noh_gl_api *api, const noh_texture *texture, uint32
     const GLsizei width = (GLsizei)level.width, height = (GLsizei)level.height;
     if (texture->header->format == NOH_TEXTURE_RGBA8) {
         api->TexSubImage2D(GL_TEXTURE_2D, (GLint)index, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, level.pixels);
-    } else if (api->etc2) {
+    } else if (is_taken(texture->header, api->etc2)) {
         api->CompressedTexSubImage2D(GL_TEXTURE_2D, (GLint)index, 0, 0, width, height, blocks_format(texture->header),
                                      (GLsizei)level.bytes, level.pixels);
     } else {
         send_decoded(api, texture->header->format, (GLint)index, &level);
     }
+}
+
+noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error)
+{
+    if (astc || texture->header->format < NOH_TEXTURE_ASTC_4X4) return NOH_OK;
+    return noh_fail(error, NOH_ERR_UNSUPPORTED,
+                    "the pack has ASTC textures, which the context does not support: build it with --textures etc2", 0,
+                    0);
 }
 
 noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
@@ -103,7 +123,9 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     noh_gl_pixels kept;
     noh_result result;
     NOH_ASSERT(api && ledger && texture && texture->header && out);
-    if (texture->header->format && !api->etc2 && !api->decode) {
+    result = noh_gl_picture_check(texture, api->astc, error);
+    if (result) return result;
+    if (texture->header->format && !is_taken(texture->header, api->etc2) && !api->decode) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED,
                         "the context does not support ETC2: set noh_gl_api.decode to noh_etc2_decode", 0, 0);
     }

@@ -297,8 +297,9 @@ static noh_result visit(measure *m, noh_error *error)
         result = visit_site(m, site, error);
     }
     for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
-        const uint64_t bytes = noh_gl_pictures_bytes(m->desc, i, m->caps->etc2);
         const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, i);
+        uint64_t bytes;
+        result = noh_gl_pictures_plan(m->desc, i, m->caps, &bytes, error);
         if (bytes) add(m, "textures", i, m->arena.used, bytes);
         if (covers) add(m, "covers", i, m->arena.used, covers);
     }

@@ -171,8 +171,10 @@ void noh_gl_choose_covers(noh_stage *stage);
 
 /* ---- textures ---- */
 
-/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes. */
-uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind, int etc2);
+/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes.
+ * errors  UNSUPPORTED a texture has blocks that the context does not support */
+noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
+                                noh_error *error);
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
 /* Make, make again in a new context, delete the textures of all kinds. */
 noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,

@@ -1,5 +1,6 @@
 /* stage_gl_pictures.c: the textures of all kinds and of their texture sets. The GPU holds each texture of a pack
  * once: the first set that has it owns it, the others copy its name. */
+#include "gl/draw/gl_draw_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
@@ -79,15 +80,19 @@ static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
     return where->kind < end;
 }
 
-uint64_t noh_gl_pictures_bytes(const noh_stage_desc *desc, uint32_t kind, int etc2)
+noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
+                                noh_error *error)
 {
     site where = { kind, 0, UINT32_MAX };
-    uint64_t bytes = 0;
-    while (next_site(desc, kind + 1u, &where)) {
+    noh_result result = NOH_OK;
+    *bytes = 0;
+    while (result == NOH_OK && next_site(desc, kind + 1u, &where)) {
         noh_texture texture;
-        if (owns(desc, where, &texture)) bytes += noh_gl_picture_bytes(&texture, etc2);
+        if (!owns(desc, where, &texture)) continue;
+        result = noh_gl_picture_check(&texture, caps->astc, error);
+        *bytes += noh_gl_picture_bytes(&texture, caps->etc2);
     }
-    return bytes;
+    return result;
 }
 
 static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_gl_kind *kinds, int again,

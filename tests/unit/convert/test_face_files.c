@@ -24,7 +24,7 @@ static byte_buffer convert(const char *path, const char *targets)
     o.clip.clip.effort = 1;
     o.source.skin.influences = 4;
     o.source.skin.palette = NOH_PALETTE_JOINTS_MAX;
-    o.etc2 = 1;
+    o.blocks = MODEL_BLOCKS_ETC2;
     if (convert_files(inputs, 1, &o, &out, &failure)) {
         fail_msg("%s: %s (%s)", failure.file, failure.error.what, failure.error.where);
     }

@@ -245,7 +245,7 @@ static model_texture texture_of(model_texture_use use, int noise)
     t.width = t.height = SIDE;
     t.rgba = picture;
     t.use = use;
-    t.etc2 = 1;
+    t.blocks = MODEL_BLOCKS_ETC2;
     return t;
 }
 
@@ -282,7 +282,7 @@ static void each_use_has_its_format(void **state)
     t.mag_filter = 9728;
     assert_int_equal(header_of(&t).format, NOH_TEXTURE_RGBA8);
     t.mag_filter = 0;
-    t.etc2 = 0;
+    t.blocks = MODEL_BLOCKS_NONE;
     h = header_of(&t);
     assert_int_equal(h.format, NOH_TEXTURE_RGBA8);
     assert_true(texture_quality_db(&h) >= 99.0);

@@ -183,7 +183,7 @@ static void alphas_that_are_data_change_no_colour(void **state)
     assert_int_equal(out.bytes[256 + 3], 100);
     buffer_free(&out);
     for (uint32_t i = 0; i < 64; i++) rgba[4 * i] = 90;
-    t.etc2 = 1;
+    t.blocks = MODEL_BLOCKS_ETC2;
     memset(&h, 0, sizeof h);
     byte_buffer blocks = { NULL, 0, 0, 0 };
     assert_int_equal(texture_levels_write(&t, &h, &blocks), 0);

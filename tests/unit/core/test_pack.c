@@ -407,9 +407,10 @@ static float nan_value(void)
        f->texture->whole_height = (uint16_t)(f->texture->height - 1u)))                                              \
     X(texture_whole_too_large, DATA, "trimmed",                                                                      \
       (f->texture->trim = 9, f->texture->whole_width = 2048, f->texture->whole_height = 2049))                       \
-    X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_ETC2_RGBA1 + 1)               \
+    X(texture_format, DATA, "unknown texture format", f->texture->format = NOH_TEXTURE_ASTC_8X8 + 1)                 \
     X(texture_format_colors, DATA, "not one for such a texture", f->texture->format = NOH_TEXTURE_EAC_RG)            \
     X(texture_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ETC2_RGBA)                                  \
+    X(texture_astc_blocks_smaller, DATA, "", f->texture->format = NOH_TEXTURE_ASTC_8X8)                              \
     X(texture_error, DATA, "texture's error", f->texture->error = -1.0f)                                             \
     X(texture_error_nan, DATA, "texture's error", f->texture->error = nan_value())                                   \
     X(texture_of_data, DATA, "data texture for colours", f->texture->flags = NOH_TEXTURE_LINEAR)                     \

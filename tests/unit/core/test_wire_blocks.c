@@ -59,7 +59,7 @@ static uint8_t *pack_of(uint32_t width, uint32_t height, int kind, size_t *count
         t->width = width;
         t->height = height;
         t->rgba = test_zeros(4u * (size_t)width * height);
-        t->etc2 = 1;
+        t->blocks = MODEL_BLOCKS_ETC2;
         t->use = i == 2 ? MODEL_TEXTURE_NORMAL : MODEL_TEXTURE_COLOR;
         t->with_alpha = i == 1 || i == 3;
         t->cut_alone = i == 3;

@@ -342,7 +342,7 @@ static void cut_sheet_open(sheet *s, const cut *c, int folded)
     t->wrap_s = t->wrap_t = c->wrap;
     t->mag_filter = t->min_filter = c->nearest ? 9728 : 9729;
     t->with_alpha = 1;
-    t->etc2 = c->blocks != 0;
+    t->blocks = c->blocks ? MODEL_BLOCKS_ETC2 : MODEL_BLOCKS_NONE;
     t->cut_alone = c->blocks == 2;
     t->alpha_cutoff = c->cutoff;
     m->materials[0].alpha = c->alpha;

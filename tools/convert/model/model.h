@@ -24,6 +24,10 @@ typedef enum model_texture_use {
     MODEL_TEXTURE_CODES /* bytes that have no mean: read texel by texel, and halved by leaving texels out */
 } model_texture_use;
 
+#define MODEL_BLOCKS_NONE 0u
+#define MODEL_BLOCKS_ETC2 1u
+#define MODEL_BLOCKS_ASTC 2u /* where no material cuts or blends by its alpha; else ETC2 */
+
 typedef struct model_texture {
     char *name;
     uint32_t width, height;
@@ -35,7 +39,7 @@ typedef struct model_texture {
     uint8_t with_alpha;    /* a material cuts or blends by its alpha: where that is 0, colours do not count */
     float alpha_cutoff;    /* of a material that cuts by it: mip levels cover as much; else 0 */
     uint8_t cut_alone;     /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
-    uint8_t etc2;          /* 1: to be compressed */
+    uint8_t blocks;        /* MODEL_BLOCKS_*: how it is compressed */
     uint32_t size_max;     /* it is halved until no side is longer; 0: NOH_TEXTURE_SIZE_MAX */
     uint32_t cells[2];     /* then divided into columns and rows, 2 to 64 of the same size; 0: not (texture_trim.h) */
     uint64_t kept[2];      /* bit i is 1 if the i-th stays; at least one does */
@@ -66,8 +70,8 @@ typedef struct model_material {
     uint32_t surface;        /* NOH_SURFACE_* of format.h */
     float surface_values[4], surface_more[6];
     uint8_t toon_shade, outline_lit; /* NOH_MATERIAL_TOON_SHADE, NOH_MATERIAL_OUTLINE_LIT */
-    uint32_t specular_texture;  /* index into textures or MODEL_NONE */
-    uint8_t specular_roughness; /* 1: its alpha is roughness, else the weight of f0 and f90 */
+    uint32_t specular_texture;       /* index into textures or MODEL_NONE */
+    uint8_t specular_roughness;      /* 1: its alpha is roughness, else the weight of f0 and f90 */
     float f90_loss;
 } model_material;
 

@@ -313,6 +313,10 @@ static void write_texture(writer *w, const noh_pack *pack, uint32_t index)
     s.params[1] = texture.header->height;
     s.params[2] = texture.header->level_count;
     write_bytes(w, c->offset, head, &w->report->textures);
+    if (texture.header->format >= NOH_TEXTURE_ASTC_4X4) { /* blocks have no fields at fixed bits */
+        write_bytes(w, s.at, c->bytes - head, &w->report->textures);
+        return;
+    }
     if (texture.header->format != NOH_TEXTURE_RGBA8) { /* blocks */
         s.kind = NOH_WIRE_BLOCKS;
         s.params[3] = texture.header->format;

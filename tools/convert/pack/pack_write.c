@@ -84,6 +84,12 @@ static void write_texture(pack_writer *w, const model_texture *t)
     buffer_append(&w->out, &h, sizeof h);
     if (texture_levels_write(t, &h, &w->out)) {
         w->out.failed = 1;
+        if (t->blocks == MODEL_BLOCKS_ASTC && !w->refused) {
+            w->refused = model_fail(
+                w->error, t->name,
+                "astcenc failed, or memory ran out: make room in the temporary folder ($TMPDIR), or "
+                "build with --textures etc2");
+        }
     } else {
         memcpy(w->out.bytes + base, &h, sizeof h);
     }

@@ -232,21 +232,46 @@ static void close_image(const model_texture *t, const image *level, const int32_
  * little of what is at 40. */
 #define BIT_WORTH 4u
 
+static int keeps_alpha(const model_texture *t, const uint8_t *bytes, size_t count)
+{
+    if (t->use == MODEL_TEXTURE_NORMAL) return 0;
+    if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha && !t->alpha_is_data) return 0; /* glTF ignores such alphas */
+    for (size_t i = 0; i < count; i++) {
+        if (bytes[i * 4 + 3] != 255) return 1;
+    }
+    return 0;
+}
+
+/* Whether it is stored in ASTC. The runtime reads alphas that cut or blend for picking, and decodes ETC2 alone. */
+static int is_astc(const model_texture *t)
+{
+    return t->blocks == MODEL_BLOCKS_ASTC && !t->with_alpha;
+}
+
+/* Larger blocks of normal maps show as facets in highlights, whatever their error is. */
+static uint32_t astc_formats(const model_texture *t, uint32_t formats[4])
+{
+    uint32_t count = 0;
+    for (uint32_t f = t->use == MODEL_TEXTURE_NORMAL ? NOH_TEXTURE_ASTC_6X6 : NOH_TEXTURE_ASTC_8X8;
+         f >= NOH_TEXTURE_ASTC_4X4; f--) {
+        formats[count++] = f;
+    }
+    return count;
+}
+
 /* The formats to try for a texture, the smallest first. Textures that are read texel by texel have none: blocks would
  * mix their colours. */
-static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, const uint8_t *bytes,
-                           uint32_t formats[2])
+static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, const texture_image *pixels,
+                           uint32_t formats[4])
 {
-    const size_t count = (size_t)h->width * h->height;
-    if (!t->etc2 || h->nearest || h->width < 4u || h->height < 4u) return 0;
+    if (!t->blocks || h->nearest || h->width < 4u || h->height < 4u) return 0;
+    if (is_astc(t)) return astc_formats(t, formats);
     formats[0] = NOH_TEXTURE_ETC2_RGB;
     formats[1] = NOH_TEXTURE_EAC_RG;
     if (t->use == MODEL_TEXTURE_NORMAL) return 2;
-    if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha && !t->alpha_is_data) return 1; /* glTF ignores such alphas */
-    for (size_t i = 0; i < count; i++) {
-        if (bytes[i * 4 + 3] != 255) formats[0] = formats[1] = NOH_TEXTURE_ETC2_RGBA;
-    }
-    if (formats[0] == NOH_TEXTURE_ETC2_RGB || !t->cut_alone) return 1;
+    if (!pixels->keeps_alpha) return 1;
+    formats[0] = formats[1] = NOH_TEXTURE_ETC2_RGBA;
+    if (!t->cut_alone) return 1;
     formats[0] = NOH_TEXTURE_ETC2_RGBA1;
     return 2;
 }
@@ -257,11 +282,12 @@ static uint32_t formats_of(const model_texture *t, const noh_texture_header *h, 
 static int append_first(const model_texture *t, noh_texture_header *h, const texture_image *pixels, byte_buffer *out)
 {
     const size_t at = out->count;
-    uint32_t formats[2];
-    const uint32_t count = formats_of(t, h, pixels->rgba, formats);
+    uint32_t formats[4];
+    const uint32_t count = formats_of(t, h, pixels, formats), first = is_astc(t) ? 1u : 0u;
     const int is_small = h->width <= SIDE_SMALL && h->height <= SIDE_SMALL;
     const float enough = t->use == MODEL_TEXTURE_NORMAL ? ERROR_FINE : ERROR_GOOD;
-    for (uint32_t i = 0; i < 2u * count; i++) { /* where blocks that pack well lose too much, the nearest blocks */
+    for (uint32_t i = first; i < 2u * count;
+         i += 1u + first) { /* where blocks that pack well lose too much, the nearest blocks */
         const float most = i / 2u + 1u < count ? enough : is_small ? ERROR_GOOD : 65025.0f;
         texture_image tried = *pixels;
         if (i & 1u) tried.bit_worth = 0;
@@ -269,6 +295,7 @@ static int append_first(const model_texture *t, noh_texture_header *h, const tex
         h->format = formats[i / 2u];
         if (texture_blocks_append(&tried, h->format, out)) return 1;
         h->error = texture_blocks_error(&tried, h->format, out->bytes + at);
+        if (h->error < 0.0f) return 1;
         if (h->error <= (i & 1u || most < ERROR_GOOD ? most : ERROR_GOOD)) return 0;
     }
     out->count = at;
@@ -280,7 +307,9 @@ static int append_first(const model_texture *t, noh_texture_header *h, const tex
 static int append_level(const model_texture *t, noh_texture_header *h, const image *level, const uint8_t *bytes,
                         byte_buffer *out)
 {
-    const texture_image pixels = { bytes, level->width, level->height, t->with_alpha, BIT_WORTH, cutoff_of(t) };
+    const int alpha = keeps_alpha(t, bytes, (size_t)level->width * level->height);
+    const texture_image pixels = { bytes,     level->width, level->height, t->with_alpha,
+                                   BIT_WORTH, cutoff_of(t), t->use,        alpha };
     if (!h->level_count) return append_first(t, h, &pixels, out);
     if (h->format) return texture_blocks_append(&pixels, h->format, out);
     return buffer_append(out, bytes, (size_t)level->width * level->height * 4u), out->failed;

@@ -13,11 +13,14 @@
 #include "convert/model/model.h"
 #include "noh/format.h"
 
-/* Append the levels of a texture, as blocks where from->etc2 asks for them and they fit: not with `nearest`, nor with a
- * side below 4, nor up to 64 x 64 below 38 dB. Normal maps are ETC2_RGB from 40 dB on, else EAC_RG; textures
- * whose alpha is only a cutoff are ETC2_RGBA1 from 38 dB on, also of the alphas, else ETC2_RGBA. The first level is no
- * larger than from->size_max or NOH_TEXTURE_SIZE_MAX, and has what is kept of it alone. Sets the header's width,
- * height, format, error, level_count, trim and whole sides, by header->nearest. Returns 0, or 1: out of memory. */
+/* Append the levels of a texture, as blocks where from->blocks asks for them and they fit: not with `nearest`, nor with
+ * a side below 4, nor up to 64 x 64 below 38 dB. Normal maps are ETC2_RGB from 40 dB on, else EAC_RG; textures
+ * whose alpha is only a cutoff are ETC2_RGBA1 from 38 dB on, also of the alphas, else ETC2_RGBA. With
+ * MODEL_BLOCKS_ASTC, normal maps have the largest blocks up to 6 x 6 that keep 40 dB, other textures without a material
+ * that cuts or blends by their alpha the largest up to 8 x 8 that keep 38 dB, else 4 x 4. The first level is no larger
+ * than from->size_max or NOH_TEXTURE_SIZE_MAX, and has what is kept of it alone. Sets the header's width, height,
+ * format, error, level_count, trim and whole sides, by header->nearest. Returns 0, or 1: out of memory, or astcenc
+ * failed. */
 int texture_levels_write(const model_texture *from, noh_texture_header *header, byte_buffer *out);
 
 #endif

@@ -1,9 +1,11 @@
 #include "texture_blocks.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "etc2_block.h"
+#include "texture_astc.h"
 #include "noh/format.h"
 #include "noh/low_core.h"
 
@@ -24,6 +26,14 @@ static void vector_of(const uint8_t *texel, double v[3])
     }
     length = sqrt(length);
     for (int c = 0; c < 3; c++) v[c] = length > 1e-9 ? v[c] / length : c == 2;
+}
+
+void texture_unit_bytes(const uint8_t texel[4], uint8_t unit[4])
+{
+    double v[3];
+    vector_of(texel, v);
+    for (int c = 0; c < 3; c++) unit[c] = (uint8_t)floor(v[c] * 127.0 + 128.5);
+    unit[3] = 255;
 }
 
 static int32_t eleven_bits(double component)
@@ -99,6 +109,7 @@ int texture_blocks_append(const texture_image *level, uint32_t format, byte_buff
     const size_t bytes = noh_texture_block_bytes(format);
     const size_t row = (level->width + 3u) / 4u * bytes;
     uint8_t block[16], above[16];
+    if (format >= NOH_TEXTURE_ASTC_4X4) return texture_astc_encode(level, format, out);
     for (uint32_t y = 0; y < level->height; y += 4u) {
         for (uint32_t x = 0; x < level->width; x += 4u) {
             uint8_t left[16];
@@ -123,12 +134,11 @@ static double square(double v)
     return v * v;
 }
 
-/* The two halves of a decoded texel. */
-static double vector_error(const uint8_t *texel, const uint16_t pair[2])
+/* x and y of a decoded texel, 0 to 255. */
+static double vector_error(const uint8_t *texel, double x, double y)
 {
-    double v[3], got[3];
+    double v[3], got[3] = { (x - 128.0) / 127.0, (y - 128.0) / 127.0, 0.0 };
     vector_of(texel, v);
-    for (int c = 0; c < 2; c++) got[c] = (pair[c] / 2047.0 * 255.0 - 128.0) / 127.0;
     const double left = 1.0 - got[0] * got[0] - got[1] * got[1];
     got[2] = left > 0.0 ? sqrt(left) : 0.0;
     return (square(v[0] - got[0]) + square(v[1] - got[1]) + square(v[2] - got[2])) * 127.0 * 127.0;
@@ -146,11 +156,21 @@ static void add_pair(const texture_image *level, uint32_t x, uint32_t y, const u
     noh_eac_decode(block + 8, 1, values[1]);
     for (uint32_t i = 0; i < 16; i++) {
         const uint32_t at_x = x + i % 4u, at_y = y + i / 4u;
-        const uint16_t pair[2] = { values[0][i], values[1][i] };
+        const double scale = 255.0 / 2047.0;
         if (at_x >= level->width || at_y >= level->height) continue;
-        sum->squares += vector_error(texel_at(level, at_x, at_y), pair);
+        sum->squares += vector_error(texel_at(level, at_x, at_y), values[0][i] * scale, values[1][i] * scale);
         sum->count += 3;
     }
+}
+
+/* counts: of its colour */
+static void add_texel(const uint8_t *texel, const uint8_t *got, int counts, int with_alpha, error_sum *sum)
+{
+    for (int c = 0; c < 3 && counts; c++) sum->squares += square((double)got[c] - texel[c]);
+    sum->count += counts ? 3u : 0u;
+    if (!with_alpha) return;
+    sum->squares += square((double)got[3] - texel[3]);
+    sum->count++;
 }
 
 static void add_color(const texture_image *level, uint32_t x, uint32_t y, uint32_t format, const uint8_t *block,
@@ -162,19 +182,34 @@ static void add_color(const texture_image *level, uint32_t x, uint32_t y, uint32
         const uint32_t at_x = x + i % 4u, at_y = y + i / 4u;
         if (at_x >= level->width || at_y >= level->height) continue;
         const uint8_t *texel = texel_at(level, at_x, at_y);
-        const int counts = color_counts(level, format, texel);
-        for (int c = 0; c < 3 && counts; c++) sum->squares += square((double)texels[i][c] - texel[c]);
-        sum->count += counts ? 3u : 0u;
-        if (format == NOH_TEXTURE_ETC2_RGB) continue;
-        sum->squares += square((double)texels[i][3] - texel[3]);
-        sum->count++;
+        add_texel(texel, texels[i], color_counts(level, format, texel), format != NOH_TEXTURE_ETC2_RGB, sum);
     }
+}
+
+static float astc_error(const texture_image *level, uint32_t format, const uint8_t *blocks)
+{
+    const size_t count = (size_t)level->width * level->height;
+    error_sum sum = { 0.0, 0 };
+    uint8_t *rgba = malloc(4u * count);
+    const int failed = !rgba || texture_astc_decode(level, format, blocks, rgba);
+    for (size_t i = 0; i < count && !failed; i++) {
+        const uint8_t *texel = level->rgba + 4u * i, *got = rgba + 4u * i;
+        if (level->use == MODEL_TEXTURE_NORMAL) {
+            sum.squares += vector_error(texel, got[0], got[1]);
+            sum.count += 3;
+        } else {
+            add_texel(texel, got, 1, level->keeps_alpha, &sum);
+        }
+    }
+    free(rgba);
+    return failed ? -1.0f : (float)(sum.squares / (double)sum.count);
 }
 
 float texture_blocks_error(const texture_image *level, uint32_t format, const uint8_t *blocks)
 {
     const size_t bytes = noh_texture_block_bytes(format);
     error_sum sum = { 0.0, 0 };
+    if (format >= NOH_TEXTURE_ASTC_4X4) return astc_error(level, format, blocks);
     for (uint32_t y = 0; y < level->height; y += 4u) {
         for (uint32_t x = 0; x < level->width; x += 4u, blocks += bytes) {
             if (format == NOH_TEXTURE_EAC_RG) {
@@ -195,6 +230,7 @@ double texture_quality_db(const noh_texture_header *header)
 
 const char *texture_format_name(uint32_t format)
 {
-    static const char *const names[] = { "RGBA8", "ETC2 RGB", "ETC2 RGBA", "EAC RG", "ETC2 RGBA1" };
+    static const char *const names[] = { "RGBA8",    "ETC2 RGB", "ETC2 RGBA", "EAC RG",  "ETC2 RGBA1",
+                                         "ASTC 4x4", "ASTC 5x5", "ASTC 6x6",  "ASTC 8x8" };
     return names[format];
 }

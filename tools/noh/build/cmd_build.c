@@ -293,10 +293,9 @@ static int set_wrinkles(const build_args *a, convert_options *o)
 static int set_textures(const build_args *a, convert_options *o)
 {
     o->whole_textures = a->textures.whole;
-    o->etc2 = strcmp(a->textures.format, "etc2") == 0;
-    if (!o->etc2 && strcmp(a->textures.format, "raw") != 0) {
-        return tool_usage("--textures must be etc2 or raw, not '%s'", a->textures.format);
-    }
+    static const char *const formats[] = { "raw", "etc2", "astc" }; /* MODEL_BLOCKS_* */
+    while (o->blocks < 3u && strcmp(a->textures.format, formats[o->blocks]) != 0) o->blocks++;
+    if (o->blocks == 3u) return tool_usage("--textures must be etc2, astc or raw, not '%s'", a->textures.format);
     o->texture_max = a->textures.max >= 1.0 && a->textures.max <= NOH_TEXTURE_SIZE_MAX ? (uint32_t)a->textures.max : 0;
     return a->textures.max != (double)o->texture_max
                ? tool_usage("--texture-max must be a whole number from 1 to %u", NOH_TEXTURE_SIZE_MAX)
@@ -575,10 +574,10 @@ static const option options[] = {
     { .name = "--textures",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, textures.format),
-      .value = "etc2|raw",
+      .value = "etc2|astc|raw",
       .initial = "etc2",
       .what =
-          "how textures are stored: in ETC2 and EAC blocks, which GPUs read directly (a quarter to an eighth of the bytes; noh info lists the loss of each), or exact",
+          "how textures are stored: in ETC2 and EAC blocks, which GPUs read directly (a quarter to an eighth of the bytes; noh info lists the loss of each), in ASTC blocks for GPUs that have them (about half of that; needs astcenc; textures whose alpha cuts or blends stay ETC2), or exact",
       .example = "raw",
       .excludes = "--only=anim" },
     { .name = "--texture-max",
@@ -961,7 +960,8 @@ static const option options[] = {
 const verb verb_build = {
     .name = "build",
     .files = "IN...",
-    .what = "convert .gltf, .glb, .fbx, .obj, .bvh, .trc, .c3d, .csv and .rcl files to one pack: the first model, the clips of all",
+    .what =
+        "convert .gltf, .glb, .fbx, .obj, .bvh, .trc, .c3d, .csv and .rcl files to one pack: the first model, the clips of all",
     .example =
         "head.glb -o head.noh --lod 4\nbody.glb walk.bvh run.bvh -o body.noh --events keys.txt\nwalk.bvh -o walk.noh --error-cm 0.02 --clip-error walk=0.1\n--terrain hill.png -o hill.noh --terrain-size 64 --terrain-height 8",
     .options = options,

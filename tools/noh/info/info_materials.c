@@ -139,7 +139,8 @@ void info_print_textures(const noh_pack *pack)
         }
         if (h->trim) printf(", trimmed from %u x %u", h->whole_width, h->whole_height);
         printf(", %llu bytes on the GPU", (unsigned long long)noh_gl_picture_bytes(&t, 1));
-        if (h->format) printf(", %llu without ETC2", (unsigned long long)noh_gl_picture_bytes(&t, 0));
+        if (h->format && h->format < NOH_TEXTURE_ASTC_4X4)
+            printf(", %llu without ETC2", (unsigned long long)noh_gl_picture_bytes(&t, 0));
         printf("\n");
     }
 }

@@ -98,6 +98,10 @@ static int of_material(const char *path, const noh_pack *pack, const noh_materia
                 path, "its textures were trimmed, so a painted mask would not fit the model: build the pack with "
                       "--whole-textures, or give the model itself");
         }
+        if (t.header->format >= NOH_TEXTURE_ASTC_4X4) {
+            return tool_fail(path, "its textures are ASTC, which cannot be read here: build the pack with --textures "
+                                   "etc2, or give the model itself");
+        }
         maps[k] = texels_of(&t);
         failed = !maps[k];
     }
