@@ -149,6 +149,7 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
     cast->wants = *wants;
     result = list_kinds(cast, pack, error);
     describe(cast);
+    if (!result) web_cast_add_stand(cast, pack);
     if (!result) result = web_cast_add_hair(cast, pack, error);
     if (!result) web_cast_add_fall(cast);
     if (!result && wants->alive) find_faces(cast, scratch, scratch_bytes);

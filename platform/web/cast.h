@@ -23,7 +23,14 @@ typedef struct web_wants {
     int alive;            /* 1: faces, if eyes are found, and springs */
     int without_transfer; /* 1: ignore precomputed light of vertices */
     int elsewhere;        /* 1: another renderer draws: no shaders, light or hair of noh */
+    int64_t held_ticks;   /* for which figures that stand were held still */
 } web_wants;
+
+/* A kind that stands without a clip. */
+typedef struct web_stand {
+    noh_kind_stand rig;
+    const web_wants *wants;
+} web_stand;
 
 typedef struct web_cast {
     web_wants wants;
@@ -34,8 +41,11 @@ typedef struct web_cast {
     noh_reflection reflection; /* without texels: not needed before the stage is created */
     noh_gl_light_desc light;
     noh_haircut cut;
-    noh_actor_hair_desc hair; /* of all actors of its kind */
-    noh_modifier hair_part;
+    noh_actor_hair_desc hair;                       /* of all actors of its kind */
+    noh_modifier modifiers[NOH_STAGE_KINDS_MAX][2]; /* of each kind: how it stands, then its hair */
+    const noh_modifier *hair_part;
+    web_stand stands[NOH_STAGE_KINDS_MAX];
+    uint32_t stand_count;                                       /* kinds that stand without a clip */
     int has_hair;                                               /* 0: the pack has none */
     noh_error cannot_fall;                                      /* OK: actors of the first kind can */
     uint32_t nodes[NOH_STAGE_KINDS_MAX * NOH_STAGE_MESHES_MAX]; /* of all kinds but the first */
@@ -58,9 +68,11 @@ size_t web_cast_scratch(const noh_pack *pack);
 
 /* Parts of a plan; the program of faces has none of them (face_only.c).
  * springs  of a kind that is alive
+ * stand    to each humanoid of a pack whose clips move no joint
  * hair     to the first kind with the joint that carries it
  * fall     of the first kind, on a floor at height 0, as in `noh render --push` */
 void web_cast_add_springs(noh_kind_desc *kind);
+void web_cast_add_stand(web_cast *cast, const noh_pack *pack);
 noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error);
 void web_cast_add_fall(web_cast *cast);
 

@@ -1,5 +1,5 @@
 /* face_only.c: stands in for cast_body.c, push.c, hair.c and vertices.c in the program of faces, face.wasm, which is
- * smaller: figures do not fall, and hair and springs of a pack stay still. */
+ * smaller: figures do not fall, bodies keep the bind pose, and hair and springs of a pack stay still. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -7,6 +7,12 @@
 void web_cast_add_springs(noh_kind_desc *kind)
 {
     (void)kind;
+}
+
+void web_cast_add_stand(web_cast *cast, const noh_pack *pack)
+{
+    (void)cast;
+    (void)pack;
 }
 
 noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)

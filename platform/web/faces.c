@@ -37,6 +37,11 @@ static int shows(uint32_t first, uint32_t count)
     return 0;
 }
 
+/* 1: some figure stands without a clip. */
+EMSCRIPTEN_KEEPALIVE int web_stands(void)
+{
+    return web.cast.stand_count != 0;
+}
 /* 1: some figure has an animated face. */
 EMSCRIPTEN_KEEPALIVE int web_alive(void)
 {
@@ -71,6 +76,7 @@ EMSCRIPTEN_KEEPALIVE void web_feel(int emotion, float amount)
 /* 1: nothing moves by itself. */
 EMSCRIPTEN_KEEPALIVE void web_set_calm(int calm)
 {
+    web.calm = calm;
     for (uint32_t i = 0; i < web.figure_count; i++) {
         if (has_face(i)) {
             (void)noh_actor_set_face_flags(web.stage, web.figures[i].actor, calm ? NOH_FACE_CALM : 0u, NULL);

@@ -147,7 +147,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive)
     if (web_open_context()) return 0;
     web.block_bytes = memory_bytes() - (size_t)web.block;
     for (int lit = 0; lit < (web.elsewhere ? 1 : 2); lit++) {
-        const web_wants wants = { characters, (noh_morph_path)path, lit, alive, 0, web.elsewhere };
+        const web_wants wants = { characters, (noh_morph_path)path, lit, alive, 0, web.elsewhere, 0 };
         if (web_cast_plan(&web.cast, &web.pack, &wants, web.block, web.block_bytes, &web.caps, &web.error)) return 0;
         most = web.cast.bytes > most ? web.cast.bytes : most;
     }

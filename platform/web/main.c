@@ -157,8 +157,9 @@ EMSCRIPTEN_KEEPALIVE void web_set_elsewhere(int on)
  * web_plan. */
 EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
 {
-    const web_wants wants = { characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive,
-                              0,          web.elsewhere };
+    const web_wants wants = {
+        characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0, web.elsewhere, 0
+    };
     noh_result result = web_load(&web.pack);
     web.character_count = characters;
     if (!result) result = web_open_context();
@@ -500,6 +501,7 @@ EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
     const uint32_t ticks = noh_frame_clock_advance(&web.clock, seconds);
     const noh_result result = web_rise(ticks);
     web_hair_shake(seconds);
+    if (web.calm) web.cast.wants.held_ticks += ticks;
     return (int)(result ? result : noh_stage_step(web.stage, ticks, NULL, NULL, &web.error));
 }
 

@@ -56,7 +56,7 @@ static int plan(const noh_pack *pack, const web_wants *wants, size_t *most, noh_
         printf("floats %u\nfaces %u\n", cast.plan.kinds[0].float_count, cast.faces_found);
         if (!cast.cannot_fall.result) printf("falls\n");
         if (cast.has_hair) {
-            printf("hair %u %zu %llu\n", cast.hair_part.state_bytes,
+            printf("hair %u %zu %llu\n", cast.hair_part->state_bytes,
                    noh_actor_hair_size(&cast.hair) + noh_stage_hair_size(&cast.hair),
                    (unsigned long long)noh_stage_hair_bytes(&cast.hair));
         }
@@ -72,7 +72,7 @@ static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
                                             NOH_MORPH_DIRECT };
     size_t most = 0;
     for (uint32_t i = 0; i < 4u * sizeof paths / sizeof *paths; i++) {
-        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0, 0 };
+        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0, 0, 0 };
         if (plan(pack, &wants, &most, error)) return 1;
     }
     printf("block %llu\n", (unsigned long long)most);

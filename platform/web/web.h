@@ -83,6 +83,7 @@ struct web {
     int32_t speed;                     /* playback speed, 1/65,536 */
     uint8_t smoothed;                  /* noh_appearance.smoothed of all figures */
     int elsewhere;                     /* 1: another renderer draws (vertices.c) */
+    int calm;                          /* 1: nothing moves by itself */
     uint32_t level;                    /* 1 + the shown LOD level; 0: chosen by pixels */
 };
 

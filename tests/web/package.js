@@ -247,6 +247,29 @@ async function lazy(browser) {
     await close(page, 'lazy');
 }
 
+// A humanoid whose pack has no clips, where one was built: its arms hang, and it breathes and shifts its weight, unless it
+// is to be still.
+async function stands(browser) {
+    if (!fs.existsSync(path.join(project, 'standing.noh'))) return;
+    const page = await show(browser, '<noh-character id="it" src="standing.noh" light="studio" style="width: 200px; height: 250px"></noh-character>');
+    await whole(page, 'it');
+    const told = await page.evaluate(() => {
+        const it = document.getElementById('it'), { character } = it, { box } = character.camera, picture = (seconds) => {
+            for (let i = 0; i < 10 * seconds; i++) character.step(0.1);
+            character.advance(0);
+            return character.canvas.toDataURL();
+        };
+        const still = picture(0) === picture(2), first = picture(0), goesOn = character.moves(Infinity);
+        it.autoLife = true;
+        return { shape: (box[3] - box[0]) / (box[4] - box[1]), still, goesOn, begins: picture(0) === first, moves: picture(2) !== first, lives: character.moves(Infinity) };
+    });
+    check('stands: its arms hang', told.shape < 0.5, told.shape);
+    check('stands: it is still', told.still && !told.goesOn, JSON.stringify(told));
+    check('stands: with auto-life it breathes, from the same pose on', told.begins && told.moves && told.lives, JSON.stringify(told));
+    await page.screenshot({ path: path.join(out, 'stands.png') });
+    await close(page, 'stands');
+}
+
 // Callback keys of a clip, where a pack that has some was built.
 async function keys(browser) {
     if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
@@ -380,4 +403,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, early, model, lazy, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, early, model, lazy, stands, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

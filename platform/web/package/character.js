@@ -247,7 +247,7 @@ export class Character extends EventTarget {
         return !this.stopped && (this.runs || now < this.busy || p._web_fades() > 0 || this.lives || this.speech.speaks || this.fallen > 0 || hair);
     }
 
-    get lives() { return this.program._web_alive() > 0 && !this.chosen.calm; }
+    get lives() { return (this.program._web_alive() > 0 || this.program._web_stands() > 0) && !this.chosen.calm; }
     get runs() { return this.playing.some(({ clip }) => clip !== null) && this.speed > 0 && !this.paused; }
 
     redraw() {
