@@ -144,18 +144,6 @@ async function used(browser) {
         return [azimuth, elevation, distance].map((value) => value.toFixed(4)).join();
     });
     check('used: attributes limit the camera', held === '0.1745,0.5236,0.8000', held);
-    const links = await page.evaluate(() => {
-        const it = document.getElementById('it'), { character } = it, { gl } = character, link = gl.linkProgram.bind(gl), pictures = [];
-        let count = 0;
-        gl.linkProgram = (program) => { count++; link(program); };
-        for (const light of ['plain', 'sky', 'plain', 'sky']) {
-            it.light = light;
-            character.advance(0);
-            pictures.push([count, character.canvas.toDataURL()]);
-        }
-        return { counts: pictures.map(([n]) => n), same: pictures[0][1] === pictures[2][1] && pictures[1][1] === pictures[3][1] && pictures[0][1] !== pictures[1][1] };
-    });
-    check('used: a light that was there before links nothing, and looks the same', links.counts[0] > 0 && links.counts[3] === links.counts[0] && links.same, JSON.stringify(links));
     const r = await canvas.boundingBox();
     await page.mouse.click(r.x + r.width / 2, r.y + r.height / 2);
     const seen = await page.evaluate(() => seen);
@@ -177,6 +165,36 @@ async function used(browser) {
     await page.waitForFunction(() => document.getElementById('it').error.includes('404'));
     check('used: as is a pack that is not there, and what was shown stays', await page.isVisible('noh-character .message') && await page.evaluate(() => document.getElementById('it').loaded));
     await close(page, 'used', 1);
+}
+
+// What a change of light takes is made beforehand: it links no program, and bakes no light.
+async function lights(browser) {
+    const page = await show(browser, '<noh-character id="it" src="face.nohz" light="studio"></noh-character>');
+    await whole(page, 'it');
+    const told = await page.evaluate(async () => {
+        const it = document.getElementById('it'), { character } = it, { gl, program } = character, link = gl.linkProgram.bind(gl), pictures = [], times = [];
+        await character.prepared;
+        let count = 0;
+        gl.linkProgram = (linked) => { count++; link(linked); };
+        for (const light of ['plain', 'sky', 'plain', 'sky', 'room']) {
+            const start = performance.now();
+            it.light = light;
+            times.push(Math.round(performance.now() - start));
+            character.advance(1); // until no level fades
+            character.advance(0);
+            pictures.push(character.canvas.toDataURL());
+        }
+        return { count, times, error: program._web_check(), same: pictures[0] === pictures[2] && pictures[1] === pictures[3] && pictures[0] !== pictures[1], room: pictures[4] };
+    });
+    console.log(`# a change of light: ${told.times.join(', ')} ms`);
+    check('lights: a change links nothing', told.count === 0 && told.error === 0, `${told.count} programs`);
+    check('lights: a light that was there before looks the same', told.same);
+    await page.goto(page.url()); // nothing is kept
+    await page.evaluate(() => { document.getElementById('it').light = 'room'; });
+    await whole(page, 'it');
+    const alone = await page.evaluate(() => { const { character } = document.getElementById('it'); character.advance(1); character.advance(0); return character.canvas.toDataURL(); });
+    check('lights: one that a worker has baked looks as one of the page', alone === told.room);
+    await close(page, 'lights');
 }
 
 // Calls before the pack is shown wait for it; names that are not there are rejected; an error goes with its cause; a pack
@@ -381,6 +399,7 @@ async function long(browser) {
     await whole(page, 'it');
     const told = await page.evaluate(async (lasts) => {
         const { character } = document.getElementById('it'), p = character.program;
+        await character.prepared;
         character.stopped = true;
         const minutes = (n) => {
             for (let i = 0; i < n * 1800; i++) {
@@ -403,4 +422,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, early, model, lazy, stands, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, lights, early, model, lazy, stands, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

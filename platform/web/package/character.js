@@ -1,7 +1,7 @@
 // character.js: a character on a canvas: loading its pack, drawing, clips, gaze, emotions and speech. Settings are
 // stored here, so that they apply to the coarsest levels of a pack, to the whole pack, and to another pack.
 import { Camera, framed, front } from './camera.js';
-import { forgetPrograms } from './gl.js';
+import { baked, forgetPrograms, linkAhead } from './gl.js';
 import { Pixels } from './pixels.js';
 import { Arrival, compile, fetchFirst, receive } from './program.js';
 import { reach } from './reach.js';
@@ -17,6 +17,7 @@ const longest = 4000; // of a frame, ms; longer gaps were not drawn
 const settles = 2500; // ms in which gaze and emotion settle
 const swings = 2000; // ms in which hair comes to rest
 const shakes = 4000;
+const prepares = 1000; // ms after a pack is there
 const strength = 150; // of a push, newton seconds
 const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
 
@@ -94,10 +95,30 @@ export class Character extends EventTarget {
         };
         try {
             await this.arrive(source, () => shown, show, mine);
+            if (mine() && !this.wants.elsewhere) this.prepared = new Promise((resolve) => { setTimeout(() => resolve(mine() && !this.lost && this.prepare()), prepares); });
         } catch (error) {
             if (shown === 0 && mine()) this.whole = was;
             throw error;
         }
+    }
+
+    // Lets a worker prepare the lights that are not shown; without one, the first change to each takes its time. Resolves
+    // when it has ended.
+    prepare() {
+        const { program, gl, caps } = this, { packBytes: bytes, given, module } = program, at = program._web_loaded_at();
+        return new Promise((resolve) => {
+            const worker = new Worker(new URL('./prepare.js', import.meta.url), { type: 'module' }); // the form that bundlers follow
+            let links = Promise.resolve();
+            const end = () => { worker.terminate(); resolve(links); };
+            worker.onerror = (event) => { event.preventDefault(); end(); };
+            worker.onmessage = ({ data: { light, texels, programs = [], ends } }) => {
+                if (ends || this.program !== program) return end();
+                if (texels) baked.set(light, texels);
+                return (links = links.then(() => linkAhead(gl, programs)));
+            };
+            this.ended.signal.addEventListener('abort', end, { once: true });
+            worker.postMessage({ module, caps, pack: program.HEAPU8.slice(at, at + bytes), wants: given, lit: this.lights.includes(this.chosen.light), done: [...baked.keys()] });
+        }).catch(() => {}); // the package lies on another server, whose scripts may not be workers here
     }
 
     async arrive(source, shown, show, mine) {

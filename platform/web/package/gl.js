@@ -112,6 +112,38 @@ export function forgetPrograms(gl) {
     spares.delete(gl);
 }
 
+const keyOf = (gl, program, varyings) => [...gl.getAttachedShaders(program).map((shader) => gl.getShaderSource(shader)), varyings].join('\0');
+
+const idle = () => new Promise((resolve) => (globalThis.requestIdleCallback ? requestIdleCallback(resolve, { timeout: 2000 }) : setTimeout(resolve, 200)));
+const COMPLETION_STATUS = 0x91B1;
+const linksMs = 50, longestLinks = 40; // between two looks at a program; looks
+
+// Makes programs in idle time, for a stage to come. list: of each its two sources.
+export async function linkAhead(gl, list) {
+    const tells = gl.getExtension('KHR_parallel_shader_compile');
+    for (const texts of list) {
+        await idle();
+        if (gl.isContextLost()) return;
+        const program = gl.createProgram();
+        texts.forEach((text, i) => {
+            const shader = gl.createShader(i ? gl.FRAGMENT_SHADER : gl.VERTEX_SHADER);
+            gl.shaderSource(shader, text);
+            gl.compileShader(shader);
+            gl.attachShader(program, shader);
+            gl.deleteShader(shader);
+        });
+        gl.linkProgram(program);
+        for (let i = 0; tells && i < longestLinks && !gl.isContextLost() && !gl.getProgramParameter(program, COMPLETION_STATUS); i++) await new Promise((resolve) => setTimeout(resolve, linksMs));
+        const key = keyOf(gl, program);
+        if (gl.isContextLost() || sparesOf(gl).has(key)) {
+            gl.deleteProgram(program);
+            continue;
+        }
+        sources.set(program, key);
+        sparesOf(gl).set(key, program);
+    }
+}
+
 function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     const ofProgram = new Map(); // the uniforms of each program, deleted with it
     const varyings = new Map();
@@ -142,7 +174,7 @@ function addShaders(out, gl, heap, { shaders, programs, uniforms }) {
     };
     out.glGetProgramInfoLog = (program, room, length, at) => log(gl.getProgramInfoLog(programs.objects[program]), room, length, at);
     out.glLinkProgram = (name) => {
-        const program = programs.objects[name], key = [...gl.getAttachedShaders(program).map((shader) => gl.getShaderSource(shader)), varyings.get(name)].join('\0');
+        const program = programs.objects[name], key = keyOf(gl, program, varyings.get(name));
         const spare = sparesOf(gl).get(key);
         varyings.delete(name);
         if (!spare) {
@@ -229,7 +261,7 @@ function addData(out, gl, heap, kinds) {
     out.glDrawBuffers = (count, at) => gl.drawBuffers(Array.from(heap.U32.subarray(at >> 2, (at >> 2) + count)));
 }
 
-const baked = new Map(); // texels by environment, for all characters: they take half a second to compute
+export const baked = new Map(); // texels by environment, for all characters: they take half a second to compute
 
 // Functions beyond GL (context.c, light.c).
 function addOthers(gl, heap) {

@@ -28,8 +28,8 @@ export class Program {
         this.look();
     }
 
-    // Starts in existing memory. caps: of another program on the same context.
-    static async start(module, gl, memory, caps) {
+    // Starts in existing memory, or in memory that may grow. caps: of another program on the same context.
+    static async start(module, gl, memory = new WebAssembly.Memory({ initial: LEAST, maximum: MOST }), caps = null) {
         const program = new Program(memory);
         const { imports, textures, buffers } = importsOf(gl, program.heap);
         const instance = await WebAssembly.instantiate(module, { ...imports, env: { ...imports.env, memory } });
@@ -75,7 +75,7 @@ export class Arrival {
     static async begin(module, gl, caps) {
         const arrival = new Arrival();
         Object.assign(arrival, { module, gl, shows: 0, parts: [], bytes: 0, place: 0, around: (call) => call() });
-        arrival.program = await Program.start(module, gl, new WebAssembly.Memory({ initial: LEAST, maximum: MOST }), caps);
+        arrival.program = await Program.start(module, gl, undefined, caps);
         return arrival;
     }
 
@@ -138,7 +138,8 @@ export class Arrival {
         const program = await Program.start(this.module, this.gl, memory, this.caps());
         program._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         program.HEAPU8.set(planner.HEAPU8.subarray(planner._web_loaded_at(), planner._web_loaded_at() + bytes), program._web_pack(bytes));
-        return Object.assign(program, { packBytes: bytes, open: () => program.check(program._web_open(path, wants.characters, wants.alive ? 1 : 0)) });
+        const given = [path, wants.characters, wants.alive ? 1 : 0];
+        return Object.assign(program, { module: this.module, packBytes: bytes, given, open: () => program.check(program._web_open(...given)) });
     }
 
     // The capabilities of the context, once probed.
