@@ -1,5 +1,6 @@
 #version 300 es
 /* floor.frag: the share of light that a shadow leaves on a level floor, by channel; the picture is multiplied by it.
+ * Alpha: the mean share that is taken.
  * After #version: the defines, common_fade.glsl, common_fragment.glsl and common_environment.glsl. */
 in vec3 v_position;
 in vec2 v_at;
@@ -14,5 +15,5 @@ void main()
 #ifdef NOH_ENCODE_SRGB
     left = pow(left, vec3(1.0 / 2.2)); /* for encoded values */
 #endif
-    o_color = vec4(left, 1.0);
+    o_color = vec4(left, 1.0 - dot(left, vec3(1.0 / 3.0))); /* alpha: darkens what lies behind a transparent picture */
 }

@@ -181,6 +181,13 @@ EMSCRIPTEN_KEEPALIVE void web_set_lighting(float degrees, int shadow, int tonema
     if (web.stage) tell();
 }
 
+/* The colour of a plain background, 0..1, alpha last. May be called before web_open. */
+EMSCRIPTEN_KEEPALIVE void web_set_background(float red, float green, float blue, float alpha)
+{
+    const float color[4] = { red * alpha, green * alpha, blue * alpha, alpha };
+    memcpy(web.light.color, color, sizeof color);
+}
+
 /* 1: the shadow also falls on the floor. May be called before web_open. */
 EMSCRIPTEN_KEEPALIVE void web_set_floor(int on)
 {

@@ -507,11 +507,11 @@ EMSCRIPTEN_KEEPALIVE int web_step(double seconds)
 
 static void begin_frame(uint32_t width, uint32_t height)
 {
-    static const float background[4] = { 0.3035f, 0.3094f, 0.3227f, 1.0f }, far = 1.0f;
+    static const float far = 1.0f;
     web.gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
     web.gl.Viewport(0, 0, (GLsizei)width, (GLsizei)height);
     web.gl.DepthMask(GL_TRUE);
-    web.gl.ClearBufferfv(GL_COLOR, 0, background);
+    web.gl.ClearBufferfv(GL_COLOR, 0, web.light.color);
     web.gl.ClearBufferfv(GL_DEPTH, 0, &far);
     web_light_backdrop();
     web_light_floor();

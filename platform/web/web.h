@@ -37,6 +37,7 @@ typedef struct web_light {
     int environment;                 /* WEB_PLAIN, or an index of noh_environment_at */
     float degrees;                   /* rotation of the environment */
     int shadow, tonemap, background; /* a web_shadow; a noh_tonemap; 1 + a noh_backdrop_kind, 0: plain */
+    float color[4];                  /* of a plain background, premultiplied by its alpha */
     noh_light all;                   /* not turned */
     noh_lighting told;
     noh_backdrop backdrop;

@@ -146,6 +146,41 @@ static void pixels_are_what_is_left_of_the_light(void **state)
     check_pixels(1);
 }
 
+/* A page that shines through a transparent picture is darkened by alpha. */
+static void it_darkens_what_lies_behind_the_picture(void **state)
+{
+    static const float nothing[4] = { 0.0f, 0.0f, 0.0f, 0.0f }, lit = 0.0f, far = 1.0f;
+    static uint8_t rgba[SIDE * SIDE * 4];
+    double left[3], worst = 0.0;
+    scene s;
+    canvas c;
+    (void)state;
+    open_scene(&s, 0);
+    assert_int_equal(canvas_open(&c, s.g, SIDE, SIDE), 0);
+    noh_gl_light_begin_shadow(&s.light);
+    s.g->gl.ClearBufferfv(GL_DEPTH, 0, &lit);
+    noh_gl_light_end_shadow(&s.light, s.lighting.shadow, &s.lighting);
+    canvas_begin(&c);
+    s.g->gl.DepthMask(GL_TRUE);
+    s.g->gl.ClearBufferfv(GL_DEPTH, 0, &far);
+    s.g->gl.ClearBufferfv(GL_COLOR, 0, nothing);
+    noh_stage_floor_draw(&s.level, &s.light, &s.lighting, &above, disc);
+    canvas_resolve(&c); /* canvas_read has no alpha */
+    s.g->gl.BindFramebuffer(GL_FRAMEBUFFER, c.resolved_framebuffer);
+    s.g->gl.ReadPixels(0, 0, (GLsizei)SIDE, (GLsizei)SIDE, GL_RGBA, GL_UNSIGNED_BYTE, rgba);
+    s.g->gl.BindFramebuffer(GL_FRAMEBUFFER, 0);
+    canvas_close(&c);
+    left_of(&s, left);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        const double dark = (1.0 - (left[0] + left[1] + left[2]) / 3.0) * faded(i % SIDE, SIDE - 1u - i / SIDE);
+        assert_int_equal(rgba[4 * i] | rgba[4 * i + 1] | rgba[4 * i + 2], 0);
+        worst = fmax(worst, fabs(rgba[4 * i + 3] - 255.0 * dark));
+    }
+    print_message("worst alpha %.2f of 255\n", worst);
+    assert_true(worst < 2.0);
+    close_scene(&s);
+}
+
 static void it_is_seen_from_above_alone(void **state)
 {
     static uint8_t rgba[SIDE * SIDE * 4];
@@ -167,7 +202,8 @@ static void it_is_seen_from_above_alone(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(pixels_are_what_is_left_of_the_light),
+    const struct CMUnitTest tests[] = { cmocka_unit_test(it_darkens_what_lies_behind_the_picture),
+                                        cmocka_unit_test(pixels_are_what_is_left_of_the_light),
                                         cmocka_unit_test(it_is_seen_from_above_alone) };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

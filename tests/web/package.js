@@ -288,6 +288,102 @@ async function stands(browser) {
     await close(page, 'stands');
 }
 
+// The colour behind the figure: the page's own where it is transparent, with the shadow on the floor.
+async function behind(browser) {
+    const page = await show(browser, `<style>#it { background-color: rgb(255, 200, 0); width: 200px; height: 250px }</style>
+        <noh-character id="it" src="${fs.existsSync(path.join(project, 'standing.noh')) ? 'standing.noh' : 'face.nohz'}" background="transparent"></noh-character>`);
+    await whole(page, 'it');
+    const look = (background) => page.evaluate(async (b) => {
+        const it = document.getElementById('it'), { character } = it;
+        it.background = b;
+        character.advance(1);
+        character.advance(0);
+        const picture = await createImageBitmap(await it.toBlob()), { width, height } = picture, canvas = Object.assign(document.createElement('canvas'), { width, height }), context = canvas.getContext('2d');
+        context.drawImage(picture, 0, 0);
+        const { data } = context.getImageData(0, 0, width, height), at = (x, y) => Array.from(data.slice(4 * (y * width + x), 4 * (y * width + x) + 4)).join();
+        let shade = 0;
+        for (let i = 0; i < data.length; i += 4) if (data[i + 3] > 10 && data[i + 3] < 200 && data[i] + data[i + 1] + data[i + 2] < 30) shade++;
+        return { corner: at(1, 1), middle: at(width >> 1, height * 0.4 | 0).split(',')[3], shade, error: it.error };
+    }, background);
+    const clear = await look('transparent');
+    check('behind: nothing but the figure', clear.corner === '0,0,0,0' && clear.middle === '255' && clear.error === '', JSON.stringify(clear));
+    check('behind: and the shadow that it casts', clear.shade > 100 || !fs.existsSync(path.join(project, 'standing.noh')), clear.shade);
+    await page.screenshot({ path: path.join(out, 'behind_page.png') });
+    const blue = await look('hsl(240 100% 50%)'), half = await look('#00ff0080'), wrong = await look('blau'), light = await look('light');
+    check('behind: a colour of CSS', blue.corner === '0,0,255,255' && half.corner.endsWith(',128') && blue.error === '', `${blue.corner} ${half.corner}`);
+    check('behind: what is none is named', wrong.error.includes("background 'blau'") && light.error === '', wrong.error);
+    check('behind: a picture without gaps', light.corner.endsWith(',255') && light.middle === '255', JSON.stringify(light));
+    await close(page, 'behind');
+}
+
+// Elements that stay at a vertex, a joint and a place, while the figure moves.
+async function hotspots(browser) {
+    const page = await show(browser, `<style>button { width: 12px; height: 12px; padding: 0; border-radius: 6px; background: red } noh-character { width: 200px; height: 250px }</style>
+        <noh-character id="it" src="face.nohz" light="plain" clip="smile" paused></noh-character>`);
+    await whole(page, 'it');
+    const told = await page.evaluate(async () => {
+        const it = document.getElementById('it'), { character } = it, told = {}, r = it.getBoundingClientRect();
+        const drawn = async () => { await Promise.resolve(); character.advance(0.1); character.advance(0); };
+        const spot = (name, data) => { const b = it.appendChild(Object.assign(document.createElement('button'), { slot: name })); Object.assign(b.dataset, data); return b; };
+        await drawn();
+        const picked = await new Promise((resolve) => {
+            it.addEventListener('pick', ({ detail }) => resolve(detail), { once: true });
+            character.tap(r.left + r.width / 2, r.top + r.height * 0.77);
+        });
+        told.picked = picked.vertex >= 0;
+        const lip = spot('hotspot-lip', { vertex: `${picked.mesh} ${picked.vertex}` }), back = spot('hotspot-back', { position: '0m 0m 0m', normal: '0m 0m -1m' });
+        await drawn();
+        const at = (b) => { const box = b.getBoundingClientRect(); return [box.left + box.width / 2 - r.left, box.top + box.height / 2 - r.top]; }, near = (a, b) => Math.hypot(a[0] - b[0], a[1] - b[1]);
+        told.there = near(at(lip), [r.width / 2, r.height * 0.77]);
+        told.visible = [lip, back].map((b) => b.hasAttribute('data-visible')).join();
+        const query = it.queryHotspot('hotspot-lip'), before = at(lip);
+        told.query = [near([query.canvasPosition.x, query.canvasPosition.y], before) < 1, query.facingCamera, query.normal.z > 0].join();
+        it.setWeight('smile', 1);
+        it.setWeight('jawOpen', 1);
+        await drawn();
+        told.moved = near(at(lip), before);
+        it.releaseWeights();
+        const seen = new Promise((resolve) => back.addEventListener('hotspot-visibility', ({ detail }) => resolve(detail.visible)));
+        character.turn(Math.PI, 0);
+        await drawn();
+        told.behind = [lip, back].map((b) => b.hasAttribute('data-visible')).join();
+        told.seen = await seen;
+        const wrong = spot('hotspot-wrong', { joint: 'tail' });
+        await drawn();
+        told.error = it.error;
+        wrong.remove();
+        await drawn();
+        told.after = it.error;
+        character.turn(Math.PI + 0.4, 0.1);
+        await drawn();
+        return told;
+    });
+    check('hotspots: a tap tells the vertex', told.picked);
+    check('hotspots: an element stays at it', told.there < 6, told.there);
+    check('hotspots: what faces the camera is visible', told.visible === 'true,false' && told.behind === 'false,true' && told.seen === true, JSON.stringify(told));
+    check('hotspots: its place can be asked for', told.query === 'true,true,true', told.query);
+    check('hotspots: it follows targets', told.moved > 0.5, told.moved);
+    check('hotspots: a joint that is not there is named', told.error === "hotspot-wrong: the pack has no joint 'tail'" && told.after === '', told.error);
+    await page.screenshot({ path: path.join(out, 'hotspots.png') });
+    await close(page, 'hotspots');
+    if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
+    const walks = await show(browser, `<style>b { background: #fffc; color: #000; font: 10px sans-serif; padding: 0 2px } noh-character { width: 200px; height: 250px }</style>
+        <noh-character id="it" src="walker.noh" clip="walk" light="plain"><b slot="hotspot-foot" data-joint="foot.L">foot</b><b slot="hotspot-head" data-joint="head" data-position="0 10cm 0">head</b></noh-character>`);
+    await whole(walks, 'it');
+    const foot = await walks.evaluate(() => {
+        const it = document.getElementById('it'), heights = [];
+        for (let i = 0; i < 12; i++) {
+            it.character.advance(0.1);
+            const view = it.queryHotspot('hotspot-foot');
+            if (view) heights.push(view.position.y);
+        }
+        return { error: it.error, range: Math.max(...heights) - Math.min(...heights), head: it.queryHotspot('hotspot-head')?.canvasPosition.y };
+    });
+    check('hotspots: it follows a joint', foot.error === '' && foot.range > 0.02 && foot.head > 0 && foot.head < 80, JSON.stringify(foot));
+    await walks.screenshot({ path: path.join(out, 'hotspots_walk.png') });
+    await close(walks, 'hotspots of a walk');
+}
+
 // Callback keys of a clip, where a pack that has some was built.
 async function keys(browser) {
     if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
@@ -422,4 +518,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, lights, early, model, lazy, stands, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, lights, early, model, lazy, stands, behind, hotspots, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

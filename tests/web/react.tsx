@@ -8,6 +8,7 @@ export function Face() {
         onload={(event) => console.log(event.detail.whole)} onClick={() => face.current?.setWeight('smile', 1)} />;
 }
 export const shapeless = <noh-character src="face.nohz" shadow="blob" onerror={({ detail }) => console.log(detail.message)} />;
+export const marked = <noh-character src="face.nohz" background="transparent"><button slot="hotspot-nose" data-joint="head" data-position="0 10cm 9cm">nose</button></noh-character>;
 // @ts-expect-error there is no such shadow
 export const wrong = <noh-character src="face.nohz" shadow="long" />;
 // @ts-expect-error there is no such attribute

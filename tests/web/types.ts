@@ -14,8 +14,11 @@ if (element) {
     known.ready.then((shown: NohCharacter) => shown.play('walk'));
     known.degrees = 40;
     known.autoLife = true;
-    // @ts-expect-error there is no such background
-    known.background = 'grey';
+    known.background = 'rgb(0 0 0 / 50%)';
+    // @ts-expect-error a background is a text
+    known.background = 0;
+    const x: number | undefined = known.queryHotspot('hotspot-nose')?.canvasPosition.x;
+    element.addEventListener('pick', ({ detail }) => console.log(detail.vertex + (x ?? 0)));
     const bytes: number = known.memory ? known.memory.all : 0;
     console.log(bytes, known.clips.map((clip) => clip.seconds));
     known.load(new Uint8Array(3)).then((shown: boolean) => console.log(shown));

@@ -9,6 +9,7 @@ import { Speech } from './speech.js';
 
 export const layers = ['body', 'face'];
 export const backgrounds = ['plain', 'gradient', 'light'];
+const grey = [0.3035, 0.3094, 0.3227, 1];
 export const shadows = ['off', 'on', 'blob'];
 const transition = 0.3; // seconds between two clips
 const mostPixels = 2; // canvas pixels per page pixel
@@ -20,6 +21,16 @@ const shakes = 4000;
 const prepares = 1000; // ms after a pack is there
 const strength = 150; // of a push, newton seconds
 const posesASecond = 8, mostPoses = 96; // of a clip, to frame it
+
+// A background as [red, green, blue, alpha], 0 to 1: a CSS colour; grey, if it is named above; null: neither.
+function colorOf(background) {
+    if (backgrounds.includes(background)) return grey;
+    if (!CSS.supports('color', background)) return null;
+    const canvas = Object.assign(document.createElement('canvas'), { width: 1, height: 1 }), context = canvas.getContext('2d');
+    context.fillStyle = background;
+    context.fillRect(0, 0, 1, 1);
+    return Array.from(context.getImageData(0, 0, 1, 1).data, (part) => part / 255);
+}
 
 // The default settings of a character.
 const asMade = { light: 'studio', degrees: 0, shadow: 'on', floor: true, tonemap: true, background: 'light', transfer: true, level: -1, wrinkles: 1, calm: false,
@@ -38,9 +49,10 @@ export class Character extends EventTarget {
         this.speech = new Speech(this);
         this.camera.follows = follows;
         this.ended = new AbortController();
-        this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: false, preserveDrawingBuffer: true }); // to allow saving the canvas
+        this.gl = canvas.getContext('webgl2', { antialias: true, depth: true, alpha: true, preserveDrawingBuffer: true }); // to allow saving the canvas
         if (this.gl && !elsewhere) {
-            this.gl.clearColor(0.306, 0.31, 0.322, 1); // until there is a picture
+            const [red, green, blue, alpha] = colorOf(this.chosen.background) || grey; // until there is a picture
+            this.gl.clearColor(red * alpha, green * alpha, blue * alpha, alpha);
             this.gl.clear(this.gl.COLOR_BUFFER_BIT);
         }
         this.watch();
@@ -401,12 +413,14 @@ export class Character extends EventTarget {
         const c = this.chosen;
         this.program._web_set_lighting(c.degrees, Math.max(0, shadows.indexOf(c.shadow)), c.tonemap ? 2 : 0, Math.max(0, backgrounds.indexOf(c.background)));
         this.program._web_set_floor(c.floor ? 1 : 0);
+        this.program._web_set_background(...colorOf(c.background) || grey);
     }
 
     // { light, degrees, shadow, floor, tonemap, background, transfer }, or some of them. In a lost context, changes are
     // applied after it is restored.
     setLight(what) {
         const { transfer: before, light, shadow } = this.chosen;
+        if (what.background !== undefined && !colorOf(what.background)) throw new Error(`the background '${what.background}' is none of ${backgrounds.join(', ')} or a CSS colour`);
         Object.assign(this.chosen, what);
         if (light !== this.chosen.light || shadow !== this.chosen.shadow) this.pixels.forget();
         if (!this.program) return;
@@ -510,7 +524,7 @@ export class Character extends EventTarget {
             return;
         }
         const names = p._web_pick(...at) ? [p.text(p._web_picked_mesh()), p.text(p._web_picked_joint())] : ['', ''];
-        this.emit('pick', { mesh: names[0], joint: names[1] });
+        this.emit('pick', { mesh: names[0], joint: names[1], vertex: names[0] ? p._web_picked_vertex() : -1 });
     }
 
     // Push at a pixel of the canvas, or at the chest. A fallen figure gets up and continues its clip. Returns 0 or an

@@ -2,12 +2,14 @@
 import { limitsOf } from './camera.js';
 import { Character } from './character.js';
 import { convertAddress, isModel, Visitor } from './convert.js';
+import { Hotspots } from './hotspots.js';
 import { addGaze, addPointers } from './pointer.js';
 import { kilobytes } from './program.js';
 
 const style = `
 :host { display: block; position: relative; height: 20rem; overflow: hidden; background: #4e4f52; color: #fff; font: 15px/1.4 system-ui, sans-serif; }
 :host([hidden]) { display: none; }
+:host([background=transparent]) { background: none; }
 canvas { display: block; width: 100%; height: 100%; }
 :host([camera-orbit]) canvas { touch-action: pan-y; cursor: grab; }
 :host([camera-orbit]) canvas:active { cursor: grabbing; }
@@ -16,12 +18,16 @@ canvas:focus-visible { outline: 3px solid Highlight; outline-offset: -3px; }
 .progress, .message { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; }
 .bar { display: flex; gap: .7rem; align-items: center; }
 progress { flex: 1; min-width: 0; max-width: 16rem; }
+.hotspot { position: absolute; inset: 0 auto auto 0; pointer-events: none; }
+.hotspot:not(.away) ::slotted(*) { pointer-events: auto; }
+.hotspot.away ::slotted(*) { opacity: var(--min-hotspot-opacity, .25); }
 .caption { position: absolute; inset: auto 0 0 0; padding: .5rem .8rem; background: #000c; text-align: center; }
 .message { color: #ffc4ba; white-space: pre-wrap; max-height: 40%; overflow: auto; }
 .message button { font: inherit; float: right; margin-left: .7rem; }
 [hidden] { display: none !important; }`;
 
 const body = `<div class="poster" part="poster"><slot name="poster"></slot></div>
+<div class="hotspots"></div>
 <div class="progress" part="progress" hidden><slot name="progress"><div class="bar"><progress aria-label="the character arrives"></progress><span></span></div></slot></div>
 <div class="caption" part="caption" role="status" hidden></div>
 <div class="message" part="message" role="status" hidden><button part="retry" hidden>try again</button><span></span></div>`;
@@ -82,6 +88,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.inside('.poster').before(this.canvas);
         this.character = new Character(this.canvas, this.wishes());
         this.limitCamera();
+        this.hotspots = new Hotspots(this, this.inside('.hotspots'), (words) => this.blame('hotspot', words));
         this.watch();
         this.nameCanvas();
         this.showPoster();
@@ -98,6 +105,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         if (!this.character) return;
         this.ended.abort();
         this.endPointers();
+        this.hotspots.end();
         this.sees.disconnect();
         this.character.dispose();
         this.loads = 0;
@@ -123,7 +131,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
             this.inside('.caption').textContent = words;
             this.inside('.caption').hidden = !words || !(silent || this.captions);
         });
-        for (const type of ['word', 'key', 'pick', 'push', 'speech', 'pause', 'light', 'frame']) pass(type);
+        for (const type of ['word', 'key', 'pick', 'push', 'speech', 'pause', 'light']) pass(type);
+        pass('frame', () => this.hotspots.update(character));
         character.addEventListener('fault', ({ detail }) => this.fail('frame', new Error(detail.message)), { signal });
         globalThis.addEventListener('online', () => { if (this.failed) this.again(); }, { signal });
         reduced().addEventListener('change', () => this.rest(), { signal });
@@ -209,6 +218,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         this.apply('clip');
         this.apply('face');
         this.apply('emotion');
+        this.attempt('light', () => this.character.setLight({ background: this.background }));
         this.character.fit();
         this.settle.resolve(this);
         this.flush();
@@ -302,7 +312,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
         } else if (name === 'poster') {
             this.showPoster();
         } else if (ofLight.includes(name)) {
-            this.character.setLight(Object.fromEntries(Object.entries(this.wishes()).filter(([key]) => ofLight.includes(key))));
+            this.attempt('light', () => this.character.setLight(Object.fromEntries(Object.entries(this.wishes()).filter(([key]) => ofLight.includes(key)))));
         } else if (name === 'level' || name === 'speed') {
             this.character[name] = this.wishes()[name];
         } else if (name === 'view') {
@@ -328,14 +338,26 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     apply(name) {
         const { character } = this, value = this.getAttribute(name) || null;
         if (!character.loaded) return;
-        try {
+        this.attempt(name, () => {
             if (name === 'emotion') character.feel(value);
             else character.play(value, { layer: name === 'face' ? 'face' : 'body' });
+        });
+    }
+
+    // A success removes the message of an earlier failure.
+    attempt(what, call) {
+        try {
+            call();
         } catch (error) {
-            this.fail(name, error);
+            this.fail(what, error);
             return;
         }
-        if (this.faults.delete(name)) this.tell();
+        this.blame(what, '');
+    }
+
+    blame(what, words) {
+        if (words && words !== this.faults.get(what)) this.fail(what, words);
+        else if (!words && this.faults.delete(what)) this.tell();
     }
 
     // ---- for programs ----
@@ -375,6 +397,9 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     feel(emotion, amount) { return this.ask((character) => character.feel(emotion, amount)); }
     push() { return this.ask((character) => character.push()); }
     fit() { return this.ask((character) => character.fit()); }
+
+    // Where a hotspot is, by the name of its slot, as in model-viewer; null: it is not shown.
+    queryHotspot(name) { return this.hotspots ? this.hotspots.query(name) : null; }
 
     // The picture at full resolution, as a file.
     toBlob({ mimeType, quality } = {}) {

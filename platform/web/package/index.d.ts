@@ -7,7 +7,8 @@ export type Layer = 'body' | 'face';
 export type Shadow = 'on' | 'off' | 'blob';
 /** What the camera frames: the face with its hair, the upper part of a body, or all of the figures. */
 export type View = 'face' | 'upper' | 'full';
-export type Background = 'light' | 'gradient' | 'plain';
+/** The blurred light, a gradient, grey, or a CSS colour: `transparent` shows the page. */
+export type Background = 'light' | 'gradient' | 'plain' | 'transparent' | (string & {});
 /** The accumulation path of targets: `auto` selects the best for this context. */
 export type MorphPath = 'auto' | 'mrt' | 'per-layer' | 'gather' | 'direct' | 'cpu' | 'blend';
 
@@ -59,7 +60,9 @@ export interface CharacterEvents {
     load: CustomEvent<{ whole: boolean }>;
     progress: CustomEvent<ProgressDetail>;
     key: CustomEvent<KeyDetail>;
-    pick: CustomEvent<{ mesh: string; joint: string }>;
+    /** `vertex`: of the mesh, nearest to the point; -1 if nothing was hit. With `data-vertex="MESH VERTEX"` a hotspot stays
+     * there. */
+    pick: CustomEvent<{ mesh: string; joint: string; vertex: number }>;
     push: CustomEvent<{ error: string }>;
     speech: CustomEvent<{ words: string; speaks: boolean; source: string }>;
     /** What is said now, '' at the end. `silent`: without a voice. */
@@ -182,6 +185,19 @@ export interface NohCharacterEvents extends CharacterEvents {
     warning: CustomEvent<{ message: string }>;
 }
 
+export interface Point { readonly x: number; readonly y: number; readonly z: number }
+/** A hotspot in the last frame. */
+export interface HotspotView {
+    /** In the world, in model units. */
+    readonly position: Point;
+    /** null: none is given. */
+    readonly normal: Point | null;
+    /** In pixels of the element, from its top left corner; z: depth, -1 to 1. */
+    readonly canvasPosition: Point;
+    /** Whether it is in the picture, and its normal, if it has one, faces the camera. */
+    readonly facingCamera: boolean;
+}
+
 /** The attributes of `<noh-character>`, as properties. */
 export interface NohCharacterProperties {
     /** A pack, or a model in one file (.glb, .vrm, .fbx), which is converted in a worker and kept in the browser. */
@@ -255,6 +271,9 @@ export class NohCharacter extends HTMLElement {
     feel(emotion: string | null, amount?: number): Promise<void>;
     push(): Promise<string>;
     fit(): Promise<void>;
+    /** A child with `slot="hotspot-NAME"`, by the name of its slot; null: it is not shown. The child has `data-visible` while
+     * it faces the camera, and the event `hotspot-visibility` (`HotspotEvent`) when that changes. */
+    queryHotspot(name: string): HotspotView | null;
     /** The present picture; default: PNG. */
     toBlob(options?: { mimeType?: string; quality?: number }): Promise<Blob | null>;
     /** Says it after what is said now. Resolves to whether all of it was said. */
@@ -267,6 +286,8 @@ export class NohCharacter extends HTMLElement {
     addEventListener<K extends keyof HTMLElementEventMap>(type: K, listener: (event: HTMLElementEventMap[K]) => void, options?: boolean | AddEventListenerOptions): void;
     addEventListener(type: string, listener: EventListenerOrEventListenerObject, options?: boolean | AddEventListenerOptions): void;
 }
+
+export type HotspotEvent = CustomEvent<{ visible: boolean }>;
 
 /** Let the canvas move the camera. Returns a function that ends it. */
 export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;

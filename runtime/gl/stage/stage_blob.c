@@ -54,7 +54,7 @@ static void begin(const noh_stage_blob *b, const noh_stage_view *view, const flo
     noh_gl_drawable_begin(d, NOH_DRAWABLE_COLOR);
     d->gl->UniformMatrix4fv(d->uniforms[NOH_DRAWABLE_COLOR][U_CAMERA], 1, GL_FALSE, near_by.view_projection);
     noh_gl_multiply_begin(d->gl, raster);
-    d->gl->BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ZERO, GL_ONE);
+    d->gl->BlendFuncSeparate(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
 }
 
 static void draw_some(noh_stage_blob *b, const noh_blob *blobs, uint32_t count, const float origin[3])

@@ -61,7 +61,7 @@ void noh_stage_floor_draw(const noh_stage_floor *shadow, const noh_gl_light *lig
     d->gl->UniformMatrix4fv(uniforms[U_CAMERA], 1, GL_FALSE, near_by.view_projection);
     d->gl->Uniform4f(uniforms[U_DISC], disc[0] - origin[0], disc[1] - origin[1], disc[2] - origin[2], disc[3]);
     noh_gl_multiply_begin(d->gl, &raster);
-    d->gl->BlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ZERO, GL_ONE);
+    d->gl->BlendFuncSeparate(GL_ZERO, GL_SRC_COLOR, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     d->gl->DrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, 1);
     noh_gl_drawable_end(d, &raster);
 }
