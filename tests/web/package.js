@@ -384,6 +384,40 @@ async function hotspots(browser) {
     await close(walks, 'hotspots of a walk');
 }
 
+// A voice of the program in place of the browser's: its sound is heard, or its times are followed.
+async function voice(browser) {
+    const page = await show(browser, '<noh-character id="it" src="face.nohz" light="plain" style="width: 64px; height: 64px" captions></noh-character>');
+    await whole(page, 'it');
+    const told = await page.evaluate(async () => {
+        const it = document.getElementById('it'), { speech } = it.character, rate = 16000, asked = [], told = {};
+        // half a second of a buzz through the resonances of "a"
+        const buzz = () => {
+            const sound = new AudioBuffer({ length: rate / 2, sampleRate: rate }), out = sound.getChannelData(0);
+            for (let i = 0; i < out.length; i++) for (const [hz, loud] of [[730, 0.3], [1090, 0.2], [2440, 0.1]]) out[i] += loud * Math.sin(2 * Math.PI * hz * i / rate) * Math.exp(-(i % 133) / 40);
+            return sound;
+        };
+        it.voice = async (text) => { asked.push(text); return buzz(); };
+        it.addEventListener('caption', ({ detail }) => { told.caption = told.caption || detail.words; });
+        const heard = it.speak('Aha');
+        await new Promise((resolve) => { it.addEventListener('speech', ({ detail }) => { if (detail.source === 'file') resolve(); }); });
+        told.open = Math.max(...speech.now.frames.map(({ open }) => open));
+        told.said = await heard;
+        const words = [], times = [{ viseme: 1, ms: 0 }, { viseme: 10, ms: 100 }, { viseme: 0, ms: 400 }];
+        it.addEventListener('word', ({ detail }) => words.push(detail.word));
+        it.voice = (text) => { asked.push(text); return { sound: buzz(), visemes: times, words: [{ word: 'Papa', ms: 0 }] }; };
+        told.timed = await it.speak('Papa') && words.join() === 'Papa' && !speech.now.frames;
+        it.voice = () => { throw new Error('hoarse'); };
+        told.fallen = await Promise.race([it.speak('Oh').then(() => 'said'), new Promise((resolve) => { it.addEventListener('caption', ({ detail }) => { if (detail.words === 'Oh') resolve('said'); }); })]);
+        it.hush();
+        return { ...told, asked: asked.join() };
+    });
+    check('voice: it says the sentence, which is shown', told.said === true && told.caption === 'Aha' && told.asked === 'Aha,Papa', JSON.stringify(told));
+    check('voice: the mouth follows what the ear hears', told.open > 0.3, told.open);
+    check('voice: or the times that it gives', told.timed === true, told.timed);
+    check('voice: if it fails, the browser takes over', told.fallen === 'said', told.fallen);
+    await close(page, 'voice');
+}
+
 // Callback keys of a clip, where a pack that has some was built.
 async function keys(browser) {
     if (!fs.existsSync(path.join(project, 'walker.noh'))) return;
@@ -518,4 +552,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, lights, early, model, lazy, stands, behind, hotspots, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, lights, early, model, lazy, stands, behind, hotspots, voice, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

@@ -15,6 +15,7 @@ if (element) {
     known.degrees = 40;
     known.autoLife = true;
     known.background = 'rgb(0 0 0 / 50%)';
+    known.voice = async (text) => ({ sound: new AudioBuffer({ length: 800 * text.length, sampleRate: 16000 }), visemes: [{ viseme: 10, ms: 0 }] });
     // @ts-expect-error a background is a text
     known.background = 0;
     const x: number | undefined = known.queryHotspot('hotspot-nose')?.canvasPosition.x;

@@ -76,7 +76,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     connectedCallback() {
         if (this.character) return; // it was moved
-        for (const name of Object.keys(properties)) { // set before the element was defined
+        for (const name of [...Object.keys(properties), 'voice']) { // set before the element was defined
             if (!Object.hasOwn(this, name)) continue;
             const value = this[name];
             delete this[name];
@@ -161,7 +161,7 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     // The attributes as options.
     wishes() {
         const { path, pixels, characters, view, light, degrees, shadow, background, level, speed } = this;
-        return { program: this.program || undefined, path, pixels, characters, view, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
+        return { program: this.program || undefined, voice: this.voice, path, pixels, characters, view, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
             paused: this.rests(), calm: !this.lives() };
     }
 
@@ -371,6 +371,13 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
     get time() { return this.loaded ? this.character.time : 0; }
     set time(seconds) { this.ask((character) => { character.time = seconds; }); }
     weight(target) { return this.loaded ? this.character.weight(target) : 0; }
+
+    // Says sentences in place of the browser's voices; null: none.
+    get voice() { return this.ownVoice || null; }
+    set voice(voice) {
+        this.ownVoice = voice;
+        if (this.character) this.character.voice = voice;
+    }
 
     // A call of the character, once the pack that is asked for is shown. Resolves to its result, or rejects, if the pack
     // lacks a name.

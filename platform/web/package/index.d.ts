@@ -92,6 +92,12 @@ export interface SpeechOptions {
     interrupt?: boolean;
 }
 
+/** A voice of your own: makes the sound of a sentence, with the times of mouth shapes and words, if it has them; otherwise the
+ * ear hears the sound. If it fails, a voice of the browser says the sentence. */
+export type Voice = (text: string) => VoiceSound | VoiceSpeech | Promise<VoiceSound | VoiceSpeech>;
+export type VoiceSound = Exclude<SpeechSource, string | MediaStream | HTMLMediaElement>;
+export interface VoiceSpeech extends Pick<SpeechOptions, 'visemes' | 'words' | 'rate'> { sound: VoiceSound }
+
 export interface CharacterOptions extends Partial<Light> {
     /** Address of the program; default: noh.wasm in the folder of this module. face.wasm, which lies next to it, is smaller:
      * it has no falls, springs, hair or three.js. */
@@ -110,6 +116,8 @@ export interface CharacterOptions extends Partial<Light> {
     follows?: boolean;
     /** What the camera frames; default: all of the figures. */
     view?: View;
+    /** Says sentences in place of the browser's voices. */
+    voice?: Voice | null;
     level?: number;
     speed?: number;
     paused?: boolean;
@@ -140,6 +148,7 @@ export class Character extends EventTarget {
     paused: boolean;
     level: number;
     alive: boolean;
+    voice: Voice | null;
     /** Whether the resolution is reduced while the figure moves and frames are slow. */
     sparing: boolean;
     /** Resolution of the next frame, as a share of the full width. */
@@ -241,6 +250,8 @@ export interface NohCharacter extends NohCharacterProperties {}
 export class NohCharacter extends HTMLElement {
     /** Address of noh.wasm, if not in the folder of this module; set it before the element is added to the page. */
     program?: string | URL;
+    /** Says sentences in place of the browser's voices; null: none. */
+    voice: Voice | null;
     /** Resolves to the element when the pack is shown, if only by its coarsest levels; rejects if it cannot be. The next
      * load makes another promise. */
     readonly ready: Promise<this>;

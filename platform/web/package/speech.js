@@ -298,7 +298,7 @@ export class Speech {
         try {
             const buffer = decoded || await soundOf(what, rate);
             if (!mine()) context.close();
-            else await this.playBuffer(context, buffer, what.name || 'the sound', options);
+            else await this.playBuffer(context, buffer, what.name || (options.text ? 'the voice' : 'the sound'), options);
         } catch (error) {
             context.close();
             throw error;
@@ -315,7 +315,7 @@ export class Speech {
         return [...this.hear(samples), ...this.hear(silence)];
     }
 
-    async playBuffer(context, buffer, name, { visemes, words }) {
+    async playBuffer(context, buffer, name, { visemes, words, text }) {
         const node = context.createBufferSource(), given = () => this.writePhones(visemes.map(({ viseme, ms }, i) =>
             ({ shape: viseme, ms: (visemes[i + 1] ? visemes[i + 1].ms : 1000 * buffer.duration) - ms })), visemes[0].ms);
         const frames = visemes && visemes.length ? null : this.framesOf(buffer);
@@ -326,7 +326,7 @@ export class Speech {
         const start = context.currentTime + 0.05, left = [...words || []];
         node.start(start);
         const at = () => context.currentTime - (context.outputLatency || 0) - start;
-        this.caption(left.map(({ word }) => word).join(' '));
+        this.caption(text || left.map(({ word }) => word).join(' '));
         this.speakBy('file', {
             stop: () => context.close(), moved: frames ? null : given,
             frame: () => {
@@ -341,12 +341,12 @@ export class Speech {
     }
 
     // Samples as they come, each piece played after the one before.
-    async playChunks(chunks, { rate = 24000, words }, mine) {
+    async playChunks(chunks, { rate = 24000, words, text }, mine) {
         const context = new AudioContext(), frames = [], left = [...words || []];
         let start = 0, seconds = 0, whole = false;
         this.openEar(rate, liveLatency);
         const at = () => (start ? context.currentTime - (context.outputLatency || 0) - start : -1);
-        this.caption(left.map(({ word }) => word).join(' '));
+        this.caption(text || left.map(({ word }) => word).join(' '));
         this.speakBy('chunks', {
             stop: () => context.close(), moved: () => this.openEar(rate, liveLatency),
             frame: () => {
@@ -408,7 +408,19 @@ export class Speech {
         return { open: 1 - said[0] - said[1], shapes: said };
     }
 
-    async say(text, { words }, mine) {
+    // By a voice of the program: sound as for speak, or { sound, visemes, words, rate } with times. Returns whether it does.
+    async sayBy(voice, text, options, mine) {
+        const made = await Promise.resolve().then(() => voice(text)).catch((error) => { console.warn('noh-character: the voice fails:', error); });
+        if (!mine()) return true;
+        if (!made || typeof made === 'string') return false;
+        const { sound, ...times } = made.sound ? made : { sound: made };
+        await this.begin(sound, { ...options, ...times, text }, mine);
+        return true;
+    }
+
+    async say(text, options, mine) {
+        const { words } = options, { voice } = this.character;
+        if (voice && await this.sayBy(voice, text, options, mine)) return;
         const aloud = await hasVoices();
         if (!mine()) return;
         const shapes = shapesOfText(text, 1), { times, end } = this.writePhones(shapes), left = words ? [...words] : wordsOf(text, shapes, times);
