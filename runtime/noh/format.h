@@ -515,10 +515,11 @@ typedef struct noh_recipe_row {
     uint32_t target, target_hash;
     /* a name of noh_face_channel_name; or '+' and the name of a target that drives a corrective (low_life.h; rows of
      * one corrective are consecutive); or a rule for the target's weight (low_life.h): `range-min` and in the next
-     * row `range-max`; '-' and the name of its opposite; '=' and the name of the first target of its group. Of
+     * row `range-max`; '-' and the name of its opposite; '=' and the name of the first target of its group; ':' and
+     * the name of an expression that moves it, which is a target too. Of
      * joint-head, joint-neck, joint-chest, joint-eye-left and joint-eye-right the target is a joint (modules.h).
-     * Of override-lids, override-eyes, override-speech and binary the target is the upper channel of an emotion, and
-     * the weight a noh_override, or 1 (noh_face_rules, face.h) */
+     * Of override-lids, override-eyes, override-speech and binary the target is the upper channel of an emotion, or
+     * an expression, and the weight a noh_override, or 1 (noh_face_rules, face.h) */
     uint32_t channel, channel_hash;
     float weight; /* -4..4; for a corrective's driver its peak, above 0, at most 1; for a range its limit */
     uint32_t reserved[3];

@@ -293,23 +293,35 @@ void noh_correctives_apply(const noh_corrective_term *terms, uint32_t term_count
  *   oppose TARGET TARGET     two targets that exclude each other: subtract the smaller weight from both, so that at
  *                            most one remains, and a fade from one to the other is continuous
  *   share TARGET TARGET ...  the sum of a group is at most 1: above that, all are scaled down
+ *   expression NAME TARGET [WEIGHT]
+ *                            add WEIGHT times the weight of the target NAME, which is clamped to 0..1, and clamp the
+ *                            sum to 0..1, or to WEIGHT if that is more. NAME may have no deltas of its own: VRM's
+ *                            expressions are such targets
+ *   binary NAME              the weight of NAME becomes 1 if it is above 0.5, else 0
  *
- * Ranges are applied first, then opposites, then groups. The last two ignore negative weights. A stage applies the
- * rules of kinds that request it (noh_kind_desc.weight_rules), whatever the source of the weights. Correctives follow
- * from other targets and have no rules.
+ * Expressions are applied first, then ranges, opposites and groups. The last two ignore negative weights. A stage
+ * always applies expressions, and the other rules for kinds that request it (noh_kind_desc.weight_rules), whatever the
+ * source of the weights. Correctives follow from other targets and have no rules.
  *
  * source   Lewis and others, "Practice and Theory of Blendshape Facial Models", Eurographics 2014, section 3.1
  *          (limits); combining opposites by their difference is the two-ended slider of facial rigs
  * Threads  no state; any thread */
 
-typedef enum noh_weight_rule_kind { NOH_WEIGHT_RANGE = 0, NOH_WEIGHT_OPPOSE, NOH_WEIGHT_SHARE } noh_weight_rule_kind;
+typedef enum noh_weight_rule_kind {
+    NOH_WEIGHT_RANGE = 0,
+    NOH_WEIGHT_OPPOSE,
+    NOH_WEIGHT_SHARE,
+    NOH_WEIGHT_BINARY,
+    NOH_WEIGHT_ADD
+} noh_weight_rule_kind;
 
 typedef struct noh_weight_rule {
     uint16_t kind;   /* noh_weight_rule_kind */
     uint16_t target; /* the rules of a group's targets are consecutive */
-    uint16_t other;  /* OPPOSE: the other target; SHARE: the group's first target in the mesh; RANGE: 0 */
+    uint16_t other;  /* OPPOSE: the other target; SHARE: the group's first target in the mesh; ADD: the expression's
+                      * target; else 0 */
     uint16_t reserved;
-    float low, high; /* RANGE: low at most 0, high at least 0; else 0 */
+    float low, high; /* RANGE: low at most 0, high at least 0; ADD: low 0, high the weight to add; else 0 */
 } noh_weight_rule;
 
 /* Get the rules for targets of the mesh, in the order in which they are applied. A group contains

@@ -122,6 +122,10 @@ share jaw grin
 override joy-upper lids block
 override anger-upper speech blend
 binary fear-upper
+expression jaw50 jaw 0.5
+expression jaw50 grin
+override jaw50 eyes blend
+binary jaw50
 END
 noh build "$work/both.gltf" -o "$work/both.noh" --recipe "$work/rules.recipe" --no-correctives
 expect 0 'rules for weights'
@@ -131,6 +135,9 @@ check 'opposites' grep -q '^  opposed: jaw grin$' "$work/out"
 check 'a group' grep -q '^  share 1: jaw grin$' "$work/out"
 check 'an emotion over blinks' grep -q '^  override joy-upper lids block$' "$work/out"
 check 'and one that shows whole' grep -q '^  binary fear-upper$' "$work/out"
+check 'an expression by its name' grep -q '^  expression jaw50: jaw 0.5 grin 1$' "$work/out"
+check 'which shows whole' grep -q '^  binary jaw50$' "$work/out"
+check 'over looks' grep -q '^  override jaw50 eyes blend$' "$work/out"
 check 'and one over speech' grep -q '^  override anger-upper speech blend$' "$work/out"
 noh face "$work/both.noh" --json
 check 'overrides in JSON' sh -c 'tr -d " \n" <"$1" | grep -qF "{\"channel\":\"joy-upper\",\"over\":\"lids\",\"how\":\"block\"}"' - "$work/out"
@@ -150,6 +157,7 @@ refused 'range jaw 0.5 1' 'needs MIN from -4 to 0'
 refused 'range jaw 0 1 2' 'one word too many'
 refused 'binary joy' 'such as `binary joy-upper`'
 refused 'override joy lids block' 'such as `override joy-upper lids block`'
+refused 'expression jaw' 'expression NAME TARGET'
 refused 'override joy-upper lids' 'such as `override joy-upper lids block`'
 refused 'override joy-upper lids block now' 'one word too many'
 refused 'oppose jaw jaw' 'cannot exclude itself'

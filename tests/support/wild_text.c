@@ -86,7 +86,7 @@ const wild_seed wild_seeds[] = {
       "jump inertia=0.1 enter=keep\nfrom e to a when ending\n" },
     { "recipe",
       "textblink lidsClosed\naa jaw 0.8\naa \"lips wide\" 0.2\njoy-mouth grin 0.9\noverride joy-upper lids "
-      "block\nbinary joy-upper\njoint-head Head\ncorrective a b 0.5 c\nrange a -1 1\noppose a b\nshare a b c\nwrinkle "
+      "block\nbinary joy-upper\nexpression a b 0.5\nbinary a\njoint-head Head\ncorrective a b 0.5 c\nrange a -1 1\noppose a b\nshare a b c\nwrinkle "
       "a 3 0.5\n" },
     { "springs", "textcollider thigh* 0.09  0 0 0  0 -0.35 0\nchain skirt* stiffness 0.8 drag 0.3 gravity 0.4 radius "
                  "0.02\nchain ponytail1 to ponytail4 stiffness 0.3 end 0 1 0 hits head\n" },

@@ -103,6 +103,18 @@ static void scale(float *channels, uint32_t first, uint32_t count, float by)
     for (uint32_t i = 0; i < count; i++) channels[first + i] *= by;
 }
 
+void noh_face_scale_user(uint32_t user, float by, float *channels)
+{
+    switch (user) {
+    case 0:
+        scale(channels, NOH_CHANNEL_BLINK_LEFT, 2, by);
+        scale(channels, NOH_CHANNEL_LIDS_UP, 2, by);
+        break;
+    case 1: scale(channels, NOH_CHANNEL_EYES, 8, by); break;
+    default: scale(channels, NOH_CHANNEL_VISEMES + NOH_VISEME_TH, NOH_VISEME_COUNT - NOH_VISEME_TH, by); break;
+    }
+}
+
 void noh_face_share(const noh_face_rules *rules, float moves, float shut, float *channels)
 {
     const float *visemes = channels + NOH_CHANNEL_VISEMES, *shows = channels + NOH_CHANNEL_UPPER;
@@ -113,11 +125,9 @@ void noh_face_share(const noh_face_rules *rules, float moves, float shut, float 
         float *whole = channels + NOH_CHANNEL_UPPER + i;
         if (rules->binary >> i & 1u) *whole = *whole > 0.5f ? 1.0f : 0.0f;
     }
-    scale(channels, NOH_CHANNEL_BLINK_LEFT, 2, left_by(rules->lids, shows));
-    scale(channels, NOH_CHANNEL_LIDS_UP, 2, left_by(rules->lids, shows));
-    scale(channels, NOH_CHANNEL_EYES, 8, left_by(rules->eyes, shows));
-    scale(channels, NOH_CHANNEL_VISEMES + NOH_VISEME_TH, NOH_VISEME_COUNT - NOH_VISEME_TH,
-          left_by(rules->speech, shows));
+    noh_face_scale_user(0, left_by(rules->lids, shows), channels);
+    noh_face_scale_user(1, left_by(rules->eyes, shows), channels);
+    noh_face_scale_user(2, left_by(rules->speech, shows), channels);
     for (int v = NOH_VISEME_PP; v < NOH_VISEME_COUNT; v++) spoken += visemes[v];
     spoken = unit(spoken > moves ? spoken : moves);
     shut = closed > shut ? closed : unit(shut);

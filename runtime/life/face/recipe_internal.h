@@ -3,6 +3,9 @@
 #define NOH_FACE_RECIPE_INTERNAL_H
 
 #include "noh/face.h"
+#include "noh/format.h"
+#include "noh/low_life.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -11,6 +14,18 @@ extern "C" {
 /* Apply the rules to channels made with NOH_MOUTH_NONE. moves, shut: how much speech from a clip moves and closes the
  * mouth in addition to the channels' own visemes, 0..1. */
 void noh_face_share(const noh_face_rules *rules, float moves, float shut, float *channels);
+
+/* Users of a face that an expression may override: noh_face_rules.lids, .eyes and .speech. */
+#define NOH_FACE_USERS 3u
+
+/* Scale the channels of a user. */
+void noh_face_scale_user(uint32_t user, float by, float *channels);
+
+/* The user that a row of a recipe overrides; NOH_NONE: it is another row. */
+uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, noh_override *how);
+
+/* As noh_weight_rules_bind, but of expressions alone. */
+uint32_t noh_expressions_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);
 
 #ifdef __cplusplus
 }

@@ -78,10 +78,20 @@ noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack)
     return recipe;
 }
 
+uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, noh_override *how)
+{
+    static const char *const overrides[NOH_FACE_USERS] = { "override-lids", "override-eyes", "override-speech" };
+    for (uint32_t user = 0; user < NOH_FACE_USERS; user++) {
+        if (!noh_names_equal(noh_pack_string(pack, row->channel), overrides[user])) continue;
+        *how = row->weight > 1.5f ? NOH_OVERRIDE_BLEND : row->weight > 0.5f ? NOH_OVERRIDE_BLOCK : NOH_OVERRIDE_NONE;
+        return user;
+    }
+    return NOH_NONE;
+}
+
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
 {
-    static const char *const overrides[3] = { "override-lids", "override-eyes", "override-speech" };
-    uint8_t *to[3];
+    uint8_t *to[NOH_FACE_USERS];
     NOH_ASSERT(pack && rules);
     to[0] = rules->lids;
     to[1] = rules->eyes;
@@ -90,14 +100,12 @@ void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
     for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
         const noh_recipe_row *row = &pack->recipe_rows[i];
         const uint32_t emotion = noh_face_channel_find(noh_pack_string(pack, row->target)) - NOH_CHANNEL_UPPER;
+        noh_override how;
+        uint32_t user;
         if (emotion < NOH_EMOTION_COUNT && noh_names_equal(noh_pack_string(pack, row->channel), "binary")) {
             rules->binary = (uint8_t)(rules->binary | 1u << emotion);
         }
-        for (int k = 0; k < 3 && emotion < NOH_EMOTION_COUNT; k++) {
-            if (!noh_names_equal(noh_pack_string(pack, row->channel), overrides[k])) continue;
-            to[k][emotion] = row->weight > 1.5f   ? NOH_OVERRIDE_BLEND
-                             : row->weight > 0.5f ? NOH_OVERRIDE_BLOCK
-                                                  : NOH_OVERRIDE_NONE;
-        }
+        user = emotion < NOH_EMOTION_COUNT ? noh_recipe_overrides(pack, row, &how) : NOH_NONE;
+        if (user != NOH_NONE) to[user][emotion] = (uint8_t)how;
     }
 }

@@ -1,6 +1,6 @@
 /* weight_rule.c: turns rows of a pack's recipe that limit targets into rules, and applies them. The channel of such a
- * row is `range-min` or `range-max`; '-' and the name of the opposite; or '=' and the name of its group's first
- * target. */
+ * row is `range-min` or `range-max`; '-' and the name of the opposite; '=' and the name of its group's first target;
+ * ':' and the name of an expression; or `binary`. */
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_life.h"
@@ -8,6 +8,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
+#include "life/face/recipe_internal.h"
 
 /* ---- binding ---- */
 
@@ -77,18 +78,47 @@ static int read_share(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
     return 1;
 }
 
-static int read_row(const noh_mesh *mesh, uint32_t row, noh_weight_rule_kind kind, noh_weight_rule *rule)
+static int read_binary(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
 {
-    return kind == NOH_WEIGHT_RANGE    ? read_range(mesh, row, rule)
-           : kind == NOH_WEIGHT_OPPOSE ? read_opposite(mesh, row, rule)
-                                       : read_share(mesh, row, rule);
+    uint32_t target;
+    if (!noh_names_equal(channel_of(mesh->pack, row), "binary")) return 0;
+    target = find(mesh, target_of(mesh->pack, row));
+    if (target == NOH_NONE) return 0;
+    *rule = (noh_weight_rule){ NOH_WEIGHT_BINARY, (uint16_t)target, 0, 0, 0.0f, 0.0f };
+    return 1;
 }
 
-uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max)
+static int read_expression(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
+{
+    const char *channel = channel_of(mesh->pack, row);
+    uint32_t target, other;
+    if (channel[0] != ':') return 0;
+    target = find(mesh, target_of(mesh->pack, row));
+    other = find(mesh, channel + 1);
+    if (target == NOH_NONE || other == NOH_NONE || target == other) return 0;
+    *rule = (noh_weight_rule){
+        NOH_WEIGHT_ADD, (uint16_t)target, (uint16_t)other, 0, 0.0f, mesh->pack->recipe_rows[row].weight
+    };
+    return 1;
+}
+
+static int read_row(const noh_mesh *mesh, uint32_t row, noh_weight_rule_kind kind, noh_weight_rule *rule)
+{
+    switch (kind) {
+    case NOH_WEIGHT_RANGE: return read_range(mesh, row, rule);
+    case NOH_WEIGHT_OPPOSE: return read_opposite(mesh, row, rule);
+    case NOH_WEIGHT_SHARE: return read_share(mesh, row, rule);
+    case NOH_WEIGHT_BINARY: return read_binary(mesh, row, rule);
+    case NOH_WEIGHT_ADD: break;
+    }
+    return read_expression(mesh, row, rule);
+}
+
+static uint32_t bind(const noh_mesh *mesh, noh_weight_rule_kind first, noh_weight_rule_kind last,
+                     noh_weight_rule *rules, uint32_t rule_max)
 {
     uint32_t count = 0;
-    NOH_ASSERT(mesh && (rules || !rule_max));
-    for (uint32_t kind = NOH_WEIGHT_RANGE; kind <= NOH_WEIGHT_SHARE; kind++) {
+    for (uint32_t kind = (uint32_t)first; kind <= (uint32_t)last; kind++) {
         for (uint32_t row = 0; row < mesh->pack->recipe_row_count; row++) {
             noh_weight_rule rule;
             if (!read_row(mesh, row, (noh_weight_rule_kind)kind, &rule)) continue;
@@ -97,6 +127,20 @@ uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uin
         }
     }
     return count;
+}
+
+uint32_t noh_expressions_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max)
+{
+    return bind(mesh, NOH_WEIGHT_BINARY, NOH_WEIGHT_ADD, rules, rule_max);
+}
+
+uint32_t noh_weight_rules_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max)
+{
+    uint32_t count, left;
+    NOH_ASSERT(mesh && (rules || !rule_max));
+    count = noh_expressions_bind(mesh, rules, rule_max);
+    left = count < rule_max ? rule_max - count : 0;
+    return count + bind(mesh, NOH_WEIGHT_RANGE, NOH_WEIGHT_SHARE, left ? rules + count : NULL, left);
 }
 
 /* ---- weights ---- */
@@ -116,6 +160,14 @@ static void keep_apart(float *a, float *b)
     if (!(less > 0.0f)) return;
     *a -= less;
     *b -= less;
+}
+
+static void add_share(const noh_weight_rule *rule, float shows, float *weight)
+{
+    const float most = rule->high > 1.0f ? rule->high : 1.0f;
+    if (!(shows > 0.0f)) return;
+    *weight += rule->high * (shows < 1.0f ? shows : 1.0f);
+    *weight = !(*weight > 0.0f) ? 0.0f : *weight < most ? *weight : most;
 }
 
 static int are_together(const noh_weight_rule *a, const noh_weight_rule *b)
@@ -149,11 +201,10 @@ void noh_weight_rules_apply(const noh_weight_rule *rules, uint32_t rule_count, f
             i = keep_shares(rules, i, rule_count, weights);
             continue;
         }
-        if (rule->kind == NOH_WEIGHT_RANGE) {
-            keep_range(rule, &weights[rule->target]);
-        } else {
-            keep_apart(&weights[rule->target], &weights[rule->other]);
-        }
+        if (rule->kind == NOH_WEIGHT_RANGE) keep_range(rule, &weights[rule->target]);
+        if (rule->kind == NOH_WEIGHT_OPPOSE) keep_apart(&weights[rule->target], &weights[rule->other]);
+        if (rule->kind == NOH_WEIGHT_BINARY) weights[rule->target] = weights[rule->target] > 0.5f ? 1.0f : 0.0f;
+        if (rule->kind == NOH_WEIGHT_ADD) add_share(rule, weights[rule->other], &weights[rule->target]);
         i++;
     }
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/compiler_internal.h"
+#include "life/face/recipe_internal.h"
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
@@ -114,7 +115,8 @@ static void measure_meshes(const noh_kind_desc *d, noh_stage_needs *n, noh_mesh 
         (void)noh_pack_mesh_at(d->mesh, items[i].mesh, &mesh, NULL);
         n->weight_count += mesh.header->target_count;
         n->corrective_count += noh_correctives_bind(&mesh, NULL, 0);
-        n->weight_rule_count += d->weight_rules ? noh_weight_rules_bind(&mesh, NULL, 0) : 0;
+        n->weight_rule_count += d->weight_rules ? noh_weight_rules_bind(&mesh, NULL, 0)
+                                                : noh_expressions_bind(&mesh, NULL, 0);
         pick = d->unpickable ? 0 : noh_stage_pick_bytes(&mesh, NULL);
         n->pick_bytes = pick > n->pick_bytes ? pick : n->pick_bytes;
         if (noh_pack_skin_at(d->mesh, mesh.header->skin, &skin, NULL) != NOH_OK) {

@@ -224,6 +224,21 @@ static void share_lids(const noh_stage_face_kind *k, noh_stage_face *f, const no
     if (shut > LIDS_SHUT) noh_face_blink_seen(&f->face);
 }
 
+/* Expressions that clips or the game show, over blinks, looks and speech. */
+static void override_by_expressions(const noh_stage_kind *k, const noh_stage_face_kind *shared, const noh_stage_face *f,
+                                    const noh_modifier_work *w, float *channels)
+{
+    const noh_stage_module *m = &k->modules[NOH_SLOT_FACE];
+    const size_t index = (size_t)((const uint8_t *)f - m->states) / m->stride;
+    for (uint32_t i = 0; i < shared->override_count; i++) {
+        const noh_face_link *o = &shared->links[shared->link_count + i];
+        const float value = noh_stage_keep_held(k, (uint32_t)index, o->target, w->floats[o->target]);
+        const float shows = value < 1.0f ? value : 1.0f, least = o->weight == NOH_STAGE_WHOLE ? 0.5f : 0.0f;
+        if (!(shows > least)) continue;
+        noh_face_scale_user(o->channel, o->weight == (float)NOH_OVERRIDE_BLEND ? 1.0f - shows : 0.0f, channels);
+    }
+}
+
 static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifier_work *w, const noh_face_pose *pose)
 {
     const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
@@ -237,6 +252,7 @@ static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifie
     }
     noh_face_channels(pose, &shared->desc, says, NOH_MOUTH_NONE, channels);
     if (turns(w, &shared->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    override_by_expressions(k, shared, f, w, channels);
     noh_face_share(&shared->rules, float_of(w, shared->speech), float_of(w, shared->lips_shut), channels);
     share_lids(shared, f, w, channels);
     noh_face_apply(shared->links, shared->link_count, channels, w->floats);

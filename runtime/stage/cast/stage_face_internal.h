@@ -14,6 +14,7 @@ extern "C" {
 #endif
 
 #define NOH_STAGE_SHUT 16384.0f /* noh_stage_face.shut of 1, less 1 */
+#define NOH_STAGE_WHOLE 3.0f    /* an override by an expression that shows whole or not at all */
 
 typedef enum noh_stage_looks { NOH_LOOKS_AHEAD = 0, NOH_LOOKS_AT_POINT, NOH_LOOKS_AT_ACTOR } noh_stage_looks;
 
@@ -47,12 +48,14 @@ typedef struct noh_stage_face_kind {
     noh_stage_face_joint head, neck, chest, eyes[2];
     float middle[3]; /* between the eyes at rest, model space */
     uint32_t flags;
-    uint32_t speech, lips_shut;           /* floats of clips; NOH_NONE: no clip has them */
-    uint32_t speaks[4];                   /* the same: fields of noh_face_speech */
-    noh_face_link *links;                 /* to floats of the set */
+    uint32_t speech, lips_shut; /* floats of clips; NOH_NONE: no clip has them */
+    uint32_t speaks[4];         /* the same: fields of noh_face_speech */
+    noh_face_link
+        *links; /* to floats of the set; then override_count of expressions: `channel` is the user of the face,
+                           * `target` the expression's float, `weight` a noh_override, or NOH_STAGE_WHOLE */
     uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
     uint32_t shuts[2]; /* floats of targets that shut both eyes and that no channel moves; NOH_NONE: none */
-    uint32_t link_count;
+    uint32_t link_count, override_count;
 } noh_stage_face_kind;
 
 /* NULL: the kind has no faces. */

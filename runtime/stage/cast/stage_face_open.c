@@ -288,6 +288,40 @@ static uint32_t find_in_kind(const void *user, const char *name, uint32_t nth)
     return NOH_NONE;
 }
 
+/* Whether a pack's recipe says that an expression shows whole or not at all. */
+static int is_binary(const noh_pack *pack, const char *expression)
+{
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        const noh_recipe_row *row = &pack->recipe_rows[i];
+        if (noh_names_equal(noh_pack_string(pack, row->channel), "binary") &&
+            noh_names_equal(noh_pack_string(pack, row->target), expression))
+            return 1;
+    }
+    return 0;
+}
+
+/* Overrides by expressions of a pack; k NULL: only their number, an upper bound. */
+static uint32_t bind_overrides(const noh_pack *pack, const noh_stage_kind *k, noh_face_link *overrides)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        const char *name = noh_pack_string(pack, pack->recipe_rows[i].target);
+        noh_override how = NOH_OVERRIDE_NONE;
+        const uint32_t user = noh_recipe_overrides(pack, &pack->recipe_rows[i], &how);
+        uint32_t at;
+        if (user == NOH_NONE || how == NOH_OVERRIDE_NONE || noh_face_channel_find(name) != NOH_NONE) continue;
+        at = k ? find_in_kind(k, name, 0) : 0;
+        if (at == NOH_NONE) continue;
+        if (k) {
+            overrides[count].channel = (uint16_t)user;
+            overrides[count].target = (uint16_t)at;
+            overrides[count].weight = is_binary(pack, name) ? NOH_STAGE_WHOLE : (float)how;
+        }
+        count++;
+    }
+    return count;
+}
+
 static uint32_t find_float(const noh_stage_kind *k, const char *name)
 {
     const uint32_t hash = noh_hash_name(name);
@@ -348,7 +382,7 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
 {
     noh_arena arena = noh_arena_measure();
     (void)desc, (void)n, (void)error;
-    (void)carve(&arena, count_links(d));
+    (void)carve(&arena, count_links(d) + bind_overrides(d->mesh, NULL, NULL));
     needs->kind_bytes = arena.used;
     needs->actor_bytes = sizeof(noh_stage_face);
     return NOH_OK;
@@ -367,11 +401,12 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     const uint32_t most = count_links(k->desc);
     const char *what;
     memset(f, 0, sizeof *f);
-    f->links = carve(&arena, most);
+    f->links = carve(&arena, most + bind_overrides(k->desc->mesh, NULL, NULL));
     what = open_shared(k->desc, desc, &k->skeleton, f);
     if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
+    f->override_count = bind_overrides(k->desc->mesh, k, f->links + f->link_count);
     find_lids(f);
     for (int i = 0; i < 2; i++) f->shuts[i] = find_in_kind(k, shutting[i], 0);
     open_turns(k, desc, f);

@@ -551,6 +551,8 @@ size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind);
 void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max);
 void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max);
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats);
+/* A float of an actor as the game holds it; `value`: without the game. */
+float noh_stage_keep_held(const noh_stage_kind *k, uint32_t index, uint32_t target, float value);
 
 /* Where a joint of a local pose stands in model space. Scales are taken along, shear is not. */
 void noh_stage_joint_in(const noh_skeleton *skeleton, const noh_transform *local, uint32_t joint, float rotation[4],

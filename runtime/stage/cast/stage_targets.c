@@ -1,6 +1,7 @@
 /* stage_targets.c: rules and correctives of a kind's meshes, over what an actor's floats are in the end, whether clips,
  * faces, parts or the game say it. Rules go first, since correctives follow from weights that are shown. A corrective
  * that is held keeps what it is held at. */
+#include "life/face/recipe_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "noh/low_life.h"
 
@@ -9,7 +10,10 @@ void noh_stage_open_weight_rules(noh_stage_kind *k, uint32_t rule_max)
     uint32_t count = 0;
     for (uint32_t m = 0; m < k->plan->mesh_count && rule_max; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
-        const uint32_t own = noh_weight_rules_bind(&mesh->mesh, k->targets.weight_rules + count, rule_max - count);
+        noh_weight_rule *rules = k->targets.weight_rules + count;
+        const uint32_t left = rule_max - count;
+        const uint32_t own = k->desc->weight_rules ? noh_weight_rules_bind(&mesh->mesh, rules, left)
+                                                   : noh_expressions_bind(&mesh->mesh, rules, left);
         for (uint32_t i = count; i < count + own; i++) {
             k->targets.weight_rules[i].target = (uint16_t)(k->targets.weight_rules[i].target + mesh->first_float);
             k->targets.weight_rules[i].other = (uint16_t)(k->targets.weight_rules[i].other + mesh->first_float);
@@ -34,8 +38,9 @@ void noh_stage_open_correctives(noh_stage_kind *k, uint32_t term_max)
     k->targets.corrective_count = count;
 }
 
-static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t target, float value)
+float noh_stage_keep_held(const noh_stage_kind *k, uint32_t index, uint32_t target, float value)
 {
+    const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
     for (uint32_t h = 0; h < k->desc->held_float_count; h++) {
         if (!(held[h].amount > 0.0f)) continue;
         if (target != held[h].index && k->named.name_hashes[target] != k->named.name_hashes[held[h].index]) continue;
@@ -46,11 +51,10 @@ static float kept(const noh_stage_kind *k, const noh_stage_held *held, uint32_t 
 
 void noh_stage_correct(const noh_stage_kind *k, uint32_t index, float *floats)
 {
-    const noh_stage_held *held = k->held + (size_t)index * k->desc->held_float_count;
     noh_correctives_apply(k->targets.correctives, k->targets.corrective_count, floats);
     for (uint32_t i = 0; i < k->targets.corrective_count; i++) {
         const uint32_t target = k->targets.correctives[i].target;
         if (i && k->targets.correctives[i - 1u].target == target) continue;
-        floats[target] = kept(k, held, target, floats[target]);
+        floats[target] = noh_stage_keep_held(k, index, target, floats[target]);
     }
 }

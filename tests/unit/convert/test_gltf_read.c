@@ -1291,10 +1291,14 @@ static void vrm_expressions_are_recipes(void **state)
     assert_string_equal(m->nodes[1].name, "hips");
     assert_string_equal(m->nodes[0].name, "Armature");
     assert_string_equal(m->meshes[0].recipe,
-                        "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n");
+                        "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n"
+                        "expression \"relaxed\" \"lids\" 1\n");
     assert_true(has_warning(m, "VRM expression 'happy': its changes to materials were left out"));
     assert_true(has_warning(m, "VRM expression 'happy': a bind was left out: its mesh or target does not exist"));
-    assert_true(has_warning(m, "VRM expression 'relaxed' was left out: the faces of packs have no such expression"));
+    assert_int_equal(m->meshes[0].target_count, 3); /* a game calls it by this name */
+    assert_string_equal(m->meshes[0].targets[2].name, "relaxed");
+    for (uint32_t i = 0; i < 3u * m->meshes[0].vertex_count; i++)
+        assert_true(m->meshes[0].targets[2].position[i] == 0.0f);
     assert_true(m->nodes[2].world[14] == 3.5);
     model_free(m);
 }
@@ -1307,20 +1311,30 @@ static void vrm_rules_are_told(void **state)
         "\"VRMC_vrm\":{\"expressions\":{\"preset\":{\"happy\":{\"isBinary\":true,\"overrideBlink\":\"block\","
         "\"overrideLookAt\":\"blend\",\"overrideMouth\":\"block\"},\"aa\":{\"isBinary\":false,\"overrideBlink\":\"none\"},"
         "\"blink\":{\"isBinary\":true,\"overrideMouth\":\"block\"},\"sad\":{\"overrideBlink\":\"often\"}},"
-        "\"custom\":{\"wink\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,\"weight\":0.5}]},\"empty\":{}}}}"));
-    assert_int_equal(m->warning_count, 4);
+        "\"custom\":{\"wink\":{\"isBinary\":true,\"overrideMouth\":\"blend\",\"morphTargetBinds\":[{\"node\":2,"
+        "\"index\":0,\"weight\":0.5},{\"node\":2,\"index\":1,\"weight\":1}]},\"empty\":{\"isBinary\":true},\"lids\":{"
+        "\"morphTargetBinds\":[{\"node\":2,\"index\":1,\"weight\":0.5}]},\"a;b\":{\"morphTargetBinds\":[{\"node\":2,"
+        "\"index\":1,\"weight\":1}]}}}}"));
+    assert_int_equal(m->warning_count, 5); /* 'empty' is counted with 'blink' */
     assert_true(has_warning(m, "VRM expression 'blink': isBinary was left out: it shows by degrees"));
     assert_true(has_warning(m, "VRM expression 'blink': overrideMouth 'block' was left out"));
     assert_true(has_warning(m, "VRM expression 'sad': overrideBlink 'often' was left out"));
     assert_string_equal(m->meshes[0].recipe,
                         "binary joy-upper\noverride joy-upper lids block\noverride joy-upper eyes blend\n"
-                        "override joy-upper speech block\n");
-    assert_true(has_warning(m, "VRM expression 'wink' was left out: the faces of packs have no such expression"));
+                        "override joy-upper speech block\nexpression \"lids\" \"lids\" 0.5\n"
+                        "expression \"wink\" \"Fcl Joy\" 0.5\nexpression \"wink\" \"lids\" 1\nbinary \"wink\"\n"
+                        "override \"wink\" speech blend\n");
+    assert_true(has_warning(m, "VRM expression 'lids': its target of the same name moves by all of its weight"));
+    assert_true(has_warning(m, "VRM expression 'a;b' was left out: a game cannot call it by this name"));
+    assert_int_equal(m->meshes[0].target_count, 3);
     model_free(m);
-    m = load(vrm_scene("\"VRM\":{\"blendShapeMaster\":{\"blendShapeGroups\":[{\"name\":\"wink\",\"presetName\":"
-                       "\"unknown\",\"isBinary\":true,\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]}]}}"));
-    assert_true(has_warning(m, "VRM expression 'wink': isBinary was left out"));
-    assert_true(has_warning(m, "VRM expression 'wink' was left out"));
+    m = load(
+        vrm_scene("\"VRM\":{\"blendShapeMaster\":{\"blendShapeGroups\":[{\"name\":\"wink\",\"presetName\":"
+                  "\"unknown\",\"isBinary\":true,\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]},{\"name\":"
+                  "\"Surprised\",\"presetName\":\"unknown\",\"binds\":[{\"mesh\":0,\"index\":0,\"weight\":100}]}]}}"));
+    assert_string_equal(m->meshes[0].recipe,
+                        "expression \"wink\" \"lids\" 0.5\nbinary \"wink\"\nsurprise-upper \"Fcl Joy\" 1\n");
+    assert_int_equal(m->warning_count, 0);
     model_free(m);
 }
 

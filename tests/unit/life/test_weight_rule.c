@@ -115,6 +115,39 @@ static void opposites_do_not_add_up(void **state)
     assert_true(fabsf(w[SMILE] - 0.2f) < 1e-6f && w[FROWN] == 0.0f);
 }
 
+/* An expression adds to what its targets have, and its sum is clamped; one that shows whole or not at all is rounded
+ * first. It goes before ranges. */
+static void expressions_move_other_targets(void **state)
+{
+    static const float at[] = { -1.0f, 0.0f, 0.25f, 0.75f, 2.0f };
+    static const float smiles[] = { 0.5f, 0.5f, 0.625f, 0.75f, 0.75f }, blinks[] = { 0.0f, 0.0f, 0.5f, 1.5f, 2.0f };
+    face f;
+    (void)state;
+    open_face(&f);
+    add(&f, "smile", "range-min", 0.0f);
+    add(&f, "smile", "range-max", 0.75f);
+    add(&f, "smile", ":o", 0.5f);
+    add(&f, "blink", ":o", 2.0f);
+    add(&f, "o", ":o", 1.0f); /* itself */
+    add(&f, "aa", ":o", 1.0f);
+    add(&f, "u", ":none", 1.0f);
+    f.rule_count = noh_weight_rules_bind(&f.mesh, f.rules, RULES);
+    assert_int_equal(f.rule_count, 3);
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        float w[TARGETS] = { 0.5f, 0.0f, 0.0f, at[i], -3.0f, 0.0f };
+        noh_weight_rules_apply(f.rules, f.rule_count, w);
+        assert_true(w[SMILE] == smiles[i] && w[BLINK] == blinks[i] && w[U] == -3.0f);
+    }
+    add(&f, "o", "binary", 1.0f);
+    f.rule_count = noh_weight_rules_bind(&f.mesh, f.rules, RULES);
+    assert_int_equal(f.rule_count, 4);
+    for (size_t i = 0; i < sizeof at / sizeof at[0]; i++) {
+        float w[TARGETS] = { 0.0f, 0.0f, 0.0f, at[i], 0.0f, 0.0f };
+        noh_weight_rules_apply(f.rules, f.rule_count, w);
+        assert_true(w[O] == (at[i] > 0.5f ? 1.0f : 0.0f) && w[BLINK] == 2.0f * w[O]);
+    }
+}
+
 static void groups_sum_to_one(void **state)
 {
     float w[TARGETS] = { 0.0f, 0.0f, -0.5f, 1.5f, 0.5f, 0.0f };
@@ -223,6 +256,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(ranges_hold),
         cmocka_unit_test(opposites_do_not_add_up),
+        cmocka_unit_test(expressions_move_other_targets),
         cmocka_unit_test(groups_sum_to_one),
         cmocka_unit_test(rules_hold_for_any_weights),
         cmocka_unit_test(what_makes_no_rule_is_left_out),

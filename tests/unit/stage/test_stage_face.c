@@ -461,6 +461,60 @@ static void a_packs_rules_between_expressions_hold(void **state)
     }
 }
 
+/* A game calls an expression by its name: it moves its targets, and its rules hold. The target mouthFunnel stands for
+ * an empty one. */
+static void expressions_are_called_by_name(void **state)
+{
+    static const char more[] = ":mouthFunnel\0mouthFunnel\0mouthSmileLeft\0override-speech\0binary";
+    static const uint32_t channel_at[] = { 0, 40, 56 }, target_at[] = { 25, 13, 13 };
+    static const float held[] = { 0.5f, 0.5f, 0.75f, 0.25f }, left[] = { 0.5f, 0.0f, 0.0f, 1.0f };
+    static const float smiles[] = { 0.4f, 0.4f, 0.8f, 0.0f };
+    (void)state;
+    for (int i = 0; i < 4; i++) { /* blend, block, whole, whole but below one half */
+        const noh_kind_face face = alive();
+        float visemes[NOH_VISEME_COUNT] = { 0.0f };
+        noh_recipe_row rows[3];
+        noh_pack own;
+        noh_actor actor;
+        char *strings;
+        cast c;
+        open_cast(&c, 1, &face, 1);
+        own = c.packs[PUPPETS];
+        strings = test_zeros(own.string_bytes + sizeof more);
+        memcpy(strings, own.strings, own.string_bytes);
+        memcpy(strings + own.string_bytes, more, sizeof more);
+        memset(rows, 0, sizeof rows);
+        for (int k = 0; k < 3; k++) {
+            rows[k].channel = own.string_bytes + channel_at[k];
+            rows[k].target = own.string_bytes + target_at[k];
+        }
+        rows[0].weight = 0.8f;
+        rows[1].weight = i == 0 ? 2.0f : 1.0f;
+        rows[2].weight = 1.0f;
+        own.strings = strings;
+        own.string_bytes += (uint32_t)sizeof more;
+        own.recipe_rows = rows;
+        own.recipe_row_count = i >= 2 ? 3 : 2;
+        c.kinds[0].mesh = &own;
+        c.kinds[0].held_float_count = 1;
+        cast_make(&c, NULL);
+        actor = enter(&c, NULL, NULL);
+        visemes[NOH_VISEME_AA] = 0.8f;
+        assert_int_equal(noh_actor_set_visemes(c.stage, actor, visemes, NULL), NOH_OK);
+        run(&c, 60);
+        const float alone = float_named(&c, actor, "jawOpen");
+        assert_true(alone > 0.2f && float_named(&c, actor, "mouthSmileLeft") == 0.0f);
+        assert_int_equal(noh_actor_hold_float(c.stage, actor, noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "mouthFunnel"),
+                                              held[i], 1.0f, NULL),
+                         NOH_OK);
+        run(&c, 2);
+        assert_true(fabsf(float_named(&c, actor, "jawOpen") - alone * left[i]) < 1e-5f);
+        assert_true(fabsf(float_named(&c, actor, "mouthSmileLeft") - smiles[i]) < 1e-6f);
+        close_cast(&c);
+        free(strings);
+    }
+}
+
 /* ---- people ---- */
 
 typedef struct person {
@@ -703,6 +757,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_pack_brings_its_own_recipe_and_correctives),
         cmocka_unit_test(rules_for_weights_hold_on_request),
         cmocka_unit_test(a_packs_rules_between_expressions_hold),
+        cmocka_unit_test(expressions_are_called_by_name),
         cmocka_unit_test(an_actor_is_a_person),
         cmocka_unit_test(a_person_that_does_not_fit_is_refused),
         cmocka_unit_test(an_hour_unseen_is_skipped),

@@ -240,6 +240,30 @@ static int read_shares(text_scan *s, recipe_text *recipe)
     return 0;
 }
 
+/* Behind the word `expression`. */
+static int read_expression(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "expression NAME TARGET [WEIGHT]";
+    const uint32_t line = s->line;
+    char channel[NOH_NAME_BYTES_MAX];
+    text_word name, target;
+    float weight = 1.0f;
+    if (take_target(s, line, form, &name) || take_target(s, line, form, &target) || read_weight(s, &weight)) return 1;
+    name_channel(channel, ':', name);
+    return add_row(s, recipe, line, channel, target, weight);
+}
+
+/* Whether a word names the upper channel of an emotion, or an expression above. */
+static int has_rules(const recipe_text *recipe, text_word word)
+{
+    uint32_t channels[2] = { 0, 0 };
+    if (find_channels(word, channels) == 1 && channels[0] - NOH_CHANNEL_UPPER < NOH_EMOTION_COUNT) return 1;
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        if (recipe->rows[i].channel[0] == ':' && text_is(word, recipe->rows[i].channel + 1)) return 1;
+    }
+    return 0;
+}
+
 /* Behind the word `override`. */
 static int read_override(text_scan *s, recipe_text *recipe)
 {
@@ -247,14 +271,12 @@ static int read_override(text_scan *s, recipe_text *recipe)
     static const char *const users[] = { "lids", "eyes", "speech" };
     const uint32_t line = s->line;
     text_word emotion, user, how;
-    uint32_t channels[2] = { 0, 0 };
     char channel[NOH_NAME_BYTES_MAX] = "";
     if (take_target(s, line, form, &emotion) || text_take_on_line(s, &user) || text_take_on_line(s, &how)) return 1;
     for (int i = 0; i < 3; i++) {
         if (text_is(user, users[i])) (void)snprintf(channel, sizeof channel, "override-%s", users[i]);
     }
-    if (find_channels(emotion, channels) != 1 || channels[0] - NOH_CHANNEL_UPPER >= NOH_EMOTION_COUNT || !channel[0] ||
-        !(text_is(how, "block") || text_is(how, "blend"))) {
+    if (!has_rules(recipe, emotion) || !channel[0] || !(text_is(how, "block") || text_is(how, "blend"))) {
         return text_fail(s, line, "write the rule as `%s`, such as `override joy-upper lids block`", form);
     }
     return end_rule(s, form) || add_row(s, recipe, line, channel, emotion,
@@ -267,9 +289,8 @@ static int read_binary(text_scan *s, recipe_text *recipe)
     static const char form[] = "binary EMOTION-upper";
     const uint32_t line = s->line;
     text_word emotion;
-    uint32_t channels[2] = { 0, 0 };
     if (take_target(s, line, form, &emotion)) return 1;
-    if (find_channels(emotion, channels) != 1 || channels[0] - NOH_CHANNEL_UPPER >= NOH_EMOTION_COUNT) {
+    if (!has_rules(recipe, emotion)) {
         return text_fail(s, line, "write the rule as `%s`, such as `binary joy-upper`", form);
     }
     return end_rule(s, form) || add_row(s, recipe, line, "binary", emotion, 1.0f);
@@ -335,6 +356,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "range")) return read_range(s, recipe);
     if (text_is(channel, "oppose")) return read_opposites(s, recipe);
     if (text_is(channel, "share")) return read_shares(s, recipe);
+    if (text_is(channel, "expression")) return read_expression(s, recipe);
     if (text_is(channel, "override")) return read_override(s, recipe);
     if (text_is(channel, "binary")) return read_binary(s, recipe);
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);

@@ -1,7 +1,8 @@
 /* recipe_read.h: an artist's recipe as text: one row a line, CHANNEL TARGET [WEIGHT], or one corrective,
  * corrective TARGET DRIVER [PEAK] [DRIVER [PEAK]] ..., which makes one row for each driver: channel '+' and its name.
- * override EMOTION-upper USER block|blend makes a row of channel override-USER with the emotion for a target, binary
- * EMOTION-upper one of channel binary.
+ * expression NAME TARGET [WEIGHT] makes a row of channel ':' and the name. override EMOTION-upper USER block|blend makes
+ * a row of channel override-USER with the emotion for a target, binary EMOTION-upper one of channel binary; the name of
+ * an expression above may stand for the emotion.
  * wrinkle TARGET REGION [WEIGHT] is a row of the table from expressions to wrinkle regions. */
 #ifndef NOH_CONVERT_BASE_RECIPE_READ_H
 #define NOH_CONVERT_BASE_RECIPE_READ_H

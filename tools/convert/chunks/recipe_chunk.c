@@ -38,7 +38,7 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
                                     is_joint ? "skeleton has the joint" : "mesh has the target", row->target)) {
             return model_fail(&failure->error, "", "out of memory");
         }
-        if (row->channel[0] == '+' && !has_target(s->m, row->channel + 1) &&
+        if ((row->channel[0] == '+' || row->channel[0] == ':') && !has_target(s->m, row->channel + 1) &&
             model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
                        row->channel + 1)) {
             return model_fail(&failure->error, "", "out of memory");

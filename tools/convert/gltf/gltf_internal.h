@@ -32,6 +32,7 @@
 #include <cstdint>
 #include <map>
 #include <new>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -97,6 +98,8 @@ struct file {
     std::map<std::array<int, 4>, uint32_t> texture_of;
     std::vector<left_out> losses;          /* in the order in which they were met */
     std::map<std::string, size_t> loss_of; /* what -> its place in losses */
+    /* mesh -> expressions of VRM that a game calls by name, for add_expressions */
+    std::map<uint32_t, std::set<std::string>> expressions;
 };
 
 /* --- gltf_file.cpp --- */
@@ -241,6 +244,8 @@ void read_animations(file &f);
 /* Whether the file's figure faces -z, as VRM's did before 1.0. */
 bool faces_back(const file &f);
 void read_vrm(file &f); /* after read_nodes and read_meshes */
+/* A target without deltas for each expression of a mesh, moved by its recipe: after read_animations. */
+void add_expressions(file &f);
 /* The textures of a toon, indices in the file, or -1. */
 struct toon_maps {
     bool given = false; /* it is a toon of VRM (MToon) */

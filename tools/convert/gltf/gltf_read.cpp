@@ -95,6 +95,7 @@ static void read_model(file &f, const bytes &data)
     read_vrm(f);
     read_skins(f);
     read_animations(f);
+    add_expressions(f);
     read_springs(f);
     find_left_out(f);
     warn_left_out(f);

@@ -2,21 +2,26 @@
  * (MToon), and, before VRM 1.0, that it faces -z.
  *
  * The bones take VRM's names for them, which are the same in every file: hips, leftUpperArm. Expressions become lines
- * of a face's recipe (base/recipe_read.h). Sources: VRMC_vrm-1.0 and VRM 0.0 of the VRM Consortium's specifications. */
+ * of a face's recipe (base/recipe_read.h); those that a face has no channel for, such as an author's own, are moved by
+ * a target with their name, which games hold as any float. Sources: VRMC_vrm-1.0 and VRM 0.0 of the VRM Consortium's specifications. */
 #include "gltf_internal.h"
 
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
-#include <set>
+
+#include "convert/model/target_append.h"
+#include "noh/base.h"
 
 namespace gltf
 {
 
 using value = tinygltf::Value;
 
-/* Expressions of VRM 1.0 and 0.0, and the channel of a recipe that shows them. Others stay targets like any. */
+#define LINES_MAX (NOH_FACE_ROWS_MAX / 2u) /* the rest is for rows by names of targets and joints */
+
+/* Expressions of VRM 1.0 and 0.0, and the channel of a recipe that shows them. Others are called by their names. */
 static const struct {
     const char *name, *old_name, *channel;
 } expressions[] = {
@@ -130,19 +135,46 @@ static const char *channel_of(const std::string &name, bool old)
     return nullptr;
 }
 
-static void add_line(file &f, const char *channel, uint32_t mesh, size_t target, double weight, recipes &r)
+/* A word of a recipe: those with blanks are quoted. */
+static std::string quoted(const std::string &name)
+{
+    return "\"" + name + "\"";
+}
+
+static bool is_word(const std::string &name)
+{
+    return !name.empty() && name.size() < NOH_NAME_BYTES_MAX - 2u && name.find_first_of("\"\n\r;") == std::string::npos;
+}
+
+/* An expression: its channel, or NULL and the name by which a game calls it. */
+struct expression {
+    const char *channel;
+    std::string name, where;
+    uint32_t mesh; /* of its first bind; MODEL_NONE: it has none */
+};
+
+static void add_line(file &f, expression &e, uint32_t mesh, size_t target, double weight, recipes &r)
 {
     const std::string name = f.out->meshes[mesh].targets[target].name;
-    if (name.find_first_of("\"\n\r") != std::string::npos || !(weight >= -4.0 && weight <= 4.0)) {
+    if (!is_word(name) || weight == 0.0 || !(weight >= -4.0 && weight <= 4.0)) {
         leave_out(f, "target '" + printable(name) + "'", ": it was left out of a VRM expression");
         return;
     }
-    const std::string line = text("%s \"%s\" %.6g\n", channel, name.c_str(), weight);
+    if (r.lines.size() >= LINES_MAX) {
+        leave_out(f, e.where, text(": a bind was left out: a pack has %u rows of expressions", LINES_MAX));
+        return;
+    }
+    if (!e.channel && name == e.name && weight != 1.0)
+        leave_out(f, e.where, ": its target of the same name moves by all of its weight");
+    const std::string start = e.channel ? std::string(e.channel) : "expression " + quoted(e.name);
+    const std::string line = start + text(" %s %.6g\n", quoted(name).c_str(), weight);
     if (r.lines.insert(line).second) r.of_mesh[mesh] += line;
+    if (e.mesh == MODEL_NONE) e.mesh = mesh;
+    if (!e.channel) f.expressions[mesh].insert(e.name);
 }
 
 /* One bind: 1.0 names the node that draws the mesh, and weights to 1; 0.0 the mesh, and weights to 100. */
-static void add_bind(file &f, const char *channel, const value &bind, bool old, const std::string &where, recipes &r)
+static void add_bind(file &f, expression &e, const value &bind, bool old, recipes &r)
 {
     const value *weight = member(bind, "weight");
     uint32_t mesh = MODEL_NONE;
@@ -156,9 +188,9 @@ static void add_bind(file &f, const char *channel, const value &bind, bool old, 
     const size_t count = mesh == MODEL_NONE ? 0 : f.out->meshes[mesh].target_count;
     const size_t target = index_member(bind, "index", count);
     if (target < count && weight && weight->IsNumber())
-        add_line(f, channel, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
+        add_line(f, e, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
     else
-        leave_out(f, where, ": a bind was left out: its mesh or target does not exist, or it has no weight");
+        leave_out(f, e.where, ": a bind was left out: its mesh or target does not exist, or it has no weight");
 }
 
 static bool has_items(const value &object, const char *key)
@@ -167,56 +199,47 @@ static bool has_items(const value &object, const char *key)
     return found && found->ArrayLen() > 0;
 }
 
-/* The mesh of an expression's first bind; 0 where it has none. */
-static uint32_t mesh_of_binds(const file &f, const value *binds)
-{
-    const size_t node = binds && binds->ArrayLen() ? index_member(binds->Get(0), "node", f.node_of.size()) : SIZE_MAX;
-    const uint32_t mesh = node < f.node_of.size() && f.node_of[node] != MODEL_NONE ? f.out->nodes[f.node_of[node]].mesh
-                                                                                   : MODEL_NONE;
-    return mesh == MODEL_NONE ? 0 : mesh;
-}
-
-/* Rules of an expression: an emotion's become lines of the recipe. */
-static void add_rules(file &f, const char *channel, const value &expression, const std::string &where, recipes &r)
+/* Rules of an expression become lines of the recipe, for emotions and for expressions that are called by name. */
+static void add_rules(file &f, const expression &e, const value &from, recipes &r)
 {
     static const char *const rules[][2] = { { "overrideBlink", "lids" },
                                             { "overrideLookAt", "eyes" },
                                             { "overrideMouth", "speech" } };
-    const bool is_emotion = channel && strstr(channel, "-upper") && f.out->mesh_count;
-    const value *binary = member(expression, "isBinary");
+    const bool has_rules = e.channel ? strstr(e.channel, "-upper") && f.out->mesh_count : e.mesh != MODEL_NONE;
+    const std::string who = e.channel ? std::string(e.channel) : quoted(e.name);
+    const value *binary = member(from, "isBinary");
     std::vector<std::string> lines;
     if (binary && binary->IsBool() && binary->Get<bool>()) {
-        if (is_emotion)
-            lines.push_back(text("binary %s\n", channel));
+        if (has_rules)
+            lines.push_back("binary " + who + "\n");
         else
-            leave_out(f, where, ": isBinary was left out: it shows by degrees");
+            leave_out(f, e.where, ": isBinary was left out: it shows by degrees");
     }
     for (const auto &rule : rules) {
-        const std::string how = text_member(expression, rule[0]);
+        const std::string how = text_member(from, rule[0]);
         if (how.empty() || how == "none") continue;
-        if (is_emotion && (how == "block" || how == "blend"))
-            lines.push_back(text("override %s %s %s\n", channel, rule[1], how.c_str()));
+        if (has_rules && (how == "block" || how == "blend"))
+            lines.push_back("override " + who + " " + rule[1] + " " + how + "\n");
         else
-            leave_out(f, where, text(": %s '%s' was left out", rule[0], printable(how).c_str()));
+            leave_out(f, e.where, text(": %s '%s' was left out", rule[0], printable(how).c_str()));
     }
     for (const std::string &line : lines)
-        if (r.lines.insert(line).second)
-            r.of_mesh[mesh_of_binds(f, array_member(expression, "morphTargetBinds"))] += line;
+        if (r.lines.insert(line).second) r.of_mesh[e.mesh == MODEL_NONE ? 0 : e.mesh] += line;
 }
 
-static void add_expression(file &f, const std::string &name, const char *channel, const value &expression, bool old,
+static void add_expression(file &f, const std::string &name, const char *channel, const value &from, bool old,
                            recipes &r)
 {
-    const std::string where = "VRM expression '" + printable(name) + "'";
-    const value *binds = array_member(expression, old ? "binds" : "morphTargetBinds");
-    if (has_items(expression, old ? "materialValues" : "materialColorBinds") ||
-        has_items(expression, "textureTransformBinds"))
-        leave_out(f, where, ": its changes to materials were left out");
-    add_rules(f, channel, expression, where, r);
-    if (!channel && binds && binds->ArrayLen() > 0)
-        leave_out(f, where, " was left out: the faces of packs have no such expression; its targets stay");
-    for (size_t i = 0; channel && binds && i < binds->ArrayLen(); ++i)
-        add_bind(f, channel, binds->Get(static_cast<int>(i)), old, where, r);
+    expression e = { channel, name, "VRM expression '" + printable(name) + "'", MODEL_NONE };
+    const value *binds = array_member(from, old ? "binds" : "morphTargetBinds");
+    if (has_items(from, old ? "materialValues" : "materialColorBinds") || has_items(from, "textureTransformBinds"))
+        leave_out(f, e.where, ": its changes to materials were left out");
+    if (!channel && !is_word(name)) {
+        if (binds && binds->ArrayLen() > 0) leave_out(f, e.where, " was left out: a game cannot call it by this name");
+        return;
+    }
+    for (size_t i = 0; binds && i < binds->ArrayLen(); ++i) add_bind(f, e, binds->Get(static_cast<int>(i)), old, r);
+    add_rules(f, e, from, r);
 }
 
 /* Both lids at once, unless each has its own: else they would shut twice. */
@@ -249,8 +272,10 @@ static void add_old(file &f, const value &vrm, recipes &r)
         const value &group = groups->Get(static_cast<int>(i));
         const std::string name = text_member(group, "presetName");
         const bool custom = name.empty() || lower(name) == "unknown";
+        const std::string own = custom ? text_member(group, "name") : name;
+        const bool has_channel = !custom || lower(own) == "surprised"; /* VRM 0.0 has no preset for it */
         if (!is_double(name, lids >= 2))
-            add_expression(f, custom ? text_member(group, "name") : name, channel_of(name, true), group, true, r);
+            add_expression(f, own, has_channel ? channel_of(own, true) : nullptr, group, true, r);
     }
 }
 
@@ -259,9 +284,54 @@ static void store_recipes(file &f, const recipes &r)
 {
     for (const auto &entry : r.of_mesh) {
         model_mesh &mesh = f.out->meshes[entry.first];
-        if (mesh.recipe) continue;
+        if (mesh.recipe) {
+            leave_out(f, "mesh '" + printable(mesh.name) + "'",
+                      ": its VRM expressions were left out: its extras have a recipe");
+            f.expressions.erase(entry.first);
+            continue;
+        }
         mesh.recipe = copy_string(entry.second);
     }
+}
+
+static bool has_target(const model_mesh &mesh, const std::string &name)
+{
+    for (uint32_t t = 0; t < mesh.target_count; ++t)
+        if (name == mesh.targets[t].name) return true;
+    return false;
+}
+
+static void add_empty_target(file &f, uint32_t mesh, const std::string &name)
+{
+    const size_t values = static_cast<size_t>(f.out->meshes[mesh].vertex_count) * 3;
+    model_target target{};
+    model_mesh from{};
+    target.name = copy_string(name);
+    target.position = static_cast<float *>(model_zeros(values, sizeof(float)));
+    target.normal = static_cast<float *>(model_zeros(values, sizeof(float)));
+    target.has_position = target.has_normal = target.has_tangent = 1;
+    from.targets = &target;
+    from.target_count = 1;
+    const bool failed = !target.position || !target.normal || model_append_targets(f.out, mesh, &from);
+    if (!failed) return;
+    if (!from.target_count) throw std::bad_alloc(); /* the mesh has it */
+    free(target.name);
+    free(target.position);
+    free(target.normal);
+    throw std::bad_alloc();
+}
+
+void add_expressions(file &f)
+{
+    for (const auto &entry : f.expressions)
+        for (const std::string &name : entry.second) {
+            if (has_target(f.out->meshes[entry.first], name)) continue;
+            if (f.out->meshes[entry.first].target_count < NOH_TARGETS_MAX)
+                add_empty_target(f, entry.first, name);
+            else
+                leave_out(f, "VRM expression '" + printable(name) + "'",
+                          text(" was left out: its mesh has %u targets", NOH_TARGETS_MAX));
+        }
 }
 
 /* --- MToon --- */

@@ -78,6 +78,9 @@ static void read_mesh(face_report *r)
     r->term_count = noh_correctives_bind(&r->mesh, r->terms, NOH_FACE_ROWS_MAX);
     for (uint32_t i = 0; i < r->term_count; i++) r->used[r->terms[i].target] = 1;
     r->rule_count = noh_weight_rules_bind(&r->mesh, r->rules, NOH_FACE_ROWS_MAX);
+    for (uint32_t i = 0; i < r->rule_count; i++) {
+        if (r->rules[i].kind == NOH_WEIGHT_ADD) r->used[r->rules[i].other] = r->used[r->rules[i].target] = 1;
+    }
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT; c++) {
         noh_face_recipe_source(r->recipes, r->recipe_count, r->names, count, c, &r->sources[c]);
         r->counts[coverage_of(&r->sources[c], c)]++;
@@ -128,11 +131,18 @@ static void print_correctives(const face_report *r)
     if (r->term_count) printf("\n");
 }
 
-/* Whether a rule is another target of the group of the one before. */
+/* Whether a rule is another target of the group, or of the expression, of the one before. */
 static int goes_on(const face_report *r, uint32_t rule)
 {
-    return rule && r->rules[rule].kind == NOH_WEIGHT_SHARE && r->rules[rule - 1u].kind == NOH_WEIGHT_SHARE &&
-           r->rules[rule].other == r->rules[rule - 1u].other;
+    const noh_weight_rule *own = &r->rules[rule];
+    return rule && (own->kind == NOH_WEIGHT_SHARE || own->kind == NOH_WEIGHT_ADD) && own[-1].kind == own->kind &&
+           own->other == own[-1].other;
+}
+
+static void print_share(const face_report *r, const noh_weight_rule *rule)
+{
+    printf(" %s", r->names[rule->target]);
+    if (rule->kind == NOH_WEIGHT_ADD) printf(" %g", (double)rule->high);
 }
 
 static void print_rules(const face_report *r)
@@ -140,14 +150,13 @@ static void print_rules(const face_report *r)
     for (uint32_t i = 0; i < r->rule_count; i++) {
         const noh_weight_rule *rule = &r->rules[i];
         const char *name = r->names[rule->target];
-        if (goes_on(r, i)) {
-            printf(" %s", name);
-            continue;
-        }
-        if (i) printf("\n");
+        if (i && !goes_on(r, i)) printf("\n");
+        if (rule->kind == NOH_WEIGHT_ADD && !goes_on(r, i)) printf("  expression %s:", r->names[rule->other]);
+        if (rule->kind == NOH_WEIGHT_SHARE && !goes_on(r, i)) printf("  share 1:");
+        if (rule->kind == NOH_WEIGHT_ADD || rule->kind == NOH_WEIGHT_SHARE) print_share(r, rule);
+        if (rule->kind == NOH_WEIGHT_BINARY) printf("  binary %s", name);
         if (rule->kind == NOH_WEIGHT_RANGE) printf("  range %s: %g to %g", name, (double)rule->low, (double)rule->high);
         if (rule->kind == NOH_WEIGHT_OPPOSE) printf("  opposed: %s %s", name, r->names[rule->other]);
-        if (rule->kind == NOH_WEIGHT_SHARE) printf("  share 1: %s", name);
     }
     if (r->rule_count) printf("\n");
 }
@@ -169,8 +178,27 @@ static int is_binary(const face_report *r, int emotion)
     return rules.binary >> emotion & 1;
 }
 
+/* The next row at or after *row in which an expression overrides a user; 0: there is none. */
+static int next_override(const face_report *r, uint32_t *row, const char **name, uint32_t *user, uint8_t *how)
+{
+    const noh_pack *pack = r->mesh.pack;
+    for (; *row < pack->recipe_row_count; ++*row) {
+        const noh_recipe_row *at = &pack->recipe_rows[*row];
+        const char *channel = noh_pack_string(pack, at->channel);
+        *name = noh_pack_string(pack, at->target);
+        if (strncmp(channel, "override-", 9) != 0 || noh_face_channel_find(*name) != NOH_NONE) continue;
+        *user = strcmp(channel + 9, "lids") == 0 ? 0 : strcmp(channel + 9, "eyes") == 0 ? 1 : 2;
+        *how = at->weight > 1.5f ? NOH_OVERRIDE_BLEND : NOH_OVERRIDE_BLOCK;
+        return 1;
+    }
+    return 0;
+}
+
 static void print_overrides(const face_report *r)
 {
+    const char *name;
+    uint32_t user;
+    uint8_t by;
     for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
         if (is_binary(r, i)) printf("  binary %s\n", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i));
     }
@@ -180,6 +208,8 @@ static void print_overrides(const face_report *r)
         printf("  override %s %s %s\n", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i / 3u), users[i % 3],
                hows[how]);
     }
+    for (uint32_t row = 0; next_override(r, &row, &name, &user, &by); row++)
+        printf("  override %s %s %s\n", name, users[user], hows[by]);
 }
 
 static void print_mesh(const face_report *r)
@@ -247,10 +277,23 @@ static void json_correctives(json *j, const face_report *r)
     json_close(j, ']');
 }
 
-static const char *const rule_names[] = { "range", "oppose", "share" };
+static const char *const rule_names[] = { "range", "oppose", "share", "binary", "expression" };
+static const char *const rule_others[] = { "", "other", "group", "", "name" };
+
+static void json_override(json *j, const char *channel, const char *over, const char *how)
+{
+    json_open(j, NULL, '{');
+    json_text(j, "channel", channel);
+    json_text(j, "over", over);
+    json_text(j, "how", how);
+    json_close(j, '}');
+}
 
 static void json_overrides(json *j, const face_report *r)
 {
+    const char *name;
+    uint32_t user;
+    uint8_t by;
     json_open(j, "binary", '[');
     for (int i = 0; i < NOH_EMOTION_COUNT; i++) {
         if (is_binary(r, i)) json_text(j, NULL, noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i));
@@ -259,13 +302,10 @@ static void json_overrides(json *j, const face_report *r)
     json_open(j, "overrides", '[');
     for (int i = 0; i < 3 * NOH_EMOTION_COUNT; i++) {
         const uint8_t how = override_of(r, i / 3, i % 3);
-        if (!how) continue;
-        json_open(j, NULL, '{');
-        json_text(j, "channel", noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i / 3u));
-        json_text(j, "over", users[i % 3]);
-        json_text(j, "how", hows[how]);
-        json_close(j, '}');
+        if (how) json_override(j, noh_face_channel_name(NOH_CHANNEL_UPPER + (uint32_t)i / 3u), users[i % 3], hows[how]);
     }
+    for (uint32_t row = 0; next_override(r, &row, &name, &user, &by); row++)
+        json_override(j, name, users[user], hows[by]);
     json_close(j, ']');
 }
 
@@ -280,9 +320,10 @@ static void json_rules(json *j, const face_report *r)
         if (rule->kind == NOH_WEIGHT_RANGE) {
             json_number(j, "min", (double)rule->low);
             json_number(j, "max", (double)rule->high);
-        } else {
-            json_text(j, rule->kind == NOH_WEIGHT_OPPOSE ? "other" : "group", r->names[rule->other]);
+        } else if (rule->kind != NOH_WEIGHT_BINARY) {
+            json_text(j, rule_others[rule->kind], r->names[rule->other]);
         }
+        if (rule->kind == NOH_WEIGHT_ADD) json_number(j, "weight", (double)rule->high);
         json_close(j, '}');
     }
     json_close(j, ']');

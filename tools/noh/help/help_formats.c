@@ -99,6 +99,8 @@ const char *const help_formats_text[] = {
     "   override EMOTION-upper lids|eyes|speech block|blend   an emotion that shows removes blinks, looks or speech, or reduces",
     "                                               them by as much as it shows (VRM's overrideBlink, overrideLookAt, overrideMouth)",
     "   binary EMOTION-upper                        it shows whole above 0.5, else not at all (VRM's isBinary)",
+    "   expression NAME TARGET [WEIGHT]             the target NAME, which may be empty, moves TARGET too (VRM's other",
+    "                                               expressions); override and binary take its NAME in later rows",
     "   joint-head JOINT                            a joint of the face; also joint-neck, joint-chest, joint-eye-left,",
     "                                               joint-eye-right",
     "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of its drivers' weights; a driver with",
