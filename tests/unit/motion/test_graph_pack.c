@@ -746,6 +746,46 @@ static void counts_and_names_in_code_have_limits(void **state)
     }
 }
 
+/* Any mixture of names, kinds and numbers is refused with a message, or opens, within the bytes of its size. */
+static void wild_descs_stay_in_bounds(void **state)
+{
+    static const char *const names[] = { "walk",  "run",   "wave", "moves", "jump",
+                                         "leaps", "speed", "mood", "leap",  "upper" };
+    test_random r = test_random_from(11);
+    uint32_t opened = 0;
+    (void)state;
+    for (uint32_t i = 0; i < 20000; i++) {
+        noh_error error = { NOH_OK, NULL, 0, 0 };
+        noh_pack pack;
+        draft d;
+        start(&d);
+        for (uint32_t changes = 1u + test_random_below(&r, 4); changes; changes--) {
+            noh_graph_node_desc *n = &d.nodes[test_random_below(&r, 6)];
+            const char *name = names[test_random_below(&r, TEST_COUNT(names))];
+            switch (test_random_below(&r, 12)) {
+            case 0: n->name = name; break;
+            case 1: n->kind = (noh_node_kind)test_random_below(&r, 10); break;
+            case 2: d.states[test_random_below(&r, 3)] = name; break;
+            case 3: d.shot[test_random_below(&r, 2)] = name; break;
+            case 4: n->param = name; break;
+            case 5: n->mask = name; break;
+            case 6: n->child_count = n->children == d.states ? test_random_below(&r, 4) : 0; break;
+            case 7: d.ways[test_random_below(&r, 2)].to = name; break;
+            case 8: d.ways[0].condition = (noh_condition)test_random_below(&r, 5); break;
+            case 9: n->points = d.points; break;
+            case 10: d.params[test_random_below(&r, 3)].kind = test_random_below(&r, 5); break;
+            default: d.ways[1].param = name; break;
+            }
+        }
+        if (draw_up(&d, &pack, &error) == NOH_OK) {
+            opened++;
+        } else {
+            assert_true(error.what && error.what[0] && error.where < 6u);
+        }
+    }
+    assert_true(opened > 500 && opened < 19000);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(graphs_are_found_by_name),
     cmocka_unit_test(parameters_have_names_ranges_and_values),
@@ -765,6 +805,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(names_in_code_are_checked),
     cmocka_unit_test(values_in_code_are_checked),
     cmocka_unit_test(counts_and_names_in_code_have_limits),
+    cmocka_unit_test(wild_descs_stay_in_bounds),
 };
 
 TEST_MAIN(tests, set_up, tear_down)
