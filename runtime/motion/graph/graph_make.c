@@ -24,7 +24,7 @@
 
 static void put(noh_graph_maker *m, const void *bytes, size_t count)
 {
-    if (m->chunk) memcpy(m->chunk + m->chunk_bytes, bytes, count);
+    if (m->chunk && count) memcpy(m->chunk + m->chunk_bytes, bytes, count);
     m->chunk_bytes += (uint32_t)count;
 }
 
