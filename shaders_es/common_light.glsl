@@ -234,9 +234,9 @@ vec3 noh_light(noh_surface s)
 #else
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and after further bounces between the facets */
 #endif
+    float shadow = noh_key_shadow(s.position, s.geometric); /* here, because later it spills a register of a Mali G52 */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
     vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
-    float shadow = noh_key_shadow(s.position, s.geometric);
     vec3 color = matte * noh_matte_light(s, shadow);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     float open = noh_open();

@@ -212,9 +212,6 @@ noh_vertex noh_fetch()
     v.normal = noh_direction_of_pair(noh_a_normal);
     v.tangent = noh_tangent_of_pair(noh_a_tangent);
 #endif
-#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    v.tint = noh_tint_of(row);
-#endif
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
@@ -255,6 +252,7 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
+    v.tint = noh_tint_of(row); /* last: a Mali G52 spills registers that hold it from the beginning */
 #endif
 #ifdef NOH_OUTLINE
     v.position += noh_outline_step(v, length(x.xyz));
