@@ -744,13 +744,22 @@ static void unused_vertices_may_hold_anything(void **state)
     model_free(m);
 }
 
-static void restart_indices_are_refused_by_name(void **state)
+/* An index that ends a strip elsewhere cuts it, and names no vertex of a triangle. */
+static void restart_indices_cut_strips(void **state)
 {
     (void)state;
-    const uint16_t index[3] = { 0, 1, 65535 };
+    const uint16_t index[7] = { 0, 1, 2, 65535, 2, 1, 0 };
     scene *s = triangle("", ",\"indices\":1");
-    add_array(s, index, sizeof index, U16, 3, "SCALAR");
-    refused(s, "the index 65535 restarts a strip", "mesh 'm' primitive 0 indices (accessor 1), element 2");
+    add_array(s, index + 1, 3 * sizeof *index, U16, 3, "SCALAR");
+    refused(s, "the primitive has no such vertex", "mesh 'm' primitive 0 triangle 0");
+    for (int mode = 5; mode <= 6; mode++) {
+        s = triangle("", mode == 5 ? ",\"mode\":5,\"indices\":1" : ",\"mode\":6,\"indices\":1");
+        add_array(s, index, sizeof index, U16, 7, "SCALAR");
+        model *m = load(s);
+        assert_int_equal(m->meshes[0].index_count, 6);
+        assert_true(has_warning(m, "mesh 'm' primitive 0: an index ends a strip, which glTF does not allow"));
+        model_free(m);
+    }
 }
 
 static void other_signs_of_tangents_are_rounded(void **state)
@@ -2012,12 +2021,15 @@ static void missing_members_are_refused_by_name(void **state)
     }
 }
 
-static void required_extensions_are_refused_by_name(void **state)
+static void required_extensions_are_warnings(void **state)
 {
     (void)state;
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"extensionsRequired\":[\"KHR_texture_basisu\"]");
-    refused(s, "KHR_texture_basisu, which is not supported", "extensionsRequired");
+    model *m = load(s);
+    assert_true(has_warning(m, "extensionsRequired: the file needs the extension KHR_texture_basisu, which is not "
+                               "supported: what depends on it was left out (PNG"));
+    model_free(m);
 }
 
 static void unknown_extensions_are_warnings(void **state)
@@ -2105,7 +2117,8 @@ static void wrong_types_are_left_out(void **state)
     check_lost(s, "COLOR_0 (accessor 1): the accessor's type is SCALAR, but this needs VEC3; colours are white");
     s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
     add_array(s, values, 48, F32, 3, "VEC4");
-    refused(s, "type is VEC4, but this needs VEC3", "mesh 'm' primitive 0 target 0 POSITION (accessor 1)");
+    check_lost(s,
+               "mesh 'm' primitive 0 target 0 POSITION (accessor 1): the accessor's type is VEC4, but this needs VEC3");
     s = triangle("", ",\"indices\":1");
     add_array(s, values, 12, F32, 3, "SCALAR");
     refused(s, "component type FLOAT is not allowed", "mesh 'm' primitive 0 indices (accessor 1)");
@@ -2233,6 +2246,51 @@ static void differing_target_counts_are_refused(void **state)
     scene *s = morphing(up_deltas, ONE_TARGET);
     APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1},{\"POSITION\":1}]}");
     refused(s, "primitive 0 has 1 morph targets and primitive 1 has 2", "mesh 'm' primitives 0 and 1");
+    s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
+    add_array(s, up_deltas, 24, F32, 2, "VEC3");
+    refused(s, "the accessor has 2 elements, but 3 are needed here",
+            "mesh 'm' primitive 0 target 0 POSITION (accessor 1)");
+}
+
+/* A target that cannot be read is there, and moves nothing. */
+static void targets_that_cannot_be_read_are_empty(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"targets\":[{\"POSITION\":1},{\"POSITION\":9}]");
+    add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].target_count, 2);
+    assert_floats(m->meshes[0].targets[0].position, up_deltas, 9);
+    for (int i = 0; i < 9; i++) assert_true(m->meshes[0].targets[1].position[i] == 0.0f);
+    assert_true(has_warning(m,
+                            "primitive 0 target 1 POSITION: accessor 9 does not exist: the file has 2; the deltas were "
+                            "left out"));
+    model_free(m);
+}
+
+/* What a short buffer holds is read, and its other primitives are left out. */
+static void short_buffers_cost_what_they_lack(void **state)
+{
+    (void)state;
+    write_text("test.gltf",
+               "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":144,\"uri\":"
+               "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"},{"
+               "\"byteLength\":9,\"uri\":\"gone.bin\"}],"
+               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,"
+               "\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,"
+               "\"type\":\"VEC3\"},{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}},{\"attributes\":{\"POSITION\":"
+               "1}}]},{\"primitives\":[{\"attributes\":{\"POSITION\":1}}]}]}");
+    model *m = NULL;
+    model_error error;
+    assert_int_equal(model_read_gltf(file_path, &m, &error), 0);
+    assert_true(m->mesh_count == 1 && m->meshes[0].vertex_count == 3 && m->meshes[0].position[3] == 1.0f);
+    assert_true(has_warning(m, "buffer 0: the buffer has 36 bytes, but 'byteLength' says 144"));
+    assert_true(has_warning(m, "buffer 1: the file does not exist"));
+    assert_true(has_warning(m,
+                            "mesh 'mesh_0' primitive 1 POSITION (accessor 1), buffer view 1: bytes 36 to 72 are out of "
+                            "range: buffer 0 has 36; the primitive was left out"));
+    model_free(m);
 }
 
 static void weights_of_the_wrong_length_are_cut(void **state)
@@ -2259,10 +2317,10 @@ static void zero_vertices_are_refused(void **state)
     refused(s, "nothing to convert; was skipped: it has no vertices", "mesh 'm' primitive 0");
 }
 
-static void check_sparse_indices(uint16_t first, uint16_t second, const char *what, const char *where)
+static void check_sparse_indices(uint16_t first, uint16_t second, const char *what)
 {
     const uint16_t index[2] = { first, second };
-    const float value[6] = { 0 };
+    const float value[6] = { 0, 0, 1, 0, 0, 2 };
     char rest[256];
     scene *s = triangle("", ONE_TARGET);
     int indices = add_view(s, index, sizeof index, 0), values = add_view(s, value, sizeof value, 0);
@@ -2271,32 +2329,41 @@ static void check_sparse_indices(uint16_t first, uint16_t second, const char *wh
              "\"values\":{\"bufferView\":%d}}",
              indices, values);
     add_accessor(s, F32, 3, "VEC3", rest);
-    refused(s, what, where);
+    model *m = load(s);
+    if (!has_warning(m, what)) fail_msg("%s", m->warning_count ? m->warnings[0] : "no warning");
+    assert_true(m->meshes[0].targets[0].position[5] == (second == 1 ? 2.0f : 1.0f));
+    model_free(m);
 }
 
-static void bad_sparse_indices_are_refused(void **state)
+static void values_of_bad_sparse_indices_are_left_out(void **state)
 {
     (void)state;
-    check_sparse_indices(1, 3, "the index 3 is out of range: the accessor has 3 elements",
-                         "target 0 POSITION (accessor 1) sparse indices, element 1");
-    check_sparse_indices(1, 1, "the index 1 does not increase", "sparse indices, element 1");
+    check_sparse_indices(1, 3,
+                         "target 0 POSITION (accessor 1) sparse indices, element 1: its value was left out: the "
+                         "accessor has 3 elements");
+    check_sparse_indices(1, 1, "sparse indices, element 1: the index does not increase");
 }
 
-static void bad_nodes_are_refused(void **state)
+static void bad_nodes_are_left_out(void **state)
 {
     (void)state;
-    static const char *const cases[][3] = {
-        { "{\"children\":[1]},{\"children\":[0]}", "own ancestors", "nodes" },
-        { "{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "two parents", "node 'c'" },
-        { "{\"name\":\"p\",\"children\":[5]}", "node 5 does not exist", "node 'p' children" },
-        { "{\"name\":\"p\",\"mesh\":4}", "mesh 4 does not exist", "node 'p'" },
-        { "{\"name\":\"p\",\"mesh\":\"x\"}", "'mesh' must be a whole number", "/nodes/0/mesh" }
+    static const char *const cases[][2] = {
+        { "{\"children\":[1]},{\"children\":[0]}", "nodes: 2 nodes are their own ancestors and were left out" },
+        { "{\"children\":[2]},{\"children\":[2]},{\"name\":\"c\"}", "node 'c': the node has two parents" },
+        { "{\"name\":\"p\",\"children\":[5]}", "node 'p' children: node 5 was left out: it does not exist" },
+        { "{\"name\":\"p\",\"mesh\":4}", "node 'p': its mesh was left out: mesh 4 does not exist" },
+        { "{}],\"scene\":3,\"scenes\":[{\"nodes\":[0,7]}",
+          "scene 3 does not exist: the file has 1; the first was read" },
+        { "{}],\"scenes\":[{\"nodes\":[0,7]}", "scene 0: node 7 was left out" },
     };
     for (size_t i = 0; i < sizeof cases / sizeof cases[0]; ++i) {
         scene *s = triangle("", "");
         APPEND(s->rest, ",\"nodes\":[%s]", cases[i][0]);
-        refused(s, cases[i][1], cases[i][2]);
+        check_lost(s, cases[i][1]);
     }
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"mesh\":\"x\"}]");
+    refused(s, "'mesh' must be a whole number", "/nodes/0/mesh");
 }
 
 /* Transforms that a node cannot have are ignored. */
@@ -2343,7 +2410,7 @@ static void bad_references(void **state)
     refused(triangle("", ",\"mode\":9"), "was skipped: its mode is unknown", "mesh 'm' primitive 0");
     s = triangle("", "");
     APPEND(s->rest, ",\"scenes\":[{\"nodes\":[0]}]");
-    refused(s, "node 0 does not exist", "scene 0");
+    check_lost(s, "scene 0: node 0 was left out: it does not exist");
 }
 
 /* EXT_mesh_gpu_instancing: a node for each instance, below its node. */
@@ -2521,7 +2588,7 @@ int main(void)
         cmocka_unit_test(primitives_are_concatenated),
         cmocka_unit_test(shared_vertices_are_dealt_out),
         cmocka_unit_test(unused_vertices_may_hold_anything),
-        cmocka_unit_test(restart_indices_are_refused_by_name),
+        cmocka_unit_test(restart_indices_cut_strips),
         cmocka_unit_test(other_signs_of_tangents_are_rounded),
         cmocka_unit_test(target_names_are_made_unique),
         cmocka_unit_test(target_names_of_a_primitive),
@@ -2583,7 +2650,7 @@ int main(void)
         cmocka_unit_test(nothing_to_convert_is_refused),
         cmocka_unit_test(deep_json_is_refused),
         cmocka_unit_test(missing_members_are_refused_by_name),
-        cmocka_unit_test(required_extensions_are_refused_by_name),
+        cmocka_unit_test(required_extensions_are_warnings),
         cmocka_unit_test(unknown_extensions_are_warnings),
         cmocka_unit_test(every_truncation_of_a_glb_is_refused),
         cmocka_unit_test(triangles_of_missing_vertices_are_left_out),
@@ -2595,10 +2662,12 @@ int main(void)
         cmocka_unit_test(numbers_that_are_not_finite_are_zeros),
         cmocka_unit_test(worlds_beyond_the_limit_are_refused),
         cmocka_unit_test(differing_target_counts_are_refused),
+        cmocka_unit_test(targets_that_cannot_be_read_are_empty),
+        cmocka_unit_test(short_buffers_cost_what_they_lack),
         cmocka_unit_test(weights_of_the_wrong_length_are_cut),
         cmocka_unit_test(zero_vertices_are_refused),
-        cmocka_unit_test(bad_sparse_indices_are_refused),
-        cmocka_unit_test(bad_nodes_are_refused),
+        cmocka_unit_test(values_of_bad_sparse_indices_are_left_out),
+        cmocka_unit_test(bad_nodes_are_left_out),
         cmocka_unit_test(bad_transforms_are_ignored),
         cmocka_unit_test(nodes_are_in_the_scene_once),
         cmocka_unit_test(bad_references),

@@ -215,16 +215,19 @@ static sparse_part read_sparse(file &f, const layout &l)
     return s;
 }
 
-static uint32_t sparse_index(const layout &l, const sparse_part &s, uint64_t i)
+/* false: the accessor has no such element. */
+static bool sparse_index(file &f, const layout &l, const sparse_part &s, uint64_t i, uint32_t &index)
 {
     uint64_t size = component_size(s.index_component);
-    uint32_t index = load_index(s.index_component, s.indices.data + i * size);
-    if (index >= l.accessor->count)
-        fail(element_of(l.where + " sparse indices", i),
-             text("the index %u is out of range: the accessor has %zu elements", index, l.accessor->count));
-    if (i > 0 && index <= load_index(s.index_component, s.indices.data + (i - 1) * size))
-        fail(element_of(l.where + " sparse indices", i), text("the index %u does not increase", index));
-    return index;
+    index = load_index(s.index_component, s.indices.data + i * size);
+    const bool exists = index < l.accessor->count;
+    if (!exists)
+        leave_out(f, element_of(l.where + " sparse indices", i),
+                  text(": its value was left out: the accessor has %zu elements", l.accessor->count));
+    else if (i > 0 && index <= load_index(s.index_component, s.indices.data + (i - 1) * size))
+        leave_out(f, element_of(l.where + " sparse indices", i),
+                  ": the index does not increase; of values for one element the last was read");
+    return exists;
 }
 
 /* Where an element lies among those that are read; false: it is not. */
@@ -242,9 +245,9 @@ static void apply_sparse(file &f, const layout &l, const vertex_list &vertices, 
 {
     sparse_part s = read_sparse(f, l);
     for (uint64_t i = 0; i < s.count; ++i) {
-        uint32_t element = sparse_index(l, s, i);
+        uint32_t element;
         size_t place;
-        if (place_of(vertices, element, place))
+        if (sparse_index(f, l, s, i, element) && place_of(vertices, element, place))
             load_element(l, s.values.data + i * l.element_size, out + place * l.components);
     }
 }
@@ -287,22 +290,13 @@ void read_floats(file &f, int accessor, uint32_t components, uint32_t accepted, 
     (void)read_elements(f, accessor, components, accepted, all, where, out);
 }
 
-/* The largest number of a type ends a strip elsewhere, and is no index in glTF (3.7.2.1). */
-static void check_restart(uint32_t index, const layout &l, uint64_t element)
-{
-    const uint32_t largest = l.component == c_u8 ? 0xffu : l.component == c_u16 ? 0xffffu : 0xffffffffu;
-    if (index == largest)
-        fail(element_of(l.where, element),
-             text("the index %u restarts a strip, which glTF does not allow: write one primitive for each strip, or "
-                  "triangles",
-                  index));
-}
-
 static void apply_sparse_indices(file &f, const layout &l, std::vector<uint32_t> &out)
 {
     sparse_part s = read_sparse(f, l);
+    uint32_t element;
     for (uint64_t i = 0; i < s.count; ++i)
-        out[sparse_index(l, s, i)] = load_index(l.component, s.values.data + i * l.element_size);
+        if (sparse_index(f, l, s, i, element))
+            out[element] = load_index(l.component, s.values.data + i * l.element_size);
 }
 
 std::vector<uint32_t> read_indices(file &f, int accessor, const std::string &where)
@@ -314,7 +308,8 @@ std::vector<uint32_t> read_indices(file &f, int accessor, const std::string &whe
     for (size_t i = 0; dense.data && i < out.size(); ++i)
         out[i] = load_index(l.component, dense.data + i * dense.stride);
     if (l.accessor->sparse.isSparse) apply_sparse_indices(f, l, out);
-    for (size_t i = 0; i < out.size(); ++i) check_restart(out[i], l, i);
+    const uint32_t largest = l.component == c_u8 ? 0xffu : l.component == c_u16 ? 0xffffu : MODEL_NONE;
+    for (uint32_t &index : out) index = index == largest ? MODEL_NONE : index;
     return out;
 }
 

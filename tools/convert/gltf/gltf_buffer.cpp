@@ -91,9 +91,14 @@ static bytes decode_data_uri(const std::string &uri, const std::string &where)
 static std::string path_of(const file &f, const std::string &uri, const std::string &where)
 {
     std::string path = percent_decode(uri);
+    std::error_code ignored;
     if (path.empty() || path[0] == '/' || path.find(':') != std::string::npos || path.find('\0') != std::string::npos)
         fail(where,
              "the URI '" + printable(uri) + "' is not a relative path: put the file in the folder of the glTF file");
+    /* of an exporter that wrote a name as it is */
+    if (path != uri && !inputs_are_held() && !std::filesystem::exists(f.directory + path, ignored) &&
+        std::filesystem::exists(f.directory + uri, ignored))
+        path = uri;
     return f.directory + path;
 }
 
@@ -109,17 +114,20 @@ bytes read_uri(file &f, const std::string &uri, const std::string &where)
 
 static void load_buffer(file &f, buffer &b, bool first, const std::string &where)
 {
-    if (b.has_uri)
-        b.data = read_uri(f, b.uri, where);
-    else if (first && f.has_bin)
+    if (b.has_uri) {
+        if (!attempt(f, "; what it holds was left out", [&] { b.data = read_uri(f, b.uri, where); })) return;
+    } else if (first && f.has_bin)
         b.data.swap(f.bin);
     /* an error only if it is used */
     else
         return;
     b.uri = std::string();
-    if (b.data.size() < b.byte_length)
-        fail(where, text("the buffer has %zu bytes, but 'byteLength' says %llu: the data is truncated", b.data.size(),
-                         static_cast<unsigned long long>(b.byte_length)));
+    if (b.data.size() < b.byte_length) {
+        leave_out(f, where,
+                  text(": the buffer has %zu bytes, but 'byteLength' says %llu: what lies behind them was left out",
+                       b.data.size(), static_cast<unsigned long long>(b.byte_length)));
+        b.byte_length = b.data.size();
+    }
     b.has_data = true;
 }
 

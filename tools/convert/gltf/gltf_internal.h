@@ -207,7 +207,8 @@ struct vertex_list {
 /* The same for those elements alone, with a warning and 0 for every NaN. */
 void read_vertices(file &f, int accessor, uint32_t components, uint32_t accepted, const vertex_list &vertices,
                    const std::string &where, float *out);
-/* Read an accessor as vertex indices; the caller checks their range. */
+/* Read an accessor as vertex indices; the caller checks their range. The largest number of a type, which ends a strip
+ * elsewhere and is no index in glTF (3.7.2.1), is MODEL_NONE. */
 std::vector<uint32_t> read_indices(file &f, int accessor, const std::string &where);
 
 /* --- the parts of the model --- */

@@ -200,7 +200,8 @@ static void check_asset(const json &document)
              "this file needs a reader of glTF version '" + printable(minimum) + "'; this one reads 2.0");
 }
 
-static void check_required(const json &document)
+/* Draco's positions are nowhere else; of other extensions only what they add is lost. */
+static void check_required(file &f, const json &document)
 {
     auto required = document.find("extensionsRequired");
     if (required == document.end()) return;
@@ -208,14 +209,15 @@ static void check_required(const json &document)
     for (const json &name : *required) {
         std::string extension = name.is_string() ? name.get<std::string>() : "?";
         if (is_supported(extension)) continue;
-        const char *instead = extension == "KHR_draco_mesh_compression"
-                                  ? " Draco compression (EXT_meshopt_compression is read), or build noh with "
-                                    "Draco (Debian: apt install libdraco-dev)"
-                              : extension == "KHR_texture_basisu" ? " KTX2 textures (PNG, JPEG and WebP are read; "
-                                                                    "KTX-Software's ktx extract makes PNG of them)"
-                                                                  : "";
-        fail("extensionsRequired", "the file needs the extension " + printable(extension) +
-                                       ", which is not supported: export it without" + instead);
+        const std::string needs = "the file needs the extension " + printable(extension) + ", which is not supported: ";
+        if (extension == "KHR_draco_mesh_compression")
+            fail("extensionsRequired", needs + "export it without Draco compression (EXT_meshopt_compression is read), "
+                                               "or build noh with Draco (Debian: apt install libdraco-dev)");
+        leave_out(f, "extensionsRequired",
+                  ": " + needs + "what depends on it was left out" +
+                      (extension == "KHR_texture_basisu" ? " (PNG, JPEG and WebP are read; KTX-Software's ktx extract "
+                                                           "makes PNG of KTX2 textures)"
+                                                         : ""));
     }
 }
 
@@ -398,7 +400,7 @@ void parse_json(file &f, const char *text_begin, size_t size)
     check_asset(document);
     check_top_level(document);
     rename_meshopt(document);
-    check_required(document);
+    check_required(f, document);
     check_value(document, "", "");
     check_members(document);
     find_unsupported(f, document);

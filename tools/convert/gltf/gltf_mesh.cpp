@@ -18,6 +18,7 @@ struct part {
     std::vector<uint32_t> indices; /* of triangles, within `vertices` */
     uint32_t first_vertex;
     vertex_list vertices;
+    std::vector<float> position;
 };
 
 struct mesh_job {
@@ -99,14 +100,21 @@ static void push_triangle(std::vector<uint32_t> &out, uint32_t a, uint32_t b, ui
 static std::vector<uint32_t> unroll(file &f, const std::vector<uint32_t> &list, int mode, const std::string &where)
 {
     std::vector<uint32_t> out;
-    size_t count = list.size() < 3 ? 0 : list.size() - 2;
+    size_t count = list.size() < 3 ? 0 : list.size() - 2, first = 0;
     charge(f, count, 3 * sizeof(uint32_t), where);
     out.reserve(count * 3);
-    for (size_t i = 0; i < count; ++i) {
-        if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
-            push_triangle(out, list[i + 1], list[i + 2], list[0]);
-        else
-            push_triangle(out, list[i], list[i + 1 + i % 2], list[i + 2 - i % 2]);
+    for (size_t end = 0; end <= list.size(); ++end) {
+        if (end < list.size() && list[end] != MODEL_NONE) continue;
+        if (end < list.size())
+            leave_out(f, where, ": an index ends a strip, which glTF does not allow; it was cut there");
+        for (size_t i = 0; first + i + 2 < end; ++i) {
+            const uint32_t *at = &list[first + i];
+            if (mode == TINYGLTF_MODE_TRIANGLE_FAN)
+                push_triangle(out, at[1], at[2], list[first]);
+            else
+                push_triangle(out, at[0], at[1 + i % 2], at[2 - i % 2]);
+        }
+        first = end + 1;
     }
     return out;
 }
@@ -182,7 +190,7 @@ static void find_parts(file &f, mesh_job &job)
     uint64_t vertices = 0, indices = 0;
     for (size_t i = 0; i < job.source->primitives.size(); ++i) {
         const tinygltf::Primitive &source = job.source->primitives[i];
-        part p = { &source, i, {}, static_cast<uint32_t>(vertices), {} };
+        part p = { &source, i, {}, static_cast<uint32_t>(vertices), {}, {} };
         std::string where = where_of(job, p);
         if (const char *reason = reason_to_skip(source)) {
             leave_out(f, where, std::string(" was skipped: ") + reason);
@@ -202,6 +210,11 @@ static void find_parts(file &f, mesh_job &job)
         }
         keep_used_vertices(p);
         charge(f, p.vertices.count(), 12 * sizeof(float), where); /* about what its vertices will need */
+        if (!attempt(f, "; the primitive was left out", [&] {
+                p.position.resize(p.vertices.count() * 3);
+                read_vertices(f, position, 3, accepted_position(f), p.vertices, where + " POSITION", p.position.data());
+            }))
+            continue;
         check_vertex_total(job, vertices + p.vertices.count(), indices + p.indices.size());
         vertices += p.vertices.count();
         indices += p.indices.size();
@@ -322,8 +335,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
     const attributes &a = p.source->attributes;
     const std::string where = where_of(job, p);
     const size_t first = p.first_vertex;
-    read_vertices(f, find(a, "POSITION"), 3, accepted_position(f), p.vertices, where + " POSITION",
-                  m.position + first * 3);
+    memcpy(m.position + first * 3, p.position.data(), p.position.size() * sizeof(float));
     if (!has(a, "NORMAL") || !attempt(f, "; normals were computed", [&] {
             read_vertices(f, find(a, "NORMAL"), 3, accepted_normal(f), p.vertices, where + " NORMAL",
                           m.normal + first * 3);
@@ -393,13 +405,31 @@ static void allocate_target(file &f, mesh_job &job, size_t t)
     target.missing = allocate<uint8_t>(f, m.submesh_count, job.where);
 }
 
-static void read_delta(file &f, const part &p, size_t t, const std::string &name, size_t width, uint32_t accepted,
+/* A target of another mesh is a mistake that its author has to mend. */
+static void check_vertex_count(const file &f, int accessor, const part &p, const std::string &where)
+{
+    if (static_cast<size_t>(accessor) >= f.json.accessors.size()) return;
+    const size_t count = f.json.accessors[static_cast<size_t>(accessor)].count;
+    if (count != p.vertices.total)
+        fail(where + text(" (accessor %d)", accessor), text("the accessor has %zu elements, but %zu are needed here",
+                                                            count, static_cast<size_t>(p.vertices.total)));
+}
+
+/* false: they cannot be read, and are zeros. */
+static bool read_delta(file &f, const part &p, size_t t, const std::string &name, size_t width, uint32_t accepted,
                        const std::string &where, float *deltas)
 {
+    const int index = find(p.source->targets[t], name);
     float *out = deltas + size_t{ p.first_vertex } * width;
-    read_vertices(f, find(p.source->targets[t], name.c_str()), width, accepted, p.vertices, where + " " + name, out);
+    check_vertex_count(f, index, p, where + " " + name);
+    if (!attempt(f, "; the deltas were left out",
+                 [&] { read_vertices(f, index, width, accepted, p.vertices, where + " " + name, out); })) {
+        memset(out, 0, p.vertices.count() * width * sizeof *out);
+        return false;
+    }
     for (size_t i = 0; i < p.vertices.count() * width; ++i)
         out[i] += 0.0f; /* -0 becomes 0, so that dense and sparse files give the same model */
+    return true;
 }
 
 /* For the UV set that the primitive's texture uses. */
@@ -408,8 +438,8 @@ static void read_uv_delta(file &f, const mesh_job &job, const part &p, size_t t,
 {
     const std::string name = uv_name(f, *p.source);
     if (!gives(p, t, name.c_str())) return;
-    read_delta(f, p, t, name, 2, accepted_uv_delta(f), where, deltas);
-    transform_uvs(f, job, p, 0.0, deltas + size_t{ p.first_vertex } * 2);
+    if (read_delta(f, p, t, name, 2, accepted_uv_delta(f), where, deltas))
+        transform_uvs(f, job, p, 0.0, deltas + size_t{ p.first_vertex } * 2);
 }
 
 static void warn_unused_deltas(file &f, const part &p, size_t t, const std::string &where)
@@ -429,14 +459,12 @@ static void read_target_part(file &f, mesh_job &job, const part &p, size_t part_
     model_target &target = job.out->targets[t];
     std::string where = where_of(job, p) + text(" target %zu", t);
     warn_unused_deltas(f, p, t, where);
-    if (gives(p, t, "POSITION")) read_delta(f, p, t, "POSITION", 3, accepted_position_delta(f), where, target.position);
-    if (gives(p, t, "NORMAL"))
-        read_delta(f, p, t, "NORMAL", 3, accepted_normal(f), where, target.normal);
-    else
+    if (gives(p, t, "POSITION"))
+        (void)read_delta(f, p, t, "POSITION", 3, accepted_position_delta(f), where, target.position);
+    if (!gives(p, t, "NORMAL") || !read_delta(f, p, t, "NORMAL", 3, accepted_normal(f), where, target.normal))
         target.missing[part_index] |= MODEL_MISSING_NORMAL;
-    if (gives(p, t, "TANGENT"))
-        read_delta(f, p, t, "TANGENT", 3, accepted_normal(f), where, target.tangent);
-    else if (target.tangent)
+    if (target.tangent &&
+        (!gives(p, t, "TANGENT") || !read_delta(f, p, t, "TANGENT", 3, accepted_normal(f), where, target.tangent)))
         target.missing[part_index] |= MODEL_MISSING_TANGENT;
     if (target.uv) read_uv_delta(f, job, p, t, where, target.uv);
 }

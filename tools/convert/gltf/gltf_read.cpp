@@ -52,6 +52,9 @@ static size_t glb_length(const bytes &data)
 static void read_glb(file &f, const bytes &data)
 {
     size_t length = glb_length(data);
+    if (length < data.size())
+        leave_out(f, "GLB header",
+                  text(": %zu bytes behind the end that it gives were left out", data.size() - length));
     chunk json = read_chunk(data, length, 12, "JSON");
     size_t next = json.offset + json.size;
     if (next < length) {

@@ -23,28 +23,37 @@ static std::string where_of(const file &f, size_t node)
 
 /* --- which nodes, in which order --- */
 
-static void check_node_index(const file &f, int node, const std::string &where)
+static bool node_exists(file &f, int node, const std::string &where)
 {
-    if (node < 0 || static_cast<size_t>(node) >= f.json.nodes.size())
-        fail(where, text("node %d does not exist: the file has %zu", node, f.json.nodes.size()));
+    if (node >= 0 && static_cast<size_t>(node) < f.json.nodes.size()) return true;
+    leave_out(f, where, text(": node %d was left out: it does not exist, the file has %zu", node, f.json.nodes.size()));
+    return false;
 }
 
-static std::vector<bool> nodes_with_parent(const file &f)
+/* Children that do not exist, or that have another parent already, are taken out. */
+static std::vector<bool> nodes_with_parent(file &f)
 {
     std::vector<bool> has_parent(f.json.nodes.size(), false);
-    for (size_t i = 0; i < f.json.nodes.size(); ++i)
+    for (size_t i = 0; i < f.json.nodes.size(); ++i) {
+        std::vector<int> kept;
         for (int child : f.json.nodes[i].children) {
-            check_node_index(f, child, where_of(f, i) + " children");
-            if (has_parent[static_cast<size_t>(child)])
-                fail(where_of(f, static_cast<size_t>(child)), "the node has two parents: a node may have one");
+            if (!node_exists(f, child, where_of(f, i) + " children")) continue;
+            if (has_parent[static_cast<size_t>(child)]) {
+                leave_out(f, where_of(f, static_cast<size_t>(child)),
+                          ": the node has two parents: it was left below the first");
+                continue;
+            }
             has_parent[static_cast<size_t>(child)] = true;
+            kept.push_back(child);
         }
+        f.json.nodes[i].children.swap(kept);
+    }
     return has_parent;
 }
 
 /* The roots of the default scene, or all roots where the file has no scene. Some exporters list all nodes: those with a
  * parent come last, and are skipped where the parent has brought them in. */
-static std::vector<size_t> root_nodes(const file &f)
+static std::vector<size_t> root_nodes(file &f)
 {
     std::vector<bool> has_parent = nodes_with_parent(f);
     std::vector<size_t> roots, below;
@@ -54,10 +63,13 @@ static std::vector<size_t> root_nodes(const file &f)
         return roots;
     }
     size_t scene = f.json.defaultScene < 0 ? 0 : static_cast<size_t>(f.json.defaultScene);
-    if (scene >= f.json.scenes.size())
-        fail("scene", text("scene %zu does not exist: the file has %zu", scene, f.json.scenes.size()));
+    if (scene >= f.json.scenes.size()) {
+        leave_out(f, "scene",
+                  text(" %zu does not exist: the file has %zu; the first was read", scene, f.json.scenes.size()));
+        scene = 0;
+    }
     for (int node : f.json.scenes[scene].nodes) {
-        check_node_index(f, node, text("scene %zu", scene));
+        if (!node_exists(f, node, text("scene %zu", scene))) continue;
         (has_parent[static_cast<size_t>(node)] ? below : roots).push_back(static_cast<size_t>(node));
     }
     roots.insert(roots.end(), below.begin(), below.end());
@@ -116,7 +128,8 @@ static std::vector<visit> visit_order(file &f)
     visit_below(f, forgotten, order);
     /* every node has at most one parent, so nodes that no root leads to form a cycle */
     if (f.json.scenes.empty() && order.size() != f.json.nodes.size())
-        fail("nodes", text("%zu nodes are their own ancestors", f.json.nodes.size() - order.size()));
+        leave_out(f, "nodes",
+                  text(": %zu nodes are their own ancestors and were left out", f.json.nodes.size() - order.size()));
     return order;
 }
 
@@ -302,13 +315,16 @@ static void store_transform(file &f, const transform &t, model_node &out, const 
 
 /* --- a node's mesh, skin and weights --- */
 
-static void read_mesh_of_node(const file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
+static void read_mesh_of_node(file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
 {
     out.mesh = MODEL_NONE;
     if (node.mesh < 0) return;
-    if (static_cast<size_t>(node.mesh) >= f.mesh_of.size())
-        fail(where, text("mesh %d does not exist: the file has %zu", node.mesh, f.mesh_of.size()));
-    out.mesh = f.mesh_of[static_cast<size_t>(node.mesh)];
+    if (static_cast<size_t>(node.mesh) < f.mesh_of.size())
+        out.mesh = f.mesh_of[static_cast<size_t>(node.mesh)];
+    else
+        leave_out(
+            f, where,
+            text(": its mesh was left out: mesh %d does not exist, the file has %zu", node.mesh, f.mesh_of.size()));
 }
 
 static void read_weights(file &f, const tinygltf::Node &node, model_node &out, const std::string &where)
