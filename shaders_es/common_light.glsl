@@ -224,7 +224,8 @@ vec3 noh_light(noh_surface s)
 #ifdef NOH_EYE
     mirror = noh_eye_light(s);
 #endif
-    float roughness = clamp(s.roughness, 0.08, 1.0), nv = clamp(dot(mirror, s.view), 1e-3, 1.0);
+    float roughness = clamp(s.roughness, 0.08, 1.0);
+    float nv = clamp(abs(dot(mirror, s.view)), 1e-3, 1.0); /* outlines of thin parts, past grazing, are no mirrors */
     vec3 f0 = mix(s.f0, s.albedo, s.metallic), h = normalize(noh_key + s.view);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
