@@ -68,6 +68,7 @@ packages_cross='?gcc-aarch64-linux-gnu:aarch64
 packages_web='?emscripten:the page
 ?nodejs:its test
 ?npm:its test
+?esbuild:its scripts, smaller
 ?chromium:its test
 ?dpkg-dev:its converter, out of sources
 libcmocka-dev:its test'

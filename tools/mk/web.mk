@@ -15,7 +15,7 @@ WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/packa
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
 WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js greet.js)
 WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js reach.js program.js pointer.js speech.js character.js)
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm face.wasm page.js $(filter %.js,$(WEB_PACKAGE))))
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm face.wasm ear.bin page.js $(filter %.js,$(WEB_PACKAGE))))
 WEB_WORKER    := $(addprefix tools/web_convert/,worker.js webp.js)
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm $(notdir $(WEB_WORKER)))
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
@@ -77,11 +77,11 @@ $(WEB)/poster_%.jpg: $(WEB_PACK) $(BUILD)/noh $(BUILD)/web_poster
 	@rm -f $(WEB)-$*.png
 $(WEB)/page.js: $(WEB_SCRIPTS)
 	@mkdir -p $(@D)
-	@cat $^ | sed '/^ *\/\/ /d' >$@
+	@cat $^ | sh tools/web_small.sh >$@
 $(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
 	@mkdir -p $(@D)
 	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
-$(addprefix $(WEB)/package/,noh.wasm face.wasm): $(WEB)/package/%.wasm: $(WEB_OBJECTS)/%.wasm
+$(addprefix $(WEB)/package/,noh.wasm face.wasm ear.bin): $(WEB)/package/%: $(WEB_OBJECTS)/%
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/%: platform/web/%
@@ -111,8 +111,16 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
 -include $(WEB_O:.o=.d) $(WEB_FACE_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
-$(WEB_OBJECTS)/noh.wasm: $(WEB_O)
-$(WEB_OBJECTS)/face.wasm: $(WEB_FACE_O)
+# The ear's tables come apart (platform/web/ear_apart.c).
+WEB_EAR_O := $(WEB_OBJECTS)/runtime/life/face/ear_tables.o
+$(WEB_OBJECTS)/noh.wasm: $(filter-out $(WEB_EAR_O),$(WEB_O))
+$(WEB_OBJECTS)/face.wasm: $(filter-out $(WEB_EAR_O),$(WEB_FACE_O))
+$(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c runtime/life/face/ear_internal.h
+	@mkdir -p $(@D)
+	$(call say,CC,$@)
+	$(Q)$(CC) -std=c99 -O1 $(WARN) $(INCLUDES) $(filter %.c,$^) -o $(BUILD)/web_ear
+	$(Q)$(BUILD)/web_ear >$@.new
+	@mv $@.new $@
 $(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm:
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
@@ -208,6 +216,6 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm LICENSE tools/npm.sh runtime/noh/base.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(addprefix $(WEB_OBJECTS)/,noh.wasm face.wasm ear.bin) LICENSE tools/npm.sh runtime/noh/base.h \
     $(WEB_WORKER) $(wildcard $(WEB_CONVERT)/convert.wasm)
 	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS) LICENSE $(WEB_CONVERT) $(WEB_WORKER)

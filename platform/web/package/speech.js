@@ -47,6 +47,20 @@ export function shapesOfText(words, rate) {
     return out;
 }
 
+// The ear's tables, fetched when something is first heard.
+let earTables = null;
+function fetchEar() {
+    const address = new URL('./ear.bin', import.meta.url);
+    if (!earTables) {
+        earTables = reach(fetch(address), 'ear', address).then(async (answer) => {
+            if (!answer.ok) throw new Error(`no ear: ${address}: the server says ${answer.status}`);
+            return (earTables.bytes = new Uint8Array(await answer.arrayBuffer()));
+        });
+        earTables.catch(() => { earTables = null; }); // the next call tries again
+    }
+    return earTables;
+}
+
 // Mix the channels of a decoded sound into one.
 function mixed(buffer) {
     const sum = new Float32Array(buffer.length);
@@ -181,8 +195,11 @@ export class Speech {
 
     // ---- the ear ----
 
+    // After fetchEar.
     openEar(rate, latency) {
         if (rate < earRates[0] || rate > earRates[1]) throw new Error(`sound of ${rate} Hz: the ear takes ${earRates.join(' to ')}`);
+        if (earTables.bytes.length !== this.program._web_ear_tables_bytes()) throw new Error('ear.bin is of another version than the program: put the files of one package together');
+        this.program.HEAPU8.set(earTables.bytes, this.program._web_ear_tables());
         this.rate = rate;
         this.program.check(this.program._web_ear_open(rate, latency));
     }
@@ -270,6 +287,7 @@ export class Speech {
     }
 
     async earNode(context, mine) {
+        await fetchEar();
         await context.audioWorklet.addModule(new URL('./microphone.js?no-inline', import.meta.url)); // a file in Vite, too: policies refuse data:
         return mine() ? new AudioWorkletNode(context, 'microphone', { numberOfOutputs: 0 }) : null;
     }
@@ -297,6 +315,7 @@ export class Speech {
         const context = new AudioContext(), rate = Math.min(earRates[1], context.sampleRate);
         try {
             const buffer = decoded || await soundOf(what, rate);
+            if (!options.visemes || !options.visemes.length) await fetchEar();
             if (!mine()) context.close();
             else await this.playBuffer(context, buffer, what.name || (options.text ? 'the voice' : 'the sound'), options);
         } catch (error) {
@@ -342,6 +361,8 @@ export class Speech {
 
     // Samples as they come, each piece played after the one before.
     async playChunks(chunks, { rate = 24000, words, text }, mine) {
+        await fetchEar();
+        if (!mine()) return;
         const context = new AudioContext(), frames = [], left = [...words || []];
         let start = 0, seconds = 0, whole = false;
         this.openEar(rate, liveLatency);
