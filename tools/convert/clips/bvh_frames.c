@@ -1,6 +1,7 @@
 #include "bvh_internal.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -9,6 +10,16 @@
 #include "convert/model/model_build.h"
 #include "convert/base/quat.h"
 #include "raw_set.h"
+
+static int warn(bvh_file *f, const char *text)
+{
+    char both[1024];
+    (void)snprintf(both, sizeof both, "%s%s%s", f->set->warning ? f->set->warning : "", f->set->warning ? "; " : "",
+                   text);
+    free(f->set->warning);
+    f->set->warning = model_string(both);
+    return f->set->warning ? 0 : bvh_out_of_memory(f);
+}
 
 /* "Frames:" or "Frame Time:"; blanks may stand before the colon and after it. */
 static int expect_label(bvh_file *f, const char *label)
@@ -60,8 +71,12 @@ static int read_sample_rate(bvh_file *f, double *sample_rate_hz)
     double period_s = 0.0;
     text_word word = text_next_on_line(&f->text);
     if (text_number(&f->text, word, &period_s) || expect_line_end(f)) return 1;
-    if (!(period_s >= 1e-6 && period_s <= 1e3))
-        return text_fail(&f->text, word.line, "the frame time is %g s: it must be 0.000001 to 1000 s", period_s);
+    if (!(period_s >= 1e-6 && period_s <= 1e3)) {
+        char text[96];
+        (void)snprintf(text, sizeof text, "the frame time of %g s is impossible; the clip was read at 30 Hz", period_s);
+        *sample_rate_hz = 30.0;
+        return warn(f, text);
+    }
     *sample_rate_hz = sample_rate_of(period_s, last_digit_of(word));
     return 0;
 }
@@ -144,24 +159,24 @@ static int read_frame(bvh_file *f, uint32_t frame, double *values)
     return 0;
 }
 
-/* Some writers count the steps between frames and so announce one frame less than they write: one more whole frame is
- * left out with a warning. Anything else after the frames is an error. */
-static int check_end(bvh_file *f, double *values)
+/* The clip ends before a frame that cannot be read; it needs its first. */
+static int cut_clip(bvh_file *f, uint32_t frame)
 {
-    if (!text_next_line(&f->text)) return 0;
-    const uint32_t line = f->text.line;
-    if (read_values(f, f->frame_count, values)) return 1;
-    if (text_next_line(&f->text))
-        return text_fail(&f->text, line, "more lines follow the %u frames that the header gives", f->frame_count);
-    f->set->warning = model_string("the file has one frame more than its header gives; it was left out");
-    return f->set->warning ? 0 : bvh_out_of_memory(f);
+    model_error *reason = f->text.error;
+    char text[sizeof reason->what + sizeof reason->where + 80];
+    if (!frame) return 1;
+    (void)snprintf(text, sizeof text, "%s: %s; the clip ends before it", reason->where, reason->what);
+    f->set->clips[0].frame_count = frame;
+    reason->what[0] = reason->where[0] = '\0';
+    return warn(f, text);
 }
 
+/* Some writers count the steps between frames and so announce one frame less than they write. */
 static int read_frames(bvh_file *f, double *values)
 {
     for (uint32_t frame = 0; frame < f->frame_count; ++frame)
-        if (read_frame(f, frame, values)) return 1;
-    return check_end(f, values);
+        if (read_frame(f, frame, values)) return cut_clip(f, frame);
+    return text_next_line(&f->text) ? warn(f, "the file has more frames than its header gives; they were left out") : 0;
 }
 
 /* As many frames as were announced, but no more than the rest of the file can hold: a number takes at least two bytes
