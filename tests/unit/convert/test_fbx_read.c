@@ -627,6 +627,30 @@ static void losses_are_warned_of(void **state)
     warns("node 'sheet' has a transform that is not finite");
 }
 
+/* A byte order mark is skipped; an impossible unit is a centimetre, and a number that comes twice is warned of. */
+static void marks_units_and_numbers(void **state)
+{
+    static const char usual[] = "\"\",100\n";
+    static char marked[sizeof text + 3] = "\xef\xbb\xbf";
+    model *m;
+    char *unit;
+    (void)state;
+    begin();
+    unit = strstr(text, usual);
+    assert_non_null(unit);
+    memcpy(unit, "\"\",  0\n", sizeof usual - 1u);
+    add_triangle(1, "");
+    add_object("Model", 2, "sheet", "Mesh", "", "");
+    add_object("Model", 2, "again", "Null", "", "");
+    links(OO(2, 0) OO(1, 2));
+    strcpy(marked + 3, text);
+    m = load_bytes(marked, strlen(marked));
+    assert_true(has_warning(m, "the file's unit is impossible, and 1 cm was taken"));
+    assert_true(has_warning(m, "the object 'again' has the number of another one"));
+    assert_int_equal(m->mesh_count, 1);
+    model_free(m);
+}
+
 /* As C libraries spell them; a comma may begin a line. */
 static void words_in_place_of_numbers_are_zero(void **state)
 {
@@ -727,6 +751,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
     cmocka_unit_test(losses_are_warned_of),
+    cmocka_unit_test(marks_units_and_numbers),
     cmocka_unit_test(words_in_place_of_numbers_are_zero),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(mutations_never_crash),

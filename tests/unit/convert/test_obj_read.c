@@ -347,6 +347,17 @@ static void bad_lines_are_refused(void **state)
     refused("solid cube\n", "an OBJ file has no line 'solid'", "line 1");
 }
 
+/* Faces that cannot be read are left out, and the others stay. */
+static void bad_faces_are_left_out(void **state)
+{
+    (void)state;
+    model *m = load(SQUARE "usemtl a\nf 1 2 9\nusemtl b\nf 1 2\nf 1 2 3\nf 0 1 2\n");
+    assert_true(m->meshes[0].submesh_count == 1 && m->meshes[0].index_count == 3);
+    assert_true(has_warning(m, "line 6: position 9 does not exist: the file has 4 before this line; 3 faces were left "
+                               "out"));
+    model_free(m);
+}
+
 static void mutations_never_crash(void **state)
 {
     (void)state;
@@ -384,6 +395,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(targets_come_in_order_of_their_names),
     cmocka_unit_test(bad_targets_are_refused),
     cmocka_unit_test(bad_lines_are_refused),
+    cmocka_unit_test(bad_faces_are_left_out),
     cmocka_unit_test(mutations_never_crash),
 };
 

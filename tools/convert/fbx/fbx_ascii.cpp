@@ -229,7 +229,7 @@ void read_ascii(const std::string &bytes, tree &out)
              "this is a binary FBX file that was changed when it was copied as text: copy it again as binary");
     if (bytes.find("FBXHeaderExtension") == std::string::npos)
         fail("byte 0", "this is not an FBX file: it is neither binary nor has the header of an ASCII one");
-    ascii_reader reader{ bytes, 0 };
+    ascii_reader reader{ bytes, bytes.compare(0, 3, "\xef\xbb\xbf") == 0 ? 3u : 0u }; /* a byte order mark */
     out.ascii = true;
     reader.read_list(out.top, 0);
     const node *header = out.top.child("FBXHeaderExtension");

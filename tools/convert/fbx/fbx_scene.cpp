@@ -193,6 +193,8 @@ static void read_objects(scene &s)
         o.sub = n.text(name_at + 1);
         o.own = read_properties(n);
         o.defaults = usual == s.templates.end() ? nullptr : &usual->second;
+        if (s.index.count(id_of(n.values[0])))
+            s.warn("the object '" + o.name + "'", " has the number of another one and took its connections");
         s.index[id_of(n.values[0])] = s.objects.size();
         s.objects.push_back(std::move(o));
     }
@@ -258,6 +260,7 @@ static void read_settings(scene &s)
     const double rate = mode == 14.0 ? get("CustomFrameRate", 24.0) : known ? rates[static_cast<size_t>(mode)] : 30.0;
     read_axes(s, p);
     s.unit_cm = unit > 1e-6 && unit < 1e6 ? unit : 1.0;
+    if (s.unit_cm != unit) s.warn("the file's unit", " is impossible, and 1 cm was taken: use --unit-cm");
     s.rate_hz = rate >= 1.0 && rate <= 1000.0 ? rate : 30.0;
 }
 

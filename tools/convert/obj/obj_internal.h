@@ -30,6 +30,8 @@ typedef struct obj_text {
     char *library;                       /* the .mtl file's name; NULL: none */
     const char *left_out;                /* the first keyword that was skipped; NULL: none */
     uint32_t left_out_line, left_out_count;
+    model_error bad_face; /* why the first face of bad_face_count was left out */
+    uint32_t bad_face_count;
 } obj_text;
 
 uint32_t obj_position_count(const obj_text *o);

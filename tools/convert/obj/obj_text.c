@@ -208,7 +208,6 @@ static int read_face(reader *r)
 {
     uint32_t count = 0;
     const uint32_t line = r->scan.line;
-    if (!r->part && find_part(r)) return 1;
     r->face.count = r->points.count = 0;
     for (;; count++) {
         const text_word word = text_next_on_line(&r->scan);
@@ -220,8 +219,21 @@ static int read_face(reader *r)
             return out_of_memory(r);
         }
     }
-    return count >= 3 ? add_triangles(r, count, line)
-                      : text_fail(&r->scan, line, "a face needs at least three corners, and this one has %u", count);
+    if (count < 3) {
+        return text_fail(&r->scan, line, "a face needs at least three corners, and this one has %u", count);
+    }
+    return (!r->part && find_part(r)) || add_triangles(r, count, line);
+}
+
+/* A face that cannot be read is left out. */
+static int try_face(reader *r)
+{
+    model_error *error = r->scan.error;
+    if (!read_face(r)) return 0;
+    if (!error->where[0]) return 1; /* out of memory */
+    if (!r->out->bad_face_count++) r->out->bad_face = *error;
+    error->what[0] = error->where[0] = '\0';
+    return 0;
 }
 
 /* ---- lines ---- */
@@ -270,7 +282,7 @@ static int read_line(reader *r, text_word keyword)
     if (r->positions_only) return 0;
     if (text_is(keyword, "vt")) return read_uv(r);
     if (text_is(keyword, "vn")) return read_vector(r, &r->out->normals);
-    if (text_is(keyword, "f")) return read_face(r);
+    if (text_is(keyword, "f")) return try_face(r);
     if (text_is(keyword, "mtllib")) return r->out->library ? 0 : read_name(r, &r->out->library);
     if (text_is(keyword, "usemtl")) {
         r->part = NULL;
@@ -319,6 +331,7 @@ int obj_text_read(const char *path, int positions_only, obj_text *out, model_err
     }
     if (!failed && !positions_only && obj_part_count(out) == 0) {
         failed = model_fail(error, "", "it has no face ('f A B C'), and so nothing to convert");
+        if (out->bad_face_count) *error = out->bad_face;
     }
     free(r.material);
     buffer_free(&r.face);
