@@ -31,15 +31,15 @@ typedef struct noh_check_field {
 } noh_check_field;
 
 /* Fail at the first field that is wrong, of the record at a byte of the chunk. */
-noh_result noh_check_fields(const noh_check *check, const noh_check_field *fields, size_t count, const char *what,
-                            uint64_t record);
+NOH_COLD noh_result noh_check_fields(const noh_check *check, const noh_check_field *fields, size_t count,
+                                     const char *what, uint64_t record);
 
 /* The fixed head of a chunk. */
 noh_result noh_check_head(noh_check *check, uint32_t bytes);
 
 /* The next array, whose offset is the word at byte `field` of the chunk, has to begin at the next multiple of 16 and to
  * fit; the padding before it has to be zero. */
-noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint32_t stride);
+NOH_COLD noh_result noh_check_array(noh_check *check, size_t field, uint64_t count, uint32_t stride);
 
 /* The chunk has to end where its last array did. */
 noh_result noh_check_end(const noh_check *check);
@@ -50,7 +50,7 @@ const void *noh_check_subject(const noh_check *check, noh_chunk_type type, noh_c
 
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what);
 /* `offset`: of the name's field. The field of its hash follows. */
-noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
+NOH_COLD noh_result noh_check_name(const noh_check *check, uint32_t name, uint32_t hash, uint64_t offset);
 
 /* noh_check_strings and so on: each chunk of its type, in check_strings.c and so on. It may rely on the chunks before
  * it, and sets what `opens` keeps of its own. Every program that opens a pack links all of them, and they are half of
@@ -60,7 +60,7 @@ NOH_CHUNKS(NOH_CHECKER)
 #undef NOH_CHECKER
 
 /* check_mesh_part.c: what every level of a mesh has; `h` is that level's header. */
-noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);
+NOH_COLD noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h);
@@ -71,7 +71,7 @@ noh_result noh_check_target_sums(const noh_check *check, const noh_mesh_header *
 
 /* Check the headers of a mesh's coarser levels, which follow the full level's header: present, and equal in all fields
  * that levels share. Called before the arrays are checked. */
-noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
+NOH_COLD noh_result noh_check_level_headers(noh_check *check, const noh_mesh_header *h);
 
 /* The levels that a mesh has in the pack, and so headers in its chunk; and where in the chunk a level's lies. */
 static inline uint32_t noh_check_levels_there(const noh_mesh_header *h)
