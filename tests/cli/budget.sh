@@ -162,6 +162,17 @@ expect 0 'half of the frames of clips are enough'
 check 'which takes fewer bytes' test "$(sum_of 2 "$work/out")" -lt "$whole"
 check 'and the parts add up' adds_up "$work/out"
 
+cp "$build/demo/roam.noh" "$work/cast/roam.noh"
+printf 'kind hero\nmesh puppet.noh\nclips roam.noh\nactor_count 20\ninertia 1\nroot_axes ground\nmatch 1\n' >"$work/cast/match.txt"
+noh budget --desc "$work/cast/match.txt" --nominal
+expect 0 'motion matching is planned'
+check 'with a line of its own' sh -c 'grep -q "^  motion matching .* [1-9][0-9]* *0$" "$1"' - "$work/out"
+check 'and the parts add up' adds_up "$work/out"
+sed 's/inertia 1/inertia 0/' "$work/cast/match.txt" >"$work/cast/stiff.txt"
+noh budget --desc "$work/cast/stiff.txt" --nominal
+expect 1 'without inertia it is refused'
+says 'needs room for inertia'
+
 refused() { # LINE MESSAGE : what is in $work/cast/bad.txt is refused so
     noh budget --desc "$work/cast/bad.txt" --nominal
     expect 1 "refused: $2"

@@ -8,7 +8,7 @@
 
 /* States of an actor lie in this order, after a head: as they always have, so that their hashes stay. */
 static const uint8_t laid_out[] = { NOH_SLOT_FACE, NOH_SLOT_BODY, NOH_SLOT_MODIFIERS, NOH_SLOT_SPRINGS,
-                                     NOH_SLOT_MATCH };
+                                    NOH_SLOT_MATCH };
 
 /* ---- of a desc ---- */
 
@@ -45,7 +45,8 @@ const char *noh_stage_bad_modules(const noh_kind_desc *d)
     for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && !what; slot++) {
         const noh_module m = noh_stage_wanted(d, slot);
         if (!m.type) continue;
-        if (m.type->slot != slot) return "graphs, face, ragdoll, springs or match of a kind holds the module of another field";
+        if (m.type->slot != slot)
+            return "graphs, face, ragdoll, springs or match of a kind holds the module of another field";
         what = m.type->bad ? m.type->bad(d, m.desc) : NULL;
     }
     return what;

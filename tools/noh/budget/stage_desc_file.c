@@ -292,6 +292,7 @@ typedef enum setting_kind {
     SET_GRAPHS,
     SET_FACE,
     SET_RAGDOLLS,
+    SET_MATCH,
     SET_LAYER
 } setting_kind;
 
@@ -329,6 +330,7 @@ static const setting settings[] = {
     { "graphs", SET_GRAPHS, 1, 0, 0, 0, 0 },
     { "face", SET_FACE, 1, 0, 0, 0, 0 },
     { "ragdolls", SET_RAGDOLLS, 1, 0, 0, 1, NOH_RAGDOLLS_MAX },
+    { "match", SET_MATCH, 1, 0, 0, 0, 1 },
 };
 #define SETTING_COUNT (sizeof settings / sizeof settings[0])
 
@@ -353,6 +355,9 @@ static int set_number(reader *r, const setting *s, const char *text)
     case SET_RAGDOLLS:
         r->file->ragdolls[r->kind - r->file->kinds].count = (uint32_t)value;
         r->kind->ragdoll = noh_ragdoll_module(&r->file->ragdolls[r->kind - r->file->kinds]);
+        break;
+    case SET_MATCH:
+        if (value) r->kind->match = noh_match_module(NULL);
         break;
     case SET_BYTES: *(uint64_t *)(void *)(in + s->at) = value; break;
     case SET_FLAG: *(int *)(void *)(in + s->at) = (int)value; break;

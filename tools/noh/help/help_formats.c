@@ -241,6 +241,7 @@ const char *const help_formats_text[] = {
     "     finer PACK                                  the pack with the finer levels, if mesh has only coarse ones",
     "     face joints | face X Y Z X Y Z              live faces: eyes by joints, or the centres of the left and right eye",
     "     ragdolls N                                  ragdolls at one time (none)",
+    "     match 0|1                                   motion matching, by the table of its clips; needs inertia and root_axes (0)",
     "     held_float_count N                          floats the game may hold (8; 0: none)",
     "     sample_rate_needed N                        sufficient frames a second: clips of at least twice the rate are halved (all)",
     "     root_axes ground|x,y,z,heading              axes of root motion; ground: x,z,heading. y is up",
