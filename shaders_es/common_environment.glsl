@@ -51,8 +51,10 @@ float noh_shadow_soft(vec3 at)
     vec2 m = texture(noh_shadow_map, at.xy).rg;
     float behind = max(min(4.0 * at.z - 3.0, noh_lighting[1].w) - m.x, 0.0), spread = max(m.y - m.x * m.x, 0.000036);
     float light = spread / (spread + behind * behind);
+#ifndef NOH_PHONE /* there an edge is as wide as the blur */
     float narrow = noh_lighting[0].w * (1.0 - light) / max(behind, 1e-5);
     light = (light - 0.5) * clamp(narrow, 1.0, 5.0) + 0.5;
+#endif
     return clamp(1.25 * light - 0.25, 0.0, 1.0);
 }
 #else
