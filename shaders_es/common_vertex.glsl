@@ -206,7 +206,6 @@ vec2 noh_uv_of(ivec4 tile)
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
-    vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p;
     ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_direction_of_pair(noh_a_normal);
@@ -225,7 +224,8 @@ noh_vertex noh_fetch()
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_EYE
-    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, x, y, z);
+    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, noh_world_row(0), noh_world_row(1),
+                    noh_world_row(2));
 #endif
 #ifdef NOH_TEETH
     noh_face_vertex(noh_a_rest, v.model);
@@ -235,12 +235,13 @@ noh_vertex noh_fetch()
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
+    /* here: fetched earlier, the rows of a crowd spill twice as many registers of a Mali G52 */
+    vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
     noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
     lobe.occlusion = clamp(lobe.occlusion + noh_fetch_occlusion(tile, noh_morph_vertex()), 0.0, 1.0);
     noh_v_transfer = noh_lobe_shade(lobe, normalize(noh_world_normal(x, y, z, lobe.axis)));
 #endif
-    p = vec4(v.model, 1.0);
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_world_normal(x, y, z, v.normal);
