@@ -359,8 +359,10 @@ static int append(model *m, uint32_t index, const mouth *h, model_error *error)
         if (h->island[v] == h->skin) follow(h, v, target.position + 3 * (size_t)v);
     }
     if (!target.name || !target.position || model_append_targets(m, index, &from)) {
-        free(target.name);
-        free(target.position);
+        if (from.target_count) { /* the model does not own it yet */
+            free(target.name);
+            free(target.position);
+        }
         return model_fail(error, mesh->name, "out of memory");
     }
     return model_complete(m, error);
