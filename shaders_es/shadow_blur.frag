@@ -1,6 +1,6 @@
 #version 300 es
-/* shadow_blur.frag: moments of a shadow map (runtime/gl/draw/gl_shadow.c), blurred by a Gaussian along one axis. Along x
- * from depths, of twice the side; along y from the blurred rows. */
+/* shadow_blur.frag: moments of a shadow map (runtime/gl/draw/gl_shadow.c), blurred by a Gaussian along one axis: along
+ * x from depths, of twice the side; along y from the blurred rows. */
 precision highp float;
 precision highp int;
 

@@ -547,7 +547,8 @@ noh_result noh_stage_decals_draw(noh_stage_decals *decals, uint32_t view, noh_ac
  *
  * Draw it after the background and before characters, once the shadow map is drawn. It multiplies the colours in the
  * framebuffer and the floor itself is invisible, so it works on any background. It takes no GPU memory besides its
- * program. Set noh_lighting.floor and has_floor before the shadow map is drawn: otherwise the edge is hard and too wide.
+ * program. Set noh_lighting.floor and has_floor before the shadow map is drawn: otherwise the edge of a soft shadow is
+ * hard and too far out.
  *
  * Threads: the context's own thread. */
 
