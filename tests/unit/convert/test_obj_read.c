@@ -347,13 +347,33 @@ static void bad_lines_are_refused(void **state)
     refused("solid cube\n", "an OBJ file has no line 'solid'", "line 1");
 }
 
-/* Faces that cannot be read are left out, and the others stay. */
+/* Lines that cannot be read are left out, with the faces that need them; the others stay, and count as in the file. */
+static void bad_lines_are_left_out(void **state)
+{
+    static const char *const texts[] = {
+        "v nan 0 0\n" SQUARE "f 2 3 4\nf 1 2 3\n",
+        "v 1 2\nstray words\n" SQUARE "f 1 2 3\nf 2 3 4\n",
+        "v 0 0 0 1 1 x\nv 1 0 0\nv 1 1 0\nf 1 2 3\n",
+        "vt x 0\nvn 0 0\nv 9 9 9\n" SQUARE "f 2/1/1 3/1/1 4/1/1\n",
+    };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(texts); i++) {
+        model *m = load(texts[i]), *plain = load(SQUARE "f 1 2 3\n");
+        assert_int_equal(m->meshes[0].vertex_count, 3);
+        assert_memory_equal(m->meshes[0].position, plain->meshes[0].position, 9 * sizeof(float));
+        assert_memory_equal(m->meshes[0].normal, plain->meshes[0].normal, 9 * sizeof(float));
+        assert_true(has_warning(m, "left out"));
+        model_free(plain);
+        model_free(m);
+    }
+}
+
 static void bad_faces_are_left_out(void **state)
 {
     (void)state;
     model *m = load(SQUARE "usemtl a\nf 1 2 9\nusemtl b\nf 1 2\nf 1 2 3\nf 0 1 2\n");
     assert_true(m->meshes[0].submesh_count == 1 && m->meshes[0].index_count == 3);
-    assert_true(has_warning(m, "line 6: position 9 does not exist: the file has 4 before this line; 3 faces were left "
+    assert_true(has_warning(m, "line 6: position 9 does not exist: the file has 4 before this line; 3 lines were left "
                                "out"));
     model_free(m);
 }
@@ -395,6 +415,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(targets_come_in_order_of_their_names),
     cmocka_unit_test(bad_targets_are_refused),
     cmocka_unit_test(bad_lines_are_refused),
+    cmocka_unit_test(bad_lines_are_left_out),
     cmocka_unit_test(bad_faces_are_left_out),
     cmocka_unit_test(mutations_never_crash),
 };

@@ -23,15 +23,17 @@ typedef struct obj_part {
 } obj_part;
 
 typedef struct obj_text {
-    byte_buffer positions, uvs, normals; /* of float: 3, 2, 3 each; v from the top of the picture */
-    byte_buffer colors;                  /* of float, 3 a position: white where a line has none */
-    int has_colors;                      /* any line has */
-    byte_buffer parts;                   /* of obj_part */
-    char *library;                       /* the .mtl file's name; NULL: none */
-    const char *left_out;                /* the first keyword that was skipped; NULL: none */
+    byte_buffer positions, uvs,
+        normals;          /* of float: 3, 2, 3 each; v from the top of the picture. NaN: the line was left
+                                          * out, and no corner refers to it */
+    byte_buffer colors;   /* of float, 3 a position: white where a line has none */
+    int has_colors;       /* any line has */
+    byte_buffer parts;    /* of obj_part */
+    char *library;        /* the .mtl file's name; NULL: none */
+    const char *left_out; /* the first keyword that was skipped; NULL: none */
     uint32_t left_out_line, left_out_count;
-    model_error bad_face; /* why the first face of bad_face_count was left out */
-    uint32_t bad_face_count;
+    model_error bad_line; /* why the first line of bad_line_count was left out */
+    uint32_t bad_line_count;
 } obj_text;
 
 uint32_t obj_position_count(const obj_text *o);

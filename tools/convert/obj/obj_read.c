@@ -174,8 +174,8 @@ static int warn_of_size(const model_mesh *mesh, double unit_cm, model *m)
 
 static int warn_of_losses(const obj_text *o, model *m)
 {
-    if (o->bad_face_count &&
-        model_warn(m, "%s: %s; %u faces were left out", o->bad_face.where, o->bad_face.what, o->bad_face_count))
+    if (o->bad_line_count &&
+        model_warn(m, "%s: %s; %u lines were left out", o->bad_line.where, o->bad_line.what, o->bad_line_count))
         return 1;
     return o->left_out_count &&
            model_warn(m, "line %u: '%s' was left out, and %u more lines of points, lines or curves", o->left_out_line,

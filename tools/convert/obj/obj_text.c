@@ -1,5 +1,6 @@
 #include "obj_internal.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -143,6 +144,12 @@ static text_word cut_at_slash(text_word *word)
     return first;
 }
 
+/* Whether the line of a number was left out. */
+static int is_unread(const byte_buffer *numbers, size_t at)
+{
+    return isnan(((const float *)(const void *)numbers->bytes)[at]);
+}
+
 /* position, position/uv, position//normal or position/uv/normal */
 static int read_corner(reader *r, text_word word, obj_corner *out)
 {
@@ -153,9 +160,15 @@ static int read_corner(reader *r, text_word word, obj_corner *out)
     if (word.size > 0) {
         return text_fail(&r->scan, position.line, "'%s' is one number too many in a corner", text_show(word, shown));
     }
-    return read_place(r, position, o->positions.count / 12u, "position", &out->position) ||
-           (uv.size > 0 && read_place(r, uv, o->uvs.count / 8u, "UV", &out->uv)) ||
-           (normal.size > 0 && read_place(r, normal, o->normals.count / 12u, "normal", &out->normal));
+    if (read_place(r, position, o->positions.count / 12u, "position", &out->position) ||
+        (uv.size > 0 && read_place(r, uv, o->uvs.count / 8u, "UV", &out->uv)) ||
+        (normal.size > 0 && read_place(r, normal, o->normals.count / 12u, "normal", &out->normal)))
+        return 1;
+    if (is_unread(&o->positions, 3u * out->position))
+        return text_fail(&r->scan, position.line, "position %u could not be read", out->position + 1u);
+    if (out->uv != MODEL_NONE && is_unread(&o->uvs, 2u * out->uv)) out->uv = MODEL_NONE;
+    if (out->normal != MODEL_NONE && is_unread(&o->normals, 3u * out->normal)) out->normal = MODEL_NONE;
+    return 0;
 }
 
 static int same_name(const char *a, const char *b)
@@ -225,19 +238,6 @@ static int read_face(reader *r)
     return (!r->part && find_part(r)) || add_triangles(r, count, line);
 }
 
-/* A face that cannot be read is left out. */
-static int try_face(reader *r)
-{
-    model_error *error = r->scan.error;
-    if (!read_face(r)) return 0;
-    if (!error->where[0]) return 1; /* out of memory */
-    if (!r->out->bad_face_count++) r->out->bad_face = *error;
-    error->what[0] = error->where[0] = '\0';
-    return 0;
-}
-
-/* ---- lines ---- */
-
 static int read_name(reader *r, char **out)
 {
     const text_word name = text_rest_of_line(&r->scan);
@@ -282,13 +282,37 @@ static int read_line(reader *r, text_word keyword)
     if (r->positions_only) return 0;
     if (text_is(keyword, "vt")) return read_uv(r);
     if (text_is(keyword, "vn")) return read_vector(r, &r->out->normals);
-    if (text_is(keyword, "f")) return try_face(r);
+    if (text_is(keyword, "f")) return read_face(r);
     if (text_is(keyword, "mtllib")) return r->out->library ? 0 : read_name(r, &r->out->library);
     if (text_is(keyword, "usemtl")) {
         r->part = NULL;
         return read_name(r, &r->material);
     }
     return is_ignored(keyword) ? 0 : leave_out(r, keyword);
+}
+
+/* A line that cannot be read is left out; a number of a position that cannot be read is NaN, and others keep their
+ * numbers. */
+static int try_line(reader *r, text_word keyword)
+{
+    static const float unread[3] = { NAN, NAN, NAN }, white[3] = { 1.0f, 1.0f, 1.0f };
+    obj_text *o = r->out;
+    model_error *error = r->scan.error;
+    const size_t positions = o->positions.count, colors = o->colors.count;
+    int kept = 1;
+    if (!read_line(r, keyword)) return 0;
+    if (!error->where[0] || r->positions_only) return 1; /* where: "" if out of memory */
+    if (!o->bad_line_count++) o->bad_line = *error;
+    error->what[0] = error->where[0] = '\0';
+    if (text_is(keyword, "v")) { /* of one whose colour alone is wrong the position stays */
+        kept = (o->positions.count > positions || buffer_append(&o->positions, unread, sizeof unread)) &&
+               (o->colors.count > colors || buffer_append(&o->colors, white, sizeof white));
+    } else if (text_is(keyword, "vt")) {
+        kept = buffer_append(&o->uvs, unread, 2 * sizeof *unread) != NULL;
+    } else if (text_is(keyword, "vn")) {
+        kept = buffer_append(&o->normals, unread, sizeof unread) != NULL;
+    }
+    return kept ? 0 : out_of_memory(r);
 }
 
 static void skip_rest(text_scan *s)
@@ -300,7 +324,7 @@ static int read_lines(reader *r)
 {
     while (text_next_line(&r->scan)) {
         const text_word keyword = text_next_on_line(&r->scan);
-        if (read_line(r, keyword)) return 1;
+        if (try_line(r, keyword)) return 1;
         skip_rest(&r->scan);
     }
     return 0;
@@ -326,12 +350,11 @@ int obj_text_read(const char *path, int positions_only, obj_text *out, model_err
     join_lines(text, bytes);
     text_start(&r.scan, text, bytes, error);
     failed = read_lines(&r);
-    if (!failed && obj_position_count(out) == 0) {
-        failed = model_fail(error, "", "it has no position ('v X Y Z'), and may not be an OBJ file");
-    }
-    if (!failed && !positions_only && obj_part_count(out) == 0) {
-        failed = model_fail(error, "", "it has no face ('f A B C'), and so nothing to convert");
-        if (out->bad_face_count) *error = out->bad_face;
+    if (!failed && (obj_position_count(out) == 0 || (!positions_only && obj_part_count(out) == 0))) {
+        failed = model_fail(error, "", "%s",
+                            obj_position_count(out) ? "it has no face ('f A B C'), and so nothing to convert"
+                                                    : "it has no position ('v X Y Z'), and may not be an OBJ file");
+        if (out->bad_line_count) *error = out->bad_line;
     }
     free(r.material);
     buffer_free(&r.face);
