@@ -159,7 +159,8 @@ async function faces(browser) {
     await close(page, 'face');
 }
 
-// The shadow of a body falls on the floor, not on nothing: below its middle, and darker than without.
+// The shadow of a body falls on the floor, not on nothing: below its middle, and darker than without. Edges of shadows on
+// the body itself are a little lighter over a floor, where its depth takes the place of nothing.
 async function floors(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, 'clip=none&light=room&background=plain&floor=on');
     const lines = (name) => keep(page, name).then(() => page.evaluate(() => {
@@ -168,20 +169,21 @@ async function floors(browser) {
         return Array.from({ length: height }, (_, y) => rgba.subarray(4 * width * y, 4 * width * (y + 1)).reduce((a, b) => a + b, 0));
     }));
     const tell = (what) => drawn(page, () => page.evaluate((w) => character.setLight(w), what));
+    const edges = 400, near = (sum, other) => Math.abs(sum - other) <= edges;
     const on = await lines('floor_on.png');
     await tell({ floor: false });
     const off = await lines('floor_off.png'), half = on.length / 2;
-    check('floor: the shadow on it is dark', on.every((sum, y) => sum <= off[y]) && on.some((sum, y) => sum < off[y] - 500));
-    check('floor: and lies below', on.every((sum, y) => y < half || sum === off[y]));
+    check('floor: the shadow on it is dark', on.every((sum, y) => sum <= off[y] + edges) && on.some((sum, y) => sum < off[y] - 10 * edges));
+    check('floor: and lies below', on.every((sum, y) => y < half || near(sum, off[y])));
     await tell({ floor: true });
     await loseAndRestore(page);
     await keep(page, 'floor_again.png');
     check('floor: after a lost context it is the same picture', same('floor_on.png', 'floor_again.png'));
     await drawn(page, () => page.evaluate(() => character.turn(0, -0.6)));
-    await keep(page, 'floor_below.png');
+    const below = await lines('floor_below.png');
     await tell({ floor: false });
-    await keep(page, 'floor_below_off.png');
-    check('floor: from below there is none', same('floor_below.png', 'floor_below_off.png'));
+    const none = await lines('floor_below_off.png');
+    check('floor: from below there is none', below.every((sum, y) => near(sum, none[y])));
     await close(page, 'floor');
 }
 
