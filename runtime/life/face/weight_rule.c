@@ -51,15 +51,17 @@ static int read_range(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
     return 1;
 }
 
-static int read_opposite(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
+/* A row whose channel is a mark and the name of another target. */
+static int read_pair(const noh_mesh *mesh, uint32_t row, char mark, noh_weight_rule_kind kind, float high,
+                     noh_weight_rule *rule)
 {
     const char *channel = channel_of(mesh->pack, row);
     uint32_t target, other;
-    if (channel[0] != '-') return 0;
+    if (channel[0] != mark) return 0;
     target = find(mesh, target_of(mesh->pack, row));
     other = find(mesh, channel + 1);
     if (target == NOH_NONE || other == NOH_NONE || target == other) return 0;
-    *rule = (noh_weight_rule){ NOH_WEIGHT_OPPOSE, (uint16_t)target, (uint16_t)other, 0, 0.0f, 0.0f };
+    *rule = (noh_weight_rule){ (uint16_t)kind, (uint16_t)target, (uint16_t)other, 0, 0.0f, high };
     return 1;
 }
 
@@ -88,30 +90,16 @@ static int read_binary(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule
     return 1;
 }
 
-static int read_expression(const noh_mesh *mesh, uint32_t row, noh_weight_rule *rule)
-{
-    const char *channel = channel_of(mesh->pack, row);
-    uint32_t target, other;
-    if (channel[0] != ':') return 0;
-    target = find(mesh, target_of(mesh->pack, row));
-    other = find(mesh, channel + 1);
-    if (target == NOH_NONE || other == NOH_NONE || target == other) return 0;
-    *rule = (noh_weight_rule){
-        NOH_WEIGHT_ADD, (uint16_t)target, (uint16_t)other, 0, 0.0f, mesh->pack->recipe_rows[row].weight
-    };
-    return 1;
-}
-
 static int read_row(const noh_mesh *mesh, uint32_t row, noh_weight_rule_kind kind, noh_weight_rule *rule)
 {
     switch (kind) {
     case NOH_WEIGHT_RANGE: return read_range(mesh, row, rule);
-    case NOH_WEIGHT_OPPOSE: return read_opposite(mesh, row, rule);
+    case NOH_WEIGHT_OPPOSE: return read_pair(mesh, row, '-', kind, 0.0f, rule);
     case NOH_WEIGHT_SHARE: return read_share(mesh, row, rule);
     case NOH_WEIGHT_BINARY: return read_binary(mesh, row, rule);
     case NOH_WEIGHT_ADD: break;
     }
-    return read_expression(mesh, row, rule);
+    return read_pair(mesh, row, ':', kind, mesh->pack->recipe_rows[row].weight, rule);
 }
 
 static uint32_t bind(const noh_mesh *mesh, noh_weight_rule_kind first, noh_weight_rule_kind last,

@@ -45,6 +45,7 @@ NOH_STATIC_ASSERT(sizeof(match_state) == 48, stage_match_state);
 /* What a kind's actors share. */
 typedef struct match_kind {
     noh_match_table table;
+    const noh_pack *pack; /* that has it */
     noh_kind_match desc;  /* defaults filled in */
     uint32_t *clips;      /* [table's clip_count] in the kind's set */
     uint16_t *table_clip; /* [the set's clip_count] 1 + in the table; 0: not there */
@@ -128,13 +129,13 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     return NOH_OK;
 }
 
-static noh_result bind_clips(const noh_stage_kind *k, const noh_pack *pack, match_kind *m, noh_error *error)
+static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *error)
 {
     const noh_pack_match_header *h = m->table.header;
     memset(m->table_clip, 0, k->set.clip_count * sizeof *m->table_clip);
     for (uint32_t i = 0; i < h->clip_count; i++) {
         const noh_pack_match_clip *c = &m->table.clips[i];
-        const uint32_t clip = noh_clip_bank_find(k->bank, noh_pack_string(pack, c->name));
+        const uint32_t clip = noh_clip_bank_find(k->bank, noh_pack_string(m->pack, c->name));
         if (clip == NOH_NONE) {
             return noh_fail(error, NOH_ERR_NOT_FOUND,
                             "match of a kind: its packs lack a clip of the table: add the pack that has it", i, 0);
@@ -160,10 +161,11 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     }
     m = carve(&arena, table.header, k->bank->clips.clip_count);
     m->table = table;
+    m->pack = pack;
     m->desc = filled(desc);
     memset(m->places, 0, table.header->row_count * sizeof *m->places);
     for (uint32_t i = 0; i < table.header->row_count; i++) m->places[table.order[i]] = (uint16_t)i;
-    return bind_clips(k, pack, m, error);
+    return bind_clips(k, m, error);
 }
 
 /* ---- springs ---- */
@@ -350,18 +352,15 @@ static void steer(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t tick
 
 /* ---- goals ---- */
 
-static noh_result find_tags(const noh_stage_kind *k, const match_kind *m, const char *tags, uint32_t *out,
-                            noh_error *error)
+static noh_result find_tags(const match_kind *m, const char *tags, uint32_t *out, noh_error *error)
 {
-    noh_match_table table;
-    const noh_pack *pack = find_table(k->desc, &table);
     const char *at = tags;
     noh_stage_word word;
     *out = 0;
     while (tags && noh_stage_next_word(&at, &word)) {
         uint32_t i = 0;
         while (i < m->table.header->tag_count &&
-               !noh_stage_word_matches(&word, noh_pack_string(pack, m->table.tags[i].name)))
+               !noh_stage_word_matches(&word, noh_pack_string(m->pack, m->table.tags[i].name)))
             i++;
         if (i == m->table.header->tag_count) {
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the table of the kind has no such tag: noh info lists them",
@@ -411,7 +410,7 @@ noh_result noh_actor_match(noh_stage *stage, noh_actor actor, const noh_match_go
         return noh_fail(error, NOH_ERR_ARG, "velocity or facing of a goal is not a number, or out of its range",
                         actor.id & 0xffffu, 0);
     }
-    result = find_tags(k, m, goal->tags, &tags, error);
+    result = find_tags(m, goal->tags, &tags, error);
     if (result != NOH_OK) return result;
     if (!g->has_goal) {
         g->has_goal = 1;
