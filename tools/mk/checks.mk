@@ -155,7 +155,7 @@ CROSS_C     := $(wildcard tests/cross/*.c) $(or $(filter %.c,$(if $(CROSS),$(CRO
                $(addprefix tests/support/,support.c pack_walk.c) $(filter-out %/webp_file.c,$(CONVERT_C))
 CROSS_O     := $(CROSS_C:%.c=$(BUILD)/%.o) $(KERNELS) $(TEST_KERNELS)
 ifneq ($(CROSS),)
-INCLUDES    += -Itests/cross -idirafter /usr/include
+INCLUDES    += $(addprefix -I,$(wildcard tests/cross/$(CROSS))) -Itests/cross -idirafter /usr/include
 $(BUILD)/tests/%.o $(BUILD)/tools/%.o: INCLUDES += $(addprefix -include ,$(filter %.h,$(CROSS_OWN)))
 endif
 

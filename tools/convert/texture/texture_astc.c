@@ -5,9 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#ifndef _WIN32
 #include <sys/wait.h>
-#endif
 #include <unistd.h>
 
 #include "core/pack/pack_internal.h"
@@ -21,13 +19,6 @@
 /* ---- the program ---- */
 
 /* Its status, without what it prints; -1: it cannot be started. */
-#ifdef _WIN32 /* the library and its tests are built there, the tool is not */
-static int run(const char *const *arguments)
-{
-    (void)arguments;
-    return -1;
-}
-#else
 static int run(const char *const *arguments)
 {
     int status = 0;
@@ -43,7 +34,6 @@ static int run(const char *const *arguments)
     if (child < 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return -1;
     return WEXITSTATUS(status) == 127 ? -1 : WEXITSTATUS(status);
 }
-#endif
 
 int texture_astc_find(model_error *error)
 {
