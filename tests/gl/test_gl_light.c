@@ -165,6 +165,23 @@ static void a_key_light_falls_by_the_cosine(void **state)
 
 #define SHADOW_PX 256u
 
+/* Draw the shadow map of a mesh, and of the square at `above`, if any, in light from a direction, within a sphere. */
+static void cast_shadow(scene *s, int mesh, const float above[12], const float sphere[4], const float to_light[3],
+                        noh_lighting *lighting)
+{
+    noh_stage_view view;
+    noh_gl_camera from_light = scene_front();
+    noh_view_shadow(&view, sphere, to_light);
+    noh_lighting_shadow(lighting, view.view_projection, sphere[3], SHADOW_PX);
+    memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
+    noh_gl_light_begin_shadow(&s->light);
+    noh_gl_draw_begin(&s->renderer, &from_light);
+    scene_draw_mesh(s, mesh, scene_identity, NOH_DRAW_DEPTH);
+    if (above) scene_draw_mesh(s, SQUARE, above, NOH_DRAW_DEPTH);
+    noh_gl_draw_end(&s->renderer);
+    noh_gl_light_end_shadow(&s->light, view.view_projection, lighting);
+}
+
 /* A square of half a side 0.3 floats 0.8 above one that fills the picture; the light comes aslant. */
 static void a_square_casts_its_shadow(void **state)
 {
@@ -172,8 +189,6 @@ static void a_square_casts_its_shadow(void **state)
     const float above[12] = { 0.3f, 0, 0, 0, 0, 0.3f, 0, 0, 0, 0, 1, 0.8f };
     const float to_light[3] = { 0.48f, 0.36f, 0.8f };
     const double shift[2] = { -0.8 * 0.48 / 0.8, -0.8 * 0.36 / 0.8 }, texel = 2.0 * 1.6 / SHADOW_PX;
-    noh_stage_view view;
-    noh_gl_camera from_light = scene_front();
     noh_lighting lighting;
     uint32_t dark = 0, lit = 0;
     uint8_t *rgba;
@@ -181,15 +196,7 @@ static void a_square_casts_its_shadow(void **state)
     (void)state;
     open_scene(&s, &scene_black, SHADOW_PX, flat);
     key_alone(to_light, &lighting);
-    noh_view_shadow(&view, sphere, to_light);
-    noh_lighting_shadow(&lighting, view.view_projection, sphere[3], SHADOW_PX);
-    memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
-    noh_gl_light_begin_shadow(&s.light);
-    noh_gl_draw_begin(&s.renderer, &from_light);
-    scene_draw_mesh(&s, SQUARE, scene_identity, NOH_DRAW_DEPTH);
-    scene_draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
-    noh_gl_draw_end(&s.renderer);
-    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
+    cast_shadow(&s, SQUARE, above, sphere, to_light, &lighting);
     rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE) - shift[0], y = -pixel_at(p / SIDE) - shift[1];
@@ -214,22 +221,12 @@ static uint32_t edge_pixels(float height, uint32_t *dark, uint32_t *lit)
 {
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, sphere[4] = { 0.0f, 0.0f, 0.0f, 1.6f };
     const float above[12] = { 0.3f, 0, 0, 0, 0, 0.3f, 0, 0, 0, 0, 1, height }, to_light[3] = { 0.0f, 0.0f, 1.0f };
-    noh_stage_view view;
-    noh_gl_camera from_light = scene_front();
     noh_lighting lighting;
     uint32_t between = 0;
     scene s;
     open_scene(&s, &scene_black, SHADOW_PX | SCENE_SOFT, flat);
     key_alone(to_light, &lighting);
-    noh_view_shadow(&view, sphere, to_light);
-    noh_lighting_shadow(&lighting, view.view_projection, sphere[3], SHADOW_PX);
-    memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
-    noh_gl_light_begin_shadow(&s.light);
-    noh_gl_draw_begin(&s.renderer, &from_light);
-    scene_draw_mesh(&s, SQUARE, scene_identity, NOH_DRAW_DEPTH);
-    scene_draw_mesh(&s, SQUARE, above, NOH_DRAW_DEPTH);
-    noh_gl_draw_end(&s.renderer);
-    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
+    cast_shadow(&s, SQUARE, above, sphere, to_light, &lighting);
     uint8_t *rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
     *dark = *lit = 0;
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
@@ -264,22 +261,13 @@ static void check_itself(uint32_t shadow_px)
 {
     static const float flat[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, all[4] = { 0.0f, 0.0f, 0.0f, 1.1f };
     const float to_light[3] = { 0.6f, 0.0f, 0.8f };
-    noh_stage_view view;
-    noh_gl_camera from_light = scene_front();
     noh_lighting lighting;
     scene s;
     uint8_t *with, *without;
     open_scene(&s, &scene_black, shadow_px, flat);
     key_alone(to_light, &lighting);
     without = scene_draw(&s, SPHERE, scene_identity, &lighting);
-    noh_view_shadow(&view, all, to_light);
-    noh_lighting_shadow(&lighting, view.view_projection, all[3], SHADOW_PX);
-    memcpy(from_light.view_projection, view.view_projection, sizeof view.view_projection);
-    noh_gl_light_begin_shadow(&s.light);
-    noh_gl_draw_begin(&s.renderer, &from_light);
-    scene_draw_mesh(&s, SPHERE, scene_identity, NOH_DRAW_DEPTH);
-    noh_gl_draw_end(&s.renderer);
-    noh_gl_light_end_shadow(&s.light, view.view_projection, &lighting);
+    cast_shadow(&s, SPHERE, NULL, all, to_light, &lighting);
     with = scene_draw(&s, SPHERE, scene_identity, &lighting);
     for (uint32_t p = 0; p < SIDE * SIDE; p++) {
         const double x = pixel_at(p % SIDE), y = pixel_at(p / SIDE), z2 = 1.0 - x * x - y * y;
