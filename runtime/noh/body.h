@@ -409,9 +409,6 @@ typedef struct noh_gaze_rig {
 /* ======== chains of joints ========
  * Inverse kinematics of chains of any length: tails, tentacles, a reaching spine.
  *
- *   noh_ik_chain_solve   turn the joints of a chain until its end meets a target
- *   noh_ik_limit_apply   clamp one joint's rotation to its limits
- *
  * Three solvers, all iterative, all with limits:
  *   NOH_IK_CCD      turns one joint after the other, the last first. Curls the end of the chain most
  *   NOH_IK_FABRIK   drags the joints along, to and from the target. Fewest iterations: tails
@@ -455,11 +452,6 @@ typedef struct noh_ik_chain_result {
  * errors     ARG a count of 0 or above NOH_IK_JOINTS_MAX, or a target that is not finite; nothing is written */
 noh_result noh_ik_chain_solve(const noh_ik_chain *chain, noh_ik_solver solver, const float target[3], float tolerance,
                               uint32_t iterations, float *rotations, noh_ik_chain_result *result, noh_error *error);
-
-/* Clamp a local rotation to a limit.
- * bone  [3] the joint's bone, the axis of twist, in the joint's space
- * bind  [4] or NULL: the identity */
-void noh_ik_limit_apply(const noh_ik_limit *limit, const float bone[3], const float *bind, float rotation[4]);
 
 /* ======== reach ======== */
 

@@ -323,7 +323,8 @@ int noh_walkers_is_down(const noh_walkers *walkers, uint32_t index);
  * going_ticks, it loses the slot and is FREE. noh_smart_leave frees its slot at once.
  *
  * No agent starves: a free slot goes to the agent that has waited longest for its need. With n agents, s slots for a
- * need and no slot held longer than h ticks (noh_smart_hold_ticks), no agent waits longer than ceil(n / s) h.
+ * need, no agent waits longer than ceil(n / s) h: h is the largest sum of a slot's going, enter, use and leave ticks,
+ * plus five steps, since each of four phases may end a step late and a slot is passed on in the next.
  *
  * Results do not depend on addresses, and ties are broken by index: the same bits everywhere. The block has no
  * pointers, so a copy continues identically.
@@ -416,10 +417,6 @@ uint32_t noh_smart_most(const noh_smart *smart, uint32_t agent, float least);
 const noh_smart_slot *noh_smart_slot_at(const noh_smart *smart, uint32_t slot);
 /* The agent that holds a slot; NOH_NONE: it is free. */
 uint32_t noh_smart_holder(const noh_smart *smart, uint32_t slot);
-
-/* The longest time that a slot for a need may be held, with steps of at most `step_ticks`; the bound on waiting follows
- * from it. 0: no object satisfies the need. */
-uint32_t noh_smart_hold_ticks(const noh_smart *smart, uint32_t need, uint32_t step_ticks);
 
 #ifdef __cplusplus
 }

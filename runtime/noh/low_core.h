@@ -113,11 +113,6 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
 /* ======== trigonometry ========
  * Trigonometry for sampling and simulation, without libm.
  *
- *   noh_sin_cos        sine and cosine of an angle in radians
- *   noh_sin_cos_turn   sine and cosine of a 32-bit fraction of a turn
- *   noh_atan2          the angle of a direction
- *   noh_acos           the angle of a cosine, clamped
- *
  * Chebyshev fits of the reduced functions, from sums, products, quotients and square roots only: the same bits on every
  * machine. Errors compare the float result with the exact function of the float argument, measured by the tests over
  * the stated range.
@@ -128,24 +123,9 @@ static inline float noh_quat_dot(const float a[4], const float b[4])
 
 #define NOH_PI 3.14159265358979f
 
-/* Sine and cosine of an angle.
- * ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
- * errors  at most 1.2e-7 absolute */
-void noh_sin_cos(float radians, float *sine, float *cosine);
-
 /* Sine and cosine of a turn.
  * errors  at most 1.2e-7 absolute; exact at quarter turns; the sine near 0 at most 3e-7 relative */
 void noh_sin_cos_turn(uint32_t turn, float *sine, float *cosine);
-
-/* The angle of the direction (x, y), -pi to pi; 0 for (0, 0).
- * ranges  finite
- * errors  at most 4e-7 absolute, 3e-7 relative near 0 */
-float noh_atan2(float y, float x);
-
-/* The angle whose cosine is x, 0 to pi.
- * ranges  x is clamped to -1..1, because rounding can move a dot product of unit vectors outside
- * errors  at most 4e-7 */
-float noh_acos(float x);
 
 /* ======== packs ======== */
 

@@ -96,13 +96,6 @@ float noh_atan2(float y, float x)
     return y < 0.0f ? -angle : angle;
 }
 
-/* acos(x) = atan2(sqrt(1 - x^2), x); the product of 1 - x and 1 + x does not cancel near 1, as 1 - x^2 does. */
-float noh_acos(float x)
-{
-    float c = x < -1.0f ? -1.0f : x > 1.0f ? 1.0f : x;
-    return noh_atan2(noh_sqrt((1.0f - c) * (1.0f + c)), c);
-}
-
 /* 2^x = 2^whole * 2^f with |f| <= 1/2: the first factor is written into the exponent's bits, the second is a
  * polynomial. */
 float noh_exp2(float x)

@@ -10,6 +10,16 @@
 extern "C" {
 #endif
 
+/* Sine and cosine of an angle.
+ * ranges  |radians| <= 1e6; outside (and for NaN) the angle is taken as 0
+ * errors  at most 1.2e-7 absolute */
+void noh_sin_cos(float radians, float *sine, float *cosine);
+
+/* The angle of the direction (x, y), -pi to pi; 0 for (0, 0).
+ * ranges  finite
+ * errors  at most 4e-7 absolute, 3e-7 relative near 0 */
+float noh_atan2(float y, float x);
+
 /* 2 to the power x.
  * ranges  below -126 the result is 0, above 127.999 it is 2^127.999
  * errors  at most 2e-7 relative */

@@ -8,6 +8,7 @@
  * fade never passes its goal; mouth shapes are limited to a sum of 1. */
 #include <string.h>
 
+#include "core/base/trig_internal.h"
 #include "core/base/assert_internal.h"
 #include "life/face/face_internal.h"
 #include "noh/face.h"

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 #include "core/base/assert_internal.h"
 #include "life/face/face_internal.h"
 #include "noh/base.h"

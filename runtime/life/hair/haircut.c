@@ -1,3 +1,4 @@
+#include "core/base/trig_internal.h"
 #include "life/hair/haircut_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"

@@ -1,4 +1,5 @@
 /* ragdoll.c: sets of ragdolls: memory, input and output, sleep. */
+#include "core/base/trig_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"

@@ -1,4 +1,5 @@
 /* ragdoll_measure.c: how far a ragdoll violates its joints' limits and the world. */
+#include "core/base/trig_internal.h"
 #include "core/base/assert_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "noh/body.h"

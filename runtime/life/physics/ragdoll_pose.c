@@ -1,4 +1,5 @@
 /* ragdoll_pose.c: converts between poses of a skeleton and bodies of a ragdoll. */
+#include "core/base/trig_internal.h"
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"

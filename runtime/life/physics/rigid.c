@@ -1,4 +1,5 @@
 /* rigid.c: a free rigid body: exact flight, rotation by splitting, contacts by impulses. */
+#include "core/base/trig_internal.h"
 #include "life/physics/rigid_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"

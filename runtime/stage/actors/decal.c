@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #define MERGE 0.25f /* of a size: a decal replaces another one that close */

@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 #include "motion/anim/clock_internal.h"
 #include "stage/character/character_internal.h"
 #include "stage/cast/stage_face_internal.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #define HALF_VIEW_RAD 0.349066f

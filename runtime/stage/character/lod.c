@@ -7,6 +7,7 @@
 
 #include "motion/anim/clock_internal.h"
 #include "core/base/math_internal.h"
+#include "core/base/trig_internal.h"
 
 #define NEAREST_M 1e-3f
 

@@ -414,20 +414,3 @@ uint32_t noh_smart_holder(const noh_smart *smart, uint32_t slot)
     NOH_ASSERT(smart && slot < smart->slot_count);
     return slots_of(smart)[slot].holder;
 }
-
-uint32_t noh_smart_hold_ticks(const noh_smart *smart, uint32_t need, uint32_t step_ticks)
-{
-    uint32_t most = 0;
-    NOH_ASSERT(smart);
-    for (uint32_t i = 0; i < smart->object_count; i++) {
-        const noh_smart_object *o = &objects_of(smart)[i];
-        for (uint32_t k = o->first_slot; o->need == need && k < o->first_slot + o->slot_count; k++) {
-            const noh_smart_slot *s = &slots_of(smart)[k].slot;
-            const uint64_t ticks = (uint64_t)o->going_ticks + s->enter_ticks + s->use_ticks + s->leave_ticks;
-            const uint64_t with_ends = ticks +
-                                       5u * (uint64_t)step_ticks; /* four phases end late, and one is passed on */
-            most = with_ends > 0xffffffffu ? 0xffffffffu : with_ends > most ? (uint32_t)with_ends : most;
-        }
-    }
-    return most;
-}

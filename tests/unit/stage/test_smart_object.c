@@ -84,6 +84,20 @@ static uint32_t object_of(const town *t, uint32_t slot)
     return i;
 }
 
+/* The longest time that a slot for a need may be held: four phases end late, and the slot is passed on in the next
+ * step. */
+static uint64_t hold_ticks(const town *t, uint32_t need)
+{
+    uint64_t most = 0;
+    for (uint32_t k = 0; k < SLOTS; k++) {
+        const noh_smart_object *o = &t->objects[object_of(t, k)];
+        const noh_smart_slot *s = &t->slots[k];
+        const uint64_t ticks = (uint64_t)o->going_ticks + s->enter_ticks + s->use_ticks + s->leave_ticks + 5u * STEP_MAX;
+        if (o->need == need && ticks > most) most = ticks;
+    }
+    return most;
+}
+
 static int is_held(const model_town *m, uint32_t slot)
 {
     for (uint32_t i = 0; i < AGENTS; i++) {
@@ -262,7 +276,7 @@ static void a_million_reservations_agree_with_the_model(void **state)
     }
     for (uint32_t n = 0; n < 3u; n++) {
         const uint32_t slots = n == 0 ? 4u : n == 1 ? 3u : 6u;
-        const uint64_t bound = (uint64_t)noh_smart_hold_ticks(t.smart, n, STEP_MAX) * ((AGENTS + slots - 1u) / slots);
+        const uint64_t bound = hold_ticks(&t, n) * ((AGENTS + slots - 1u) / slots);
         printf("  need %u: none waited longer than %.2f s; at most %.2f can\n", n, (double)m.longest[n] / 48000.0,
                (double)bound / 48000.0);
         assert_true(m.longest[n] > 48000u / 4u && m.longest[n] <= bound);
