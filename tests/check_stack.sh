@@ -26,7 +26,7 @@ done
 # The functions of the stage's modules (module_internal.h), as "FIELD FILE:FUNCTION": a call of one of the fields is as
 # deep as the deepest of its functions.
 awk '/^ +\.[a-z_]+ = [a-z_]+,$/ { sub(/,/, ""); print substr($1, 2), FILENAME ":" $3; print substr($1, 2), $3 }' \
-    runtime/stage/cast/*.c >"$work/fields"
+    runtime/stage/modules/*.c >"$work/fields"
 
 # Node lines hold "NAME\nFILE:LINE\nN bytes (static)", edge lines two names and "FILE:LINE:COLUMN" of the call.
 cat "$work"/*.ci | awk -v limit="$limit" -v fields="$work/fields" '

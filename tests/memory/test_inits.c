@@ -19,7 +19,7 @@
 #include "motion/clip/clip_view_internal.h"
 #include "stage/character/character_internal.h"
 #include "life/hair/hair_internal.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/low_stage.h"
 
 #include <dirent.h>

@@ -7,7 +7,7 @@
 #include "motion/graph/graph_internal.h"
 #include "motion/graph/graph_pack_internal.h"
 #include "motion/match/match_internal.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

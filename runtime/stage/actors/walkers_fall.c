@@ -9,7 +9,7 @@
 #include "noh/low_core.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 #include "stage/actors/walkers_internal.h"
 
 #define FADE_TICKS (NOH_TICKS_PER_SECOND * 3u / 10u) /* from the get-up clip */

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/modules.h"
 
 /* A triangle that node 0 moves, and a head with a strand of three joints and an end; `nodes` may add to these. */

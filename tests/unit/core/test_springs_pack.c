@@ -5,7 +5,7 @@
 #include <stdlib.h>
 
 #include "support/pack_walk.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/modules.h"
 
 static uint8_t *good;

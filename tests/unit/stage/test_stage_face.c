@@ -2,7 +2,7 @@
  * what is calm; bytes, states and jobs. */
 #include "support/stage_fixture.h"
 #include "life/face/identity_internal.h"
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 
 #include <math.h>
 

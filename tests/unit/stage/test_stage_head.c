@@ -1,7 +1,7 @@
 /* Heads without joints: they turn as a whole, with eyes that keep their aim, within their reach, and under rays; in
  * what is attached; in any number of jobs. */
 #include "support/stage_fixture.h"
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #include "core/base/math_internal.h"

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "life/reach/feet_internal.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/clip.h"

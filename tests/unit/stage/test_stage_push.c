@@ -8,7 +8,7 @@
 #include "noh/clip.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 #include <math.h>
 #include <string.h>

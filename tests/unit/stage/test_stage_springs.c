@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "support/stage_fixture.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/base.h"
 #include "noh/modules.h"
 

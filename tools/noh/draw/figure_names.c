@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/modules.h"

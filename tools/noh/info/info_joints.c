@@ -3,7 +3,7 @@
 #include <stdio.h>
 
 #include "cli/message.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"

@@ -18,7 +18,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/cast/springs_internal.h"
+#include "stage/modules/springs_internal.h"
 
 /* A chain as jobs use it. */
 typedef struct swing {

@@ -15,7 +15,7 @@
 #include "core/base/math_internal.h"
 #include "core/base/name_internal.h"
 #include "deform/pick/bounds_internal.h"
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 #include "life/face/face_internal.h"
 
 /* ---- joints ---- */

@@ -1,5 +1,5 @@
 /* stage_person.c: an actor as a person: held floats, and lids that shut. */
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 #include "core/base/assert_internal.h"
 #include "life/face/identity_internal.h"
 #include "noh/base.h"

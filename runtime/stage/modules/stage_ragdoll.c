@@ -18,7 +18,7 @@
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 /* ---- made ---- */
 

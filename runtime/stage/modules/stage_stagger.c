@@ -17,8 +17,8 @@
 #include "noh/low_life.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_legs_internal.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_legs_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 /* Lengths are in legs, times in seconds. */
 #define PIECE_TICKS 200u /* of 1/240 s */

@@ -17,7 +17,7 @@
 #include "core/base/trig_internal.h"
 #include "motion/anim/clock_internal.h"
 #include "stage/character/character_internal.h"
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 #include "stage/character/time_lod_internal.h"
 
 #define SKIP_TICKS 96000 /* longer than 2 s unseen: skipped, not lived through */

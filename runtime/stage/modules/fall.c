@@ -8,7 +8,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 #define CHEST 0.75f /* of the way up */
 

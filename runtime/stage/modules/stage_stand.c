@@ -16,7 +16,7 @@
 #include "noh/low_life.h"
 #include "noh/modules.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/cast/stage_legs_internal.h"
+#include "stage/modules/stage_legs_internal.h"
 
 #define SECONDS(s) ((uint32_t)((s) * (float)NOH_TICKS_PER_SECOND))
 #define ARM_OUT 0.24f /* of a lowered upper arm, relative to its height */

@@ -18,7 +18,7 @@
 #include "core/base/name_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 #include "life/physics/shape_internal.h"
 #include "life/physics/ragdoll_internal.h"
 

@@ -13,7 +13,7 @@
 #include "noh/low_life.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_ragdoll_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 #define SPIN_MAX 0.7f /* of the rate at which a pendulum as high as the centre of mass falls over */
 #define ARM_HERTZ 6.0f

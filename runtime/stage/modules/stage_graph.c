@@ -11,7 +11,7 @@
 #include "noh/noh.h"
 #include "noh/pack.h"
 #include "core/base/name_internal.h"
-#include "stage/cast/stage_graph_internal.h"
+#include "stage/modules/stage_graph_internal.h"
 
 /* ---- which ---- */
 

@@ -1,6 +1,6 @@
 /* springs_internal.h: springs of a kind from a description. */
-#ifndef NOH_CAST_SPRINGS_INTERNAL_H
-#define NOH_CAST_SPRINGS_INTERNAL_H
+#ifndef NOH_STAGE_SPRINGS_INTERNAL_H
+#define NOH_STAGE_SPRINGS_INTERNAL_H
 
 #include "noh/modules.h"
 

@@ -12,7 +12,7 @@
 #include "noh/low_motion.h"
 #include "noh/low_stage.h"
 #include "noh/noh.h"
-#include "stage/cast/stage_graph_internal.h"
+#include "stage/modules/stage_graph_internal.h"
 #include "motion/graph/graph_pack_internal.h"
 
 /* ---- what plays ---- */

@@ -14,7 +14,7 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/pack.h"
-#include "stage/cast/stage_face_internal.h"
+#include "stage/modules/stage_face_internal.h"
 
 #define BEHIND_LIDS 0.19f /* of the distance of the eyes: their centres lie behind the lids, and behind their fronts */
 #define APART_MIN 1e-3f   /* model units */

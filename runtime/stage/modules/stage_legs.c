@@ -1,5 +1,5 @@
 /* stage_legs.c: legs of a pose that keep their feet where they are wanted while the pelvis moves. */
-#include "stage/cast/stage_legs_internal.h"
+#include "stage/modules/stage_legs_internal.h"
 
 #include <string.h>
 

@@ -9,7 +9,7 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
-#include "stage/cast/stage_stagger_internal.h"
+#include "stage/modules/stage_stagger_internal.h"
 
 #ifdef __cplusplus
 extern "C" {
