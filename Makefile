@@ -112,7 +112,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # Skinning kernels and lanes built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE phones phones-update mutants check-long deps-long ear-tables install install-lib uninstall amalgam docs examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes release release-check api-update
+.PHONY: FORCE phones phones-update mutants check-long deps-long ear-tables install install-lib uninstall amalgam docs pictures examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look-compare lib tests demo-run check-run fuzz sizes release release-check api-update
 .SECONDARY:
 .DELETE_ON_ERROR:
 
@@ -144,6 +144,7 @@ help:
 	@echo 'make sizes      code and data of the library for each processor, with what changed since the last commit'
 	@echo 'make amalgam    the library as one source file, $(BUILD)/amalgam/noh.c, and its public headers'
 	@echo 'make docs       the API reference out of the headers, $(BUILD)/docs/html/index.html'
+	@echo 'make pictures   the pictures of the documents, drawn again (PICTURES=WORD: some)'
 	@echo 'make install    PREFIX=/usr/local DESTDIR=: the tools, and the library for pkg-config and CMake; make uninstall'
 	@echo 'make install-lib  the library alone, without a C++ compiler (CC=, AR=: for another processor)'
 	@echo 'make release    source archive, Debian and npm packages, port, recipe, SPDX list and checksums: build/release/;'

@@ -72,3 +72,6 @@ deps-docs:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh docs
 docs: deps-docs
 	@NOH_BUILD="$(BUILD)" VERSION="$(VERSION)" sh tools/docs/docs.sh
+pictures: $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/mask_levels.noh $(BUILD)/wig.noh \
+    $(addprefix $(BUILD)/demo/,nell.noh puppet.noh puppet_levels.noh puppet_falls.noh)
+	@sh tools/docs/pictures.sh "$(BUILD)" $(PICTURES)
