@@ -1,4 +1,4 @@
-/* world.c: checks of a world, and its height field. */
+/* world.c: checks of a world, its height field, and rays against it. */
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_life.h"
@@ -7,6 +7,9 @@
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/shape_internal.h"
+
+#define NO_HIT 1e30f
+#define STEEP 0.5f /* the normal's y of a plane that is a wall, at most */
 
 /* ---- checks ---- */
 
@@ -220,4 +223,55 @@ float noh_field_ray(const noh_field *f, const noh_ray *ray)
         w.step[i] = ray->direction[i] / unit;
     }
     return walk_cells(&w);
+}
+
+/* ---- rays against all of it ---- */
+
+/* The distance to the nearest box or capsule; NO_HIT: there is none. */
+static float ray_shapes(const noh_world *w, const float origin[3], const noh_ray *ray)
+{
+    float nearest = NO_HIT;
+    for (uint32_t i = 0; i < w->box_count; i++) {
+        noh_obb box = w->boxes[i];
+        noh_sub3(box.centre, origin, box.centre);
+        const float far = noh_ray_obb(ray, &box);
+        if (far > 0.0f && far < nearest) nearest = far;
+    }
+    for (uint32_t i = 0; i < w->capsule_count; i++) {
+        const noh_capsule *c = &w->capsules[i];
+        float from[3], to[3];
+        noh_sub3(c->from, origin, from);
+        noh_sub3(c->to, origin, to);
+        const float far = noh_ray_capsule(ray, from, to, c->radius);
+        if (far > 0.0f && far < nearest) nearest = far;
+    }
+    return nearest;
+}
+
+int noh_world_ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
+{
+    const noh_ray down = { { at[0], top, at[2] }, { 0.0f, -1.0f, 0.0f }, NO_HIT };
+    float found = top - ray_shapes(w, origin, &down), y;
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        const float *n = w->planes[i].normal;
+        if (n[1] < 0.1f) continue;
+        y = (noh_plane_distance(&w->planes[i], origin) - n[0] * at[0] - n[2] * at[2]) / n[1];
+        if (y <= top && y > found) found = y;
+    }
+    if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &y, NULL) && y <= top && y > found) {
+        found = y;
+    }
+    *height = found;
+    return found > -1e29f;
+}
+
+float noh_world_wall_ahead(const noh_world *w, const float origin[3], const noh_ray *ray)
+{
+    float nearest = ray_shapes(w, origin, ray);
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        const float *n = w->planes[i].normal, towards = -noh_dot3(n, ray->direction);
+        const float over = noh_dot3(n, ray->from) - noh_plane_distance(&w->planes[i], origin);
+        if (n[1] < STEEP && towards > 1e-3f && over > 0.0f && over < nearest * towards) nearest = over / towards;
+    }
+    return nearest;
 }

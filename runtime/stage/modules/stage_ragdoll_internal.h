@@ -96,11 +96,6 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
 void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w);
-/* The highest ground at a place that is not above `top`; 0: there is none. All from the origin. */
-int noh_stage_ground_below(const noh_world *world, const float origin[3], const float at[3], float top, float *height);
-/* The distance along a level ray to a wall, in lengths of its direction; 1e30: there is none. The ray is from the
- * origin. */
-float noh_stage_wall_ahead(const noh_world *world, const float origin[3], const noh_ray *ray);
 
 /* ---- pushes ---- */
 

@@ -18,6 +18,7 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "stage/modules/stage_legs_internal.h"
+#include "life/physics/world_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
 /* Lengths are in legs, times in seconds. */
@@ -142,7 +143,7 @@ static int ground_at(const walk *w, const float off[2], uint32_t foot, float *he
     const float most = GROUND_STEP * w->leg;
     *height = 0.0f;
     if (!w->shared->world) return 1;
-    if (!noh_stage_ground_below(w->shared->world, w->body->origin, at, at[1] + most, height)) return 0;
+    if (!noh_world_ground_below(w->shared->world, w->body->origin, at, at[1] + most, height)) return 0;
     *height -= w->place[1];
     return *height > -most;
 }
@@ -155,7 +156,7 @@ static float free_part(const walk *w, const float way[2], float margin)
                           { way[0] / far, 0.0f, way[1] / far },
                           far + margin };
     if (!w->shared->world || !(far > 0.0f)) return 1.0f;
-    const float room = noh_stage_wall_ahead(w->shared->world, w->body->origin, &ray) - margin;
+    const float room = noh_world_wall_ahead(w->shared->world, w->body->origin, &ray) - margin;
     return room >= far ? 1.0f : room > 0.0f ? room / far : 0.0f;
 }
 

@@ -8,6 +8,7 @@
 #include "noh/clip.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
+#include "life/physics/world_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
 #include <math.h>
@@ -399,7 +400,7 @@ static void they_fall_down_stairs(void **state)
             const float at[3] = { b->bodies[0][n].position[0], b->bodies[0][n].position[1],
                                   b->bodies[0][n].position[2] };
             float floor;
-            assert_true(noh_stage_ground_below(&world, b->origin, at, 10.0f, &floor));
+            assert_true(noh_world_ground_below(&world, b->origin, at, 10.0f, &floor));
             deepest = fmaxf(deepest, floor - at[1]);
         }
         least = fminf(least, b->origin[1] + b->bodies[0][0].position[1]);
