@@ -34,6 +34,16 @@ static inline int noh_is_finite(float x)
     return x - x == 0.0f;
 }
 
+static inline int noh_is_finite3(const float v[3])
+{
+    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
+}
+
+static inline float noh_abs(float x)
+{
+    return x < 0.0f ? -x : x;
+}
+
 /* Small enough that what a frame computes of it stays finite. */
 static inline int noh_is_number(float x)
 {

@@ -7,6 +7,7 @@
 
 #include <string.h>
 
+#include "core/base/math_internal.h"
 #include "core/base/octahedral_internal.h"
 #include "core/base/assert_internal.h"
 #include "noh/format.h"
@@ -29,11 +30,6 @@ static uint32_t bits_of(float value)
     return bits;
 }
 
-static float magnitude(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 static float with_sign_of(float x, float sign)
 {
     const uint32_t bits = bits_of(x) ^ (bits_of(sign) & 0x80000000u);
@@ -44,10 +40,10 @@ static float with_sign_of(float x, float sign)
 /* The pair of a direction that is not 0, each number in -1..1: the inverse of noh_octahedral_unfold. */
 static void fold(const float v[3], float pair[2])
 {
-    const float inverse = 1.0f / (magnitude(v[0]) + magnitude(v[1]) + magnitude(v[2]));
+    const float inverse = 1.0f / (noh_abs(v[0]) + noh_abs(v[1]) + noh_abs(v[2]));
     const float x = v[0] * inverse, y = v[1] * inverse;
-    pair[0] = v[2] < 0.0f ? with_sign_of(1.0f - magnitude(y), x) : x;
-    pair[1] = v[2] < 0.0f ? with_sign_of(1.0f - magnitude(x), y) : y;
+    pair[0] = v[2] < 0.0f ? with_sign_of(1.0f - noh_abs(y), x) : x;
+    pair[1] = v[2] < 0.0f ? with_sign_of(1.0f - noh_abs(x), y) : y;
 }
 
 /* Add a delta to a direction of the pack, scaled by the length of the pack's direction: not unit. */

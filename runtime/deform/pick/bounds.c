@@ -17,11 +17,6 @@
  * which contains the arc, is no higher than that radius. The rest is for rounding. */
 #define ARC 0.62f
 
-static float magnitude(float v)
-{
-    return v < 0.0f ? -v : v;
-}
-
 void noh_box_empty(float box[6])
 {
     for (int i = 0; i < 6; i++) {
@@ -52,7 +47,7 @@ void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6
         }
     }
     for (int i = 0; i < 3; i++) {
-        float slack = ROUNDING * (magnitude(box[i]) + magnitude(box[i + 3]));
+        float slack = ROUNDING * (noh_abs(box[i]) + noh_abs(box[i + 3]));
         box[i] -= slack;
         box[i + 3] += slack;
     }
@@ -63,12 +58,12 @@ void noh_mesh_target_box(const noh_mesh *mesh, const float *weights, float box[6
 static void move_box(const float m[12], const float box[6], float out[6])
 {
     for (int r = 0; r < 3; r++) {
-        float centre = m[4 * r + 3], half = 0.0f, slack = magnitude(m[4 * r + 3]);
+        float centre = m[4 * r + 3], half = 0.0f, slack = noh_abs(m[4 * r + 3]);
         for (int c = 0; c < 3; c++) {
             float element = m[4 * r + c], middle = 0.5f * (box[c] + box[c + 3]), extent = 0.5f * (box[c + 3] - box[c]);
             centre += element * middle;
-            half += magnitude(element) * extent;
-            slack += magnitude(element) * (magnitude(middle) + extent);
+            half += noh_abs(element) * extent;
+            slack += noh_abs(element) * (noh_abs(middle) + extent);
         }
         half += ROUNDING * slack;
         out[r] = centre - half;
@@ -132,7 +127,7 @@ static float distance_apart(const float a[12], const float b[12], const float bo
     }
     move_box(difference, box, moved);
     for (int r = 0; r < 3; r++) {
-        float far = magnitude(moved[r]) > magnitude(moved[r + 3]) ? moved[r] : moved[r + 3];
+        float far = noh_abs(moved[r]) > noh_abs(moved[r + 3]) ? moved[r] : moved[r + 3];
         square += far * far;
     }
     return square;

@@ -142,11 +142,6 @@ static uint32_t strongest_joint(const noh_mesh *mesh, uint32_t vertex)
 
 /* ---- how far targets go ---- */
 
-static float magnitude(float v)
-{
-    return v < 0.0f ? -v : v;
-}
-
 static float length_of(const float v[3])
 {
     return noh_sqrt(noh_dot3(v, v));
@@ -166,9 +161,9 @@ static float moved_at_most(const noh_pick_surface *s, uint32_t joints)
 {
     float most[3] = { 0.0f, 0.0f, 0.0f }, stretch = s->world && !joints ? stretch_of(s->world) : joints ? 0.0f : 1.0f;
     for (uint32_t t = 0; t < s->mesh->header->target_count; t++) {
-        const float *box = s->mesh->target_boxes + 6u * (size_t)t, weight = magnitude(s->weights[t]);
+        const float *box = s->mesh->target_boxes + 6u * (size_t)t, weight = noh_abs(s->weights[t]);
         for (int i = 0; weight > 0.0f && i < 3; i++) {
-            const float low = magnitude(box[i]), high = magnitude(box[i + 3]);
+            const float low = noh_abs(box[i]), high = noh_abs(box[i + 3]);
             most[i] += weight * (low > high ? low : high);
         }
     }

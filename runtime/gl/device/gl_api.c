@@ -4,6 +4,7 @@
  * optional. Functions beyond ES 3.0 depend on the context: eglGetProcAddress and similar functions return a pointer
  * even for an unsupported name, so the version and the extension strings decide whether a function is available and
  * under which suffix. A local table is filled first and copied only on success. */
+#include "core/base/name_internal.h"
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
@@ -22,15 +23,6 @@ enum {
 };
 
 #define PROC_NAME_BYTES 48
-
-static int text_equal(const char *a, const char *b)
-{
-    while (*a && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
 
 static int text_starts(const char *text, const char *start)
 {
@@ -64,7 +56,7 @@ int noh_gl_has_extension(const noh_gl_api *api, const char *name)
     api->GetIntegerv(GL_NUM_EXTENSIONS, &count);
     for (GLint i = 0; i < count; i++) {
         const GLubyte *extension = api->GetStringi(GL_EXTENSIONS, (GLuint)i);
-        if (extension && text_equal((const char *)extension, name)) return 1;
+        if (extension && noh_names_equal((const char *)extension, name)) return 1;
     }
     return 0;
 }

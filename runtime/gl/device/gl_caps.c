@@ -3,6 +3,7 @@
  * Each ability is tested the way the library uses it: known floats are drawn into the three layers of an array texture
  * and read back. A driver may claim a format and then clamp, round or drop the values written to it, so only the values
  * read back count. Each layer gets different values, which reveals swapped and missing layers. */
+#include "core/base/math_internal.h"
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "noh/base.h"
@@ -63,11 +64,6 @@ static void make_values(float values[FLOATS], uint32_t pass)
 static float value_at(const float values[FLOATS], uint32_t layer, uint32_t i)
 {
     return values[(i + layer * 4) % FLOATS];
-}
-
-static float magnitude(float value)
-{
-    return value < 0.0f ? -value : value;
 }
 
 static float round_to_half(float value, noh_half_mode mode)
@@ -181,9 +177,9 @@ static comparison compare(const models *m, float pixels[LAYERS][FLOATS])
     for (uint32_t layer = 0; layer < LAYERS; layer++) {
         for (uint32_t i = 0; i < FLOATS; i++) {
             float got = pixels[layer][i];
-            float bound = 0x1p-7f * (magnitude(m->exact[layer][i]) + 4.0f);
+            float bound = 0x1p-7f * (noh_abs(m->exact[layer][i]) + 4.0f);
             /* negated, so that a NaN is not close */
-            if (!(magnitude(got - m->exact[layer][i]) <= bound)) out.close = 0;
+            if (!(noh_abs(got - m->exact[layer][i]) <= bound)) out.close = 0;
             if (memcmp(&got, &m->exact[layer][i], sizeof got) != 0) out.exact = 0;
             if (memcmp(&got, &m->rtz[layer][i], sizeof got) != 0) out.rtz = 0;
             if (memcmp(&got, &m->rne[layer][i], sizeof got) != 0) out.rne = 0;

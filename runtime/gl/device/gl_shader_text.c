@@ -1,19 +1,11 @@
 /* gl_shader_text.c: GLSL files by name. tools/embed made the strings. */
+#include "core/base/name_internal.h"
 #include "noh/gl_device.h"
 
 #include <stddef.h>
 
 #include "core/base/assert_internal.h"
 #include "shaders.gen.h"
-
-static int same(const char *a, const char *b)
-{
-    while (*a && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
 
 const char *noh_gl_shader_text(const char *name)
 {
@@ -37,7 +29,7 @@ const char *noh_gl_shader_text(const char *name)
                   { "common_light.glsl", noh_shader_common_light_glsl } };
     NOH_ASSERT(name);
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
-        if (same(name, texts[i].name)) {
+        if (noh_names_equal(name, texts[i].name)) {
             return texts[i].text;
         }
     }

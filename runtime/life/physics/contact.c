@@ -15,11 +15,6 @@
 
 #define SAME 1e-3f /* metres: edges within this of the farthest one along an axis also touch */
 
-static float absolute(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 static void add(noh_contacts *c, const float point[3], const float normal[3], float gap)
 {
     uint32_t at = c->count;
@@ -86,7 +81,7 @@ static float from_box(const noh_obb *box, const float point[3], const float midd
     float p[3], m[3], off[3], far;
     into(box, point, p);
     for (int i = 0; i < 3; i++) {
-        const float past = absolute(p[i]) - box->half[i];
+        const float past = noh_abs(p[i]) - box->half[i];
         off[i] = past > 0.0f ? (p[i] < 0.0f ? -past : past) : 0.0f;
     }
     far = noh_length3(off);
@@ -143,7 +138,7 @@ static axes axes_of(const noh_obb *box)
 static float reach_along(const noh_obb *box, const axes *a, const float axis[3])
 {
     float reach = 0.0f;
-    for (int i = 0; i < 3; i++) reach += box->half[i] * absolute(noh_dot3(a->of[i], axis));
+    for (int i = 0; i < 3; i++) reach += box->half[i] * noh_abs(noh_dot3(a->of[i], axis));
     return reach;
 }
 

@@ -30,11 +30,6 @@ static int is_unit4(const float q[4])
     return square > 0.99f && square < 1.01f;
 }
 
-static int is_finite3(const float v[3])
-{
-    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
-}
-
 static int is_positive(float x)
 {
     return x > 0.0f && noh_is_finite(x);
@@ -45,7 +40,7 @@ static int good_body(const noh_ragdoll_rig *rig, uint32_t i)
     const noh_ragdoll_body *b = &rig->bodies[i];
     return (i ? b->parent < i : b->parent == NOH_NONE) && b->half >= 0.0f && noh_is_finite(b->half) &&
            is_positive(b->radius) && is_positive(b->mass) && is_positive(b->inertia_across) &&
-           is_positive(b->inertia_along) && is_finite3(b->position) && is_unit4(b->rotation);
+           is_positive(b->inertia_along) && noh_is_finite3(b->position) && is_unit4(b->rotation);
 }
 
 /* Contains 0, and spans no more than half a turn each way. */
@@ -69,7 +64,7 @@ static float rest_swing(const noh_ragdoll_joint *j)
 
 static int good_joint(const noh_ragdoll_joint *j)
 {
-    int good = is_finite3(j->anchor) && is_unit4(j->frame) && j->friction >= 0.0f && noh_is_finite(j->friction);
+    int good = noh_is_finite3(j->anchor) && is_unit4(j->frame) && j->friction >= 0.0f && noh_is_finite(j->friction);
     if (!(j->flags & NOH_RAGDOLL_LOOSE)) {
         good = good && good_range(j->twist_min, j->twist_max);
         if (!(j->flags & NOH_RAGDOLL_HINGE)) {
@@ -78,8 +73,8 @@ static int good_joint(const noh_ragdoll_joint *j)
         }
     }
     for (int i = 0; i < 3 && (j->flags & NOH_RAGDOLL_SLIDES); i++) {
-        good = good && j->linear_min[i] <= 0.0f && j->linear_max[i] >= 0.0f && is_finite3(j->linear_min) &&
-               is_finite3(j->linear_max);
+        good = good && j->linear_min[i] <= 0.0f && j->linear_max[i] >= 0.0f && noh_is_finite3(j->linear_min) &&
+               noh_is_finite3(j->linear_max);
     }
     return good;
 }
@@ -383,8 +378,8 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc)
 
 static int good_state(const noh_ragdoll_state *s)
 {
-    return is_finite3(s->position) && is_unit4(s->rotation) && is_finite3(s->velocity) && is_finite3(s->spin) &&
-           is_finite3(s->goal_position) && is_unit4(s->goal_rotation);
+    return noh_is_finite3(s->position) && is_unit4(s->rotation) && noh_is_finite3(s->velocity) && noh_is_finite3(s->spin) &&
+           noh_is_finite3(s->goal_position) && is_unit4(s->goal_rotation);
 }
 
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy)
@@ -395,7 +390,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     }
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
-        if (!is_finite3(doll->origin)) return "state: a ragdoll's position is not finite";
+        if (!noh_is_finite3(doll->origin)) return "state: a ragdoll's position is not finite";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
                 return "state: a ragdoll's body is not finite";
@@ -418,7 +413,7 @@ static const float world_origin[3] = { 0.0f, 0.0f, 0.0f };
 static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
 {
     uint32_t i = 0;
-    while (i < count && is_finite3(bodies[i].position) && is_unit4(bodies[i].rotation)) i++;
+    while (i < count && noh_is_finite3(bodies[i].position) && is_unit4(bodies[i].rotation)) i++;
     return i;
 }
 
@@ -437,7 +432,7 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
     for (uint32_t i = 0; motions && i < count && bad == count; i++) {
-        if (!is_finite3(motions[i].velocity) || !is_finite3(motions[i].spin)) bad = i;
+        if (!noh_is_finite3(motions[i].velocity) || !noh_is_finite3(motions[i].spin)) bad = i;
     }
     if (bad < count) {
         return noh_fail(error, NOH_ERR_ARG, "a placed body's position is not finite, or its rotation is not unit", bad,
@@ -618,7 +613,7 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     const float most = 1e15f; /* squares stay finite */
     float from[3], own[3], rest[3];
-    if (!is_finite3(point) || !(noh_dot3(impulse, impulse) < most * most)) return;
+    if (!noh_is_finite3(point) || !(noh_dot3(impulse, impulse) < most * most)) return;
     noh_sub3(point, d->origin, from);
     const uint32_t i = nearest_body(&set->shape, d, from);
     const float alone = PUSH_PART * set->size * set->shape.bodies[i].mass, size = noh_length3(impulse);
@@ -777,7 +772,7 @@ void noh_ragdoll_origin_shift(float origin[3], const float by[3], float lost[3])
 void noh_ragdolls_shift(noh_ragdolls *set, const float by[3])
 {
     noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set);
-    NOH_ASSERT(is_finite3(by));
+    NOH_ASSERT(noh_is_finite3(by));
     for (uint32_t d = 0; d < set->count; d++) {
         float lost[3];
         noh_ragdoll_origin_shift(dolls[d].origin, by, lost);

@@ -22,11 +22,6 @@
 #define STILL_STEPS 300u /* half a second */
 NOH_STATIC_ASSERT(sizeof(noh_rigid) == 144, rigid);
 
-static int is_finite3(const float v[3])
-{
-    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
-}
-
 /* ---- making a body ---- */
 
 /* Inertia of a solid of the shape; of the box around it unless it is a ball or capsule. */
@@ -68,7 +63,7 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
         if (!(inertia[i] > 0.0f && noh_is_finite(inertia[i]) && noh_is_finite(1.0f / inertia[i])))
             return noh_fail(error, NOH_ERR_ARG, wrong, 2, 0);
     }
-    if (!is_finite3(desc->position) || !(turned == 0.0f || (turned > 0.99f && turned < 1.01f)))
+    if (!noh_is_finite3(desc->position) || !(turned == 0.0f || (turned > 0.99f && turned < 1.01f)))
         return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
     memset(body, 0, sizeof *body);
     memcpy(body->half, desc->half, sizeof body->half);
@@ -97,7 +92,7 @@ static void by_inertia(const noh_rigid *b, const float v[3], int over, float out
 
 noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error)
 {
-    if (!is_finite3(velocity) || !is_finite3(spin))
+    if (!noh_is_finite3(velocity) || !noh_is_finite3(spin))
         return noh_fail(error, NOH_ERR_ARG, "a rigid body's velocity or spin is not finite", 0, 0);
     memcpy(body->velocity, velocity, sizeof body->velocity);
     by_inertia(body, spin, 0, body->momentum);
@@ -114,7 +109,7 @@ static void arm_of(const noh_rigid *b, const float point[3], float arm[3])
 void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3])
 {
     float arm[3], torque[3];
-    if (!is_finite3(point) || !is_finite3(force)) return;
+    if (!noh_is_finite3(point) || !noh_is_finite3(force)) return;
     arm_of(body, point, arm);
     noh_cross3(arm, force, torque);
     noh_madd3(body->force, 1.0f, force, body->force);
@@ -124,7 +119,7 @@ void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3]
 
 void noh_rigid_torque(noh_rigid *body, const float torque[3])
 {
-    if (!is_finite3(torque)) return;
+    if (!noh_is_finite3(torque)) return;
     noh_madd3(body->torque, 1.0f, torque, body->torque);
     body->still = 0;
 }
@@ -132,7 +127,7 @@ void noh_rigid_torque(noh_rigid *body, const float torque[3])
 void noh_rigid_push(noh_rigid *body, const float point[3], const float impulse[3])
 {
     float arm[3], twist[3];
-    if (!is_finite3(point) || !is_finite3(impulse)) return;
+    if (!noh_is_finite3(point) || !noh_is_finite3(impulse)) return;
     arm_of(body, point, arm);
     noh_cross3(arm, impulse, twist);
     noh_madd3(body->velocity, 1.0f / body->mass, impulse, body->velocity);
@@ -374,7 +369,7 @@ uint32_t noh_rigid_step(noh_rigid *body, const noh_world *world, const float gra
     static const float down[3] = { 0.0f, -NOH_GRAVITY, 0.0f };
     const uint32_t dropped = body->steps.dropped;
     const uint32_t steps = noh_steps_take(&body->steps, ticks, NOH_RIGID_STEP_TICKS, STEPS_MAX);
-    NOH_ASSERT(!gravity || is_finite3(gravity));
+    NOH_ASSERT(!gravity || noh_is_finite3(gravity));
     for (uint32_t i = 0; i < steps && !noh_rigid_sleeps(body); i++) {
         float origin[3], by[3];
         noh_ragdoll_origin_near(body->position, origin);

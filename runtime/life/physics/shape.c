@@ -11,11 +11,6 @@ static float clamp(float x, float low, float high)
     return x < low ? low : x > high ? high : x;
 }
 
-static float absolute(float x)
-{
-    return x < 0.0f ? -x : x;
-}
-
 /* ---- boxes ---- */
 
 int noh_aabb_contains(const noh_aabb *box, const float point[3])
@@ -45,7 +40,7 @@ int noh_obb_contains(const noh_obb *box, const float point[3])
 {
     float p[3];
     into_box(box, point, p);
-    return absolute(p[0]) <= box->half[0] && absolute(p[1]) <= box->half[1] && absolute(p[2]) <= box->half[2];
+    return noh_abs(p[0]) <= box->half[0] && noh_abs(p[1]) <= box->half[1] && noh_abs(p[2]) <= box->half[2];
 }
 
 void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3])
@@ -77,7 +72,7 @@ static pair pair_of(const noh_obb *a, const noh_obb *b)
         into(a->rotation, axis, axis);
         for (int i = 0; i < 3; i++) {
             p.axes[i][j] = axis[i];
-            p.sizes[i][j] = absolute(axis[i]) + 1e-6f;
+            p.sizes[i][j] = noh_abs(axis[i]) + 1e-6f;
         }
     }
     return p;
@@ -88,12 +83,12 @@ static int sides_part(const pair *p, const float a[3], const float b[3])
 {
     for (int i = 0; i < 3; i++) {
         const float *s = p->sizes[i];
-        if (absolute(p->centre[i]) > a[i] + b[0] * s[0] + b[1] * s[1] + b[2] * s[2]) return 1;
+        if (noh_abs(p->centre[i]) > a[i] + b[0] * s[0] + b[1] * s[1] + b[2] * s[2]) return 1;
     }
     for (int j = 0; j < 3; j++) {
         const float at = p->centre[0] * p->axes[0][j] + p->centre[1] * p->axes[1][j] + p->centre[2] * p->axes[2][j];
         const float reach = a[0] * p->sizes[0][j] + a[1] * p->sizes[1][j] + a[2] * p->sizes[2][j];
-        if (absolute(at) > reach + b[j]) return 1;
+        if (noh_abs(at) > reach + b[j]) return 1;
     }
     return 0;
 }
@@ -105,7 +100,7 @@ static int edges_part(const pair *p, const float a[3], const float b[3], int i, 
     const float at = p->centre[i2] * p->axes[i1][j] - p->centre[i1] * p->axes[i2][j];
     const float reach_a = a[i1] * p->sizes[i2][j] + a[i2] * p->sizes[i1][j];
     const float reach_b = b[j1] * p->sizes[i][j2] + b[j2] * p->sizes[i][j1];
-    return absolute(at) > reach_a + reach_b;
+    return noh_abs(at) > reach_a + reach_b;
 }
 
 int noh_obb_overlap(const noh_obb *a, const noh_obb *b)

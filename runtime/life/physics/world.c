@@ -20,11 +20,6 @@ static int is_unit(const float *v, int n)
     return sum > 0.99f && sum < 1.01f;
 }
 
-static int is_finite3(const float v[3])
-{
-    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
-}
-
 static int is_size(float x)
 {
     return x >= 0.0f && noh_is_finite(x);
@@ -32,14 +27,14 @@ static int is_size(float x)
 
 static int good_box(const noh_obb *b)
 {
-    return is_finite3(b->centre) && is_size(b->half[0]) && is_size(b->half[1]) && is_size(b->half[2]) &&
+    return noh_is_finite3(b->centre) && is_size(b->half[0]) && is_size(b->half[1]) && is_size(b->half[2]) &&
            is_unit(b->rotation, 4);
 }
 
 static int good_field(const noh_field *f)
 {
     return f->heights && f->width >= 2 && f->width <= 65536u && f->depth >= 2 && f->depth <= 65536u &&
-           is_finite3(f->origin) && f->spacing > 0.0f && noh_is_finite(f->spacing) && noh_is_finite(f->scale);
+           noh_is_finite3(f->origin) && f->spacing > 0.0f && noh_is_finite(f->spacing) && noh_is_finite(f->scale);
 }
 
 noh_result noh_world_check(const noh_world *w, noh_error *error)
@@ -56,7 +51,7 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
     }
     for (uint32_t i = 0; i < w->capsule_count; i++) {
         const noh_capsule *c = &w->capsules[i];
-        if (!is_finite3(c->from) || !is_finite3(c->to) || !is_size(c->radius)) {
+        if (!noh_is_finite3(c->from) || !noh_is_finite3(c->to) || !is_size(c->radius)) {
             return noh_fail(error, NOH_ERR_ARG, "a capsule has a number that is not finite, or a radius below 0", i, 0);
         }
     }

@@ -1,3 +1,4 @@
+#include "core/base/name_internal.h"
 #include "core/base/assert_internal.h"
 #include "core/pack/pack_internal.h"
 #include "motion/anim/tracks_internal.h"
@@ -70,19 +71,10 @@ noh_result noh_pack_graph_at(const noh_pack *pack, uint32_t index, noh_pack_grap
     return NOH_OK;
 }
 
-static int same_text(const char *a, const char *b)
-{
-    while (*a && *a == *b) {
-        a++;
-        b++;
-    }
-    return *a == *b;
-}
-
 /* Whether a stored name, given with its hash, is `name`. */
 static int is_named(const noh_pack *pack, uint32_t stored, uint32_t stored_hash, const char *name, uint32_t hash)
 {
-    return stored_hash == hash && same_text(noh_pack_string(pack, stored), name);
+    return stored_hash == hash && noh_names_equal(noh_pack_string(pack, stored), name);
 }
 
 uint32_t noh_pack_graph_find(const noh_pack *pack, const char *name)
@@ -188,7 +180,7 @@ static void fill_spaces(const noh_pack_graph *g, noh_blend_space_2d *spaces)
 static uint32_t find_joint(const noh_graph_pack_desc *desc, const noh_pack *mesh, const char *name)
 {
     for (uint32_t j = 0; j < desc->set->joint_count; j++) {
-        if (same_text(noh_pack_joint_name(mesh, desc->skeleton, j), name)) return j;
+        if (noh_names_equal(noh_pack_joint_name(mesh, desc->skeleton, j), name)) return j;
     }
     return NOH_NONE;
 }

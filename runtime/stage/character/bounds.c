@@ -21,15 +21,10 @@ static float bone_length(const noh_skeleton *s, uint32_t joint)
     return noh_sqrt(noh_dot3(t, t));
 }
 
-static float magnitude(float v)
-{
-    return v < 0.0f ? -v : v;
-}
-
 /* The largest factor by which a joint's scale stretches its descendants. */
 static float largest_scale(const noh_transform *t)
 {
-    const float x = magnitude(t->scale[0]), y = magnitude(t->scale[1]), z = magnitude(t->scale[2]);
+    const float x = noh_abs(t->scale[0]), y = noh_abs(t->scale[1]), z = noh_abs(t->scale[2]);
     const float most = x > y ? x : y;
     return most > z ? most : z;
 }

@@ -111,11 +111,6 @@ size_t noh_springs_size(const noh_springs_desc *desc)
     return arena.used;
 }
 
-static int is_finite3(const float v[3])
-{
-    return noh_is_finite(v[0]) && noh_is_finite(v[1]) && noh_is_finite(v[2]);
-}
-
 /* Rows that are there, of no other chain, and each joint a child of the one before. `next`: the first free row. */
 static int chain_hangs_together(const noh_springs_desc *d, const noh_spring_chain *c, uint32_t next)
 {
@@ -217,7 +212,7 @@ static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
     }
     for (uint32_t i = 0; i < d->collider_count; i++) {
         const noh_spring_capsule *c = &d->colliders[i];
-        if (c->joint >= d->skeleton.joint_count || !is_finite3(c->from) || !is_finite3(c->to) || !(c->radius >= 0.0f) ||
+        if (c->joint >= d->skeleton.joint_count || !noh_is_finite3(c->from) || !noh_is_finite3(c->to) || !(c->radius >= 0.0f) ||
             !noh_is_finite(c->radius / d->metres)) {
             return noh_fail(error, NOH_ERR_ARG, "springs: a collider's joint is not there, or a number is bad", i, 0);
         }
