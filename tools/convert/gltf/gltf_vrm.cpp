@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "convert/base/vrm_expression.h"
 #include "convert/model/target_append.h"
 #include "noh/base.h"
 
@@ -20,28 +21,6 @@ namespace gltf
 using value = tinygltf::Value;
 
 #define LINES_MAX (NOH_FACE_ROWS_MAX / 2u) /* the rest is for rows by names of targets and joints */
-
-/* Expressions of VRM 1.0 and 0.0, and the channel of a recipe that shows them. Others are called by their names. */
-static const struct {
-    const char *name, *old_name, *channel;
-} expressions[] = {
-    { "blinkLeft", "blink_l", "blink-left" },
-    { "blinkRight", "blink_r", "blink-right" },
-    { "blink", "blink", "blink" },
-    { "aa", "a", "aa" },
-    { "ih", "i", "ih" },
-    { "ou", "u", "ou" },
-    { "ee", "e", "E" },
-    { "oh", "o", "oh" },
-    { "happy", "joy", "joy-upper" },
-    { "angry", "angry", "anger-upper" },
-    { "sad", "sorrow", "sadness-upper" },
-    { "surprised", "surprised", "surprise-upper" },
-    { "lookUp", "lookup", "eye-left-up" }, /* one target turns both eyes: the left one's channels lead */
-    { "lookDown", "lookdown", "eye-left-down" },
-    { "lookLeft", "lookleft", "eye-left-out" },
-    { "lookRight", "lookright", "eye-right-out" },
-};
 
 static const value *member(const value &object, const char *key)
 {
@@ -126,13 +105,6 @@ static std::string lower(std::string word)
     for (char &c : word)
         if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
     return word;
-}
-
-static const char *channel_of(const std::string &name, bool old)
-{
-    for (const auto &e : expressions)
-        if (old ? lower(name) == e.old_name : name == e.name) return e.channel;
-    return nullptr;
 }
 
 /* A word of a recipe: those with blanks are quoted. */
@@ -255,7 +227,7 @@ static void add_new(file &f, const value &vrm, recipes &r)
     const bool both = presets && presets->IsObject() && presets->Has("blinkLeft") && presets->Has("blinkRight");
     for (size_t i = 0; presets && presets->IsObject() && i < presets->Keys().size(); ++i) {
         const std::string name = presets->Keys()[i];
-        if (!is_double(name, both)) add_expression(f, name, channel_of(name, false), presets->Get(name), false, r);
+        if (!is_double(name, both)) add_expression(f, name, vrm_expression_channel(name.c_str(), 0), presets->Get(name), false, r);
     }
     for (size_t i = 0; customs && customs->IsObject() && i < customs->Keys().size(); ++i)
         add_expression(f, customs->Keys()[i], nullptr, customs->Get(customs->Keys()[i]), false, r);
@@ -275,7 +247,7 @@ static void add_old(file &f, const value &vrm, recipes &r)
         const std::string own = custom ? text_member(group, "name") : name;
         const bool has_channel = !custom || lower(own) == "surprised"; /* VRM 0.0 has no preset for it */
         if (!is_double(name, lids >= 2))
-            add_expression(f, own, has_channel ? channel_of(own, true) : nullptr, group, true, r);
+            add_expression(f, own, has_channel ? vrm_expression_channel(own.c_str(), 1) : nullptr, group, true, r);
     }
 }
 
