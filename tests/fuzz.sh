@@ -1,9 +1,10 @@
 #!/bin/sh
-# fuzz.sh: runs libFuzzer on the pack reader, the clip decoder and the wire form's unpacker, with AddressSanitizer,
-# UBSan and all asserts on, in parallel for FUZZ_SECONDS (60), from the seeds in build/tests/fuzz/corpus, clips and
-# wires. Ends like run.sh. A crash is saved as build/fuzz/TARGET-crash-*: copy it to tests/fuzz/found/ (packs),
-# found_clips/ or found_wires/, where `make check` replays it. With NOH_LONG set, also on the inputs of noh build
-# (fuzz_import), from files written by the converter's tests; findings go to tests/fuzz/found_imports.
+# fuzz.sh: runs libFuzzer on the pack reader, the clip decoder, the wire form's unpacker and the reader of a capture's
+# packets, with AddressSanitizer, UBSan and all asserts on, in parallel for FUZZ_SECONDS (60), from the seeds in
+# build/tests/fuzz/corpus, clips and wires. Ends like run.sh. A crash is saved as build/fuzz/TARGET-crash-*: copy it to
+# tests/fuzz/found/ (packs), found_clips/ or found_wires/, where `make check` replays it; a packet becomes a case of
+# tests/unit/tools/test_vmc.c. With NOH_LONG set, also on the inputs of noh build (fuzz_import), from files written by the
+# converter's tests; findings go to tests/fuzz/found_imports.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
@@ -24,13 +25,13 @@ echo 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n); int L
     skip "$clang has no libFuzzer or sanitizer runtime (libclang-rt-dev)"
 
 flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer-no-link,address,undefined
-    -fno-sanitize-recover=all -fno-omit-frame-pointer -DNOH_ASSERT_LEVEL=2 -Iruntime -Itests -Itests/support -I$build/gen"
+    -fno-sanitize-recover=all -fno-omit-frame-pointer -DNOH_ASSERT_LEVEL=2 -Iruntime -Itests -Itests/support -Itools/noh -I$build/gen"
 
 # All targets link the same objects.
 rm -rf "$work/objects"
 mkdir "$work/objects"
 # shellcheck disable=SC2016
-if ! { find runtime -name '*.c' && find tests -name pack_walk.c -o -name wild_text.c && echo "$build/gen/shaders.gen.c"; } |
+if ! { find runtime -name '*.c' && find tests -name pack_walk.c -o -name wild_text.c && printf '%s\n' tools/noh/capture/osc.c tools/noh/capture/vmc.c && echo "$build/gen/shaders.gen.c"; } |
     xargs -P "${JOBS:-2}" -I '{}' sh -c '$1 $2 -c "$3" -o "$4/$(echo "$3" | tr / _).o"' sh "$clang" "$flags" '{}' "$work/objects"; then
     echo '0 passed, 1 failed, 0 skipped'
     exit 1
@@ -58,6 +59,11 @@ fuzz fuzz_clip 4096 tests/fuzz/found_clips "$build/tests/fuzz/clips" &
 clips=$!
 fuzz fuzz_wire 16384 tests/fuzz/found_wires "$build/tests/fuzz/wires" &
 wires=$!
+mkdir -p "$work/packets"
+printf '/VMC/Ext/Bone/Pos\0\0\0,sfffffff\0\0\0Hips\0\0\0\0%028d' 0 >"$work/packets/bone"
+printf '#bundle\0%08d\0\0\0\044/VMC/Ext/Blend/Val\0\0,sf\0Joy\0?\0\0\0' 0 >"$work/packets/bundle"
+fuzz fuzz_vmc 2048 tests/fuzz/found_packets "$work/packets" &
+packets=$!
 
 # Also the converter: C and C++, with its input libraries.
 link_import() {
@@ -112,6 +118,8 @@ wait "$clips"
 told fuzz_clip $?
 wait "$wires"
 told fuzz_wire $?
+wait "$packets"
+told fuzz_vmc $?
 if [ -n "$imports" ]; then
     wait "$imports"
     told fuzz_import $?

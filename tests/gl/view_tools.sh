@@ -277,6 +277,77 @@ frames 10
 expect "never reached"
 HAND
 
+# ---- capture ----
+
+# A pose by the VMC protocol, to the port that is printed, until the sender is stopped; and one packet that is damaged.
+cat >"$work/send.py" <<'PY'
+import math, socket, struct, sys, time
+def text(s):
+    b = s.encode() + b'\0'
+    return b + b'\0' * (-len(b) % 4)
+def message(address, *values):
+    types = ',' + ''.join('s' if isinstance(v, str) else 'f' for v in values)
+    body = b''.join(text(v) if isinstance(v, str) else struct.pack('>f', v) for v in values)
+    return text(address) + text(types) + body
+def bundle(*elements):
+    return b'#bundle\0' + struct.pack('>Q', 1) + b''.join(struct.pack('>i', len(e)) + e for e in elements)
+def bone(name, axis, degrees):
+    h = math.radians(degrees) / 2
+    q = [math.sin(h) * a for a in axis] + [math.cos(h)]
+    return message('/VMC/Ext/Bone/Pos', name, 0.0, 0.0, 0.0, *q)
+for tries in range(600):
+    lines = [l for l in open(sys.argv[1]) if l.startswith('listens for VMC at 127.0.0.1:')]
+    if lines: break
+    time.sleep(0.05)
+port = int(lines[0].rsplit(':', 1)[1])
+s = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+s.sendto(b'neither', ('127.0.0.1', port))
+while True:
+    s.sendto(bundle(bone('LeftUpperArm', (0, 0, 1), 70), bone('RightUpperArm', (0, 0, 1), 70), bone('Head', (0, 1, 0), 40),
+                    message('/VMC/Ext/Blend/Val', 'Joy', 1.0), message('/VMC/Ext/Blend/Val', 'jawOpen', 0.5),
+                    message('/VMC/Ext/Blend/Apply'), message('/VMC/Ext/OK', 1.0)), ('127.0.0.1', port))
+    time.sleep(0.02)
+PY
+if command -v python3 >/dev/null 2>&1; then
+    : >"$work/out"
+    cp "$mask" "$work/other.noh"
+    python3 "$work/send.py" "$work/out" >"$work/sender" 2>&1 &
+    sender=$!
+    hand 'a captured person moves it' "$puppet" --play off --vmc 0 <<'HAND'
+save rest.png
+until "capture: 3 bones for 22 joints, 2 expressions for 9 targets" 100000
+frames 2
+expect "1 left out"
+expect-not "held "
+save captured.png
+click Compare
+click "side by side"
+click "side by side/another level"
+frames 2
+expect "compared with another level"
+click "side by side"
+click "side by side/off"
+key F10
+frames 3
+save restored.png
+drop other.noh
+until "state of other.noh" 100
+until "capture: 3 bones for 0 joints, 2 expressions for 9 targets" 100000
+HAND
+    says 'a message is damaged'
+    check 'it is another picture' differ rest.png captured.png
+    check 'also after a lost context' same captured.png restored.png
+    kill $sender 2>/dev/null
+else
+    skip 'capture' 'no python3 here'
+fi
+noh view "$puppet" --vmc 127.0.0.1:port --frames 1
+expect 2 'a port that is not a number'
+says 'must be PORT or ADDRESS:PORT'
+noh view "$puppet" --vmc 192.0.2.1:39539 --frames 1
+expect 1 "an address that is another machine's"
+says 'cannot be listened at'
+
 # ---- the figure stays in the picture ----
 
 hand 'it opens playing, and is seen whole' "$puppet" <<'HAND'

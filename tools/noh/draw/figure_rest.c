@@ -1,4 +1,5 @@
-/* figure_rest.c: how a figure without a clip stands: as in a clip named idle, otherwise as noh_stand_modifier does. */
+/* figure_rest.c: how a figure without a clip stands: as in a clip named idle, otherwise as noh_stand_modifier does; and
+ * what drives it from outside. */
 #include <string.h>
 
 #include "core/base/name_internal.h"
@@ -18,13 +19,16 @@ const char *figure_idle_clip(const noh_pack *pack)
 
 void figure_add_rest(figure *f)
 {
-    for (uint32_t k = 0; k < f->stage_desc.kind_count && f->desc.stands; k++) {
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         noh_kind_desc *kind = &f->kinds[k];
-        const uint32_t count = kind->modifier_count;
-        if (noh_kind_stand_make(kind, &f->stands[k], NULL)) continue; /* it is no humanoid */
-        if (count) memcpy(f->rest_parts[k] + 1, kind->modifiers, count * sizeof *kind->modifiers);
-        f->rest_parts[k][0] = noh_stand_modifier(&f->stands[k]);
-        kind->modifiers = f->rest_parts[k];
-        kind->modifier_count++;
+        noh_modifier *parts = f->rest_parts[k];
+        uint32_t count = 0;
+        if (f->desc.stands && !noh_kind_stand_make(kind, &f->stands[k], NULL)) /* else it is no humanoid */
+            parts[count++] = noh_stand_modifier(&f->stands[k]);
+        if (f->desc.drivers) parts[count++] = f->desc.drivers[k];
+        if (!count) continue;
+        if (kind->modifier_count) memcpy(parts + count, kind->modifiers, kind->modifier_count * sizeof *parts);
+        kind->modifiers = parts;
+        kind->modifier_count += count;
     }
 }

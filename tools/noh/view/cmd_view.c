@@ -58,7 +58,8 @@ static int run(void *args)
         return status;
     }
     a->run.frames = (uint32_t)a->frames;
-    a->run.desc.alive = a->run.plays = !a->run.frames;
+    a->run.plays = !a->run.frames;
+    a->run.desc.alive = a->run.plays && !a->run.vmc;
     if ((a->face && tool_switch("--face", a->face, &a->run.desc.alive)) ||
         (a->play && tool_switch("--play", a->play, &a->run.plays)) || tool_switch("--springs", a->springs, &springs)) {
         return EXIT_USAGE;
@@ -82,7 +83,7 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, face),
       .value = "on|off",
-      .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames" },
+      .what = "whether faces blink, breathe, and look at the pointer; default: on, off with --frames or --vmc" },
     OPTION_SPRINGS(view_args, springs),
     OPTION_WEIGHT_RULES(view_args, run.desc.weight_rules),
     OPTION_TIER(view_args, tier, .needs = NULL),
@@ -92,6 +93,13 @@ static const option options[] = {
       .value = "on|off",
       .what =
           "whether a clip plays at once: idle, or the first clip that moves joints; default: on, off with --frames or --clip" },
+    { .name = "--vmc",
+      .kind = OPTION_TEXT,
+      .at = offsetof(view_args, run.vmc),
+      .value = "[ADDRESS:]PORT",
+      .what =
+          "move the figure as a capture sends it by the VMC protocol, over UDP: bones, root, expressions, ARKit's shapes; from this machine, unless an ADDRESS such as 0.0.0.0 lets others send",
+      .example = "39539" },
     { .name = "--clip",
       .kind = OPTION_TEXT,
       .at = offsetof(view_args, run.clip),

@@ -99,6 +99,7 @@ int view_app_open(view_app *a, const view_model_desc *desc)
 void view_app_close(view_app *a)
 {
     view_load_cancel(&a->files.load);
+    view_capture_close(&a->capture);
     view_export_stop(&a->film.job);
     view_compare_close(&a->compare);
     noh_gl_timer_delete(&a->times.accumulate_timer, &a->gpu.gl);
@@ -426,6 +427,7 @@ int view_app_frame(view_app *a, float scale, double seconds)
     a->window.height = (float)a->screen.height / scale;
     time_frame(&a->times);
     status = fit_canvas(a, &x, &y);
+    if (view_capture_poll(&a->capture, a->model)) view_tell(a);
     if (!status) status = animate(a, seconds);
     if (!status) status = accumulate(a);
     if (!status && (!a->lazy || a->film.job.is_on)) status = view_app_picture(a);
@@ -440,8 +442,9 @@ int view_app_frame(view_app *a, float scale, double seconds)
 
 int view_app_moves(const view_app *a)
 {
-    return a->lod.fading || a->film.job.is_on || a->camera.turntable || a->files.load.state == VIEW_LOAD_RUNS ||
-           a->model->figure->faces_found || (a->playing && view_plays(a->model)) || view_fall_lasts(&a->fall, a->model);
+    return a->capture.is_open || a->lod.fading || a->film.job.is_on || a->camera.turntable ||
+           a->files.load.state == VIEW_LOAD_RUNS || a->model->figure->faces_found ||
+           (a->playing && view_plays(a->model)) || view_fall_lasts(&a->fall, a->model);
 }
 
 void view_app_after(view_app *a)

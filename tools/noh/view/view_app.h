@@ -33,6 +33,7 @@
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
 #include "noh/pack.h"
+#include "view/view_capture.h"
 #include "view/view_compare.h"
 #include "view/view_export.h"
 #include "view/view_fall.h"
@@ -160,6 +161,7 @@ typedef struct view_app {
     view_over over;
     view_compare compare;
     view_film film;
+    view_capture capture;
     view_lights lights;
     view_undo_list undo;
     view_presets presets;

@@ -75,6 +75,7 @@ int view_app_show(view_app *a, const char *path, byte_buffer *converted)
     desc.converted = converted;
     if (!again) desc.anim = NULL; /* another pack's clips belonged to the old model */
     desc.part = NULL;
+    view_capture_forget(&a->capture);
     status = view_model_open(&a->gpu, &desc, &shown);
     view_keep(a, status);
     if (status) {

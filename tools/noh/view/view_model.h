@@ -58,6 +58,7 @@ typedef struct view_model_desc {
     int root_motion;     /* clips move the figure over the ground */
     lighting *light;     /* NULL: the plain renderer's own */
     noh_shading shading;
+    const noh_modifier *drivers; /* as in figure_desc */
     const char *part;       /* the layer "part" moves this joint of the first skeleton and all below; NULL, "": none */
     uint32_t width, height; /* of the canvas */
 } view_model_desc;

@@ -10,8 +10,6 @@
 #include "noh/face.h"
 #include "file/weights_text.h"
 
-#define LINKS_MAX 1024u
-
 /* ---- targets ---- */
 
 void view_target_hold(view_target *t, float value)
@@ -135,17 +133,23 @@ static int add_channels(view_presets *p, const view_model *m, const noh_face_lin
     return status;
 }
 
-static int add_recipes(view_presets *p, const view_model *m)
+uint32_t view_recipe_links(const view_model *m, noh_face_link *links)
 {
     const noh_face_recipe own = noh_face_recipe_in_pack(&m->file.pack);
     const noh_face_recipe *recipes[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm, &noh_face_recipe_units };
     const char **names = malloc((m->target_count + 1u) * sizeof *names);
-    noh_face_link *links = malloc(LINKS_MAX * sizeof *links);
-    int status = names && links ? 0 : tool_fail("presets", "out of memory");
     uint32_t count = 0;
-    for (uint32_t t = 0; t < m->target_count && !status; t++) names[t] = m->targets[t].name;
-    if (!status) count = noh_face_recipe_bind(recipes, 4, names, m->target_count, links, LINKS_MAX);
-    count = count < LINKS_MAX ? count : LINKS_MAX;
+    for (uint32_t t = 0; t < m->target_count && names; t++) names[t] = m->targets[t].name;
+    if (names) count = noh_face_recipe_bind(recipes, 4, names, m->target_count, links, VIEW_LINKS_MAX);
+    free(names);
+    return count < VIEW_LINKS_MAX ? count : VIEW_LINKS_MAX;
+}
+
+static int add_recipes(view_presets *p, const view_model *m)
+{
+    noh_face_link *links = malloc(VIEW_LINKS_MAX * sizeof *links);
+    const uint32_t count = links ? view_recipe_links(m, links) : 0;
+    int status = links ? 0 : tool_fail("presets", "out of memory");
     for (uint32_t e = 0; e < NOH_EMOTION_COUNT && !status; e++) {
         const uint32_t channels[2] = { NOH_CHANNEL_UPPER + e, NOH_CHANNEL_MOUTH + e };
         status = add_channels(p, m, links, count, channels, noh_emotion_name((noh_emotion)e));
@@ -158,7 +162,6 @@ static int add_recipes(view_presets *p, const view_model *m)
         const uint32_t channels[2] = { NOH_CHANNEL_VISEMES + v, NOH_CHANNEL_VISEMES + v };
         status = add_channels(p, m, links, count, channels, noh_face_channel_name(channels[0]));
     }
-    free(names);
     free(links);
     return status;
 }

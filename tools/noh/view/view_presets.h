@@ -13,6 +13,7 @@
 
 #include "view/view_model.h"
 #include "noh/base.h"
+#include "noh/face.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,6 +21,7 @@ extern "C" {
 
 #define VIEW_PRESETS_MAX 256u
 #define VIEW_PRESET_NAME 64u
+#define VIEW_LINKS_MAX 1024u
 
 typedef struct view_preset {
     char name[VIEW_PRESET_NAME];
@@ -53,6 +55,10 @@ char *view_weights_copy(const view_model *m);
 /* Hold these targets and release the others. Unknown names are reported, and all others are applied; a text without any
  * known name changes nothing. */
 int view_weights_paste(view_model *m, const char *text);
+
+/* The links of the recipes of a model and the built-in ones to its targets, m->targets[].
+ * returns  how many of links[VIEW_LINKS_MAX], 0 without memory */
+uint32_t view_recipe_links(const view_model *m, noh_face_link *links);
 
 /* Hold a target; release it. */
 void view_target_hold(view_target *t, float value);

@@ -99,6 +99,7 @@ static void print_going_on(FILE *out, const view_app *a)
         fprintf(out, "converting %s: %s\n", a->files.load.path, a->files.load.does);
     if (a->film.job.is_on)
         fprintf(out, "film %s: frame %u of %u\n", a->film.job.film.path, a->film.job.film.count, a->film.job.frames);
+    view_capture_print(&a->capture, out);
     if (a->files.reloads) fprintf(out, "reloads %u\n", a->files.reloads);
     if (a->window.quit_asked) fprintf(out, "asks whether to quit\n");
     if (a->message[0]) fprintf(out, "message %s\n", a->message);

@@ -96,6 +96,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     d.view = desc->view;
     d.light = desc->light;
     d.shading = desc->shading;
+    d.drivers = desc->drivers;
     d.graphs = m->clips_of->pack.runs[NOH_CHUNK_GRAPH].count && pack->runs[NOH_CHUNK_SKELETON].count == 1 ? "*" : NULL;
     status = figure_open(s->figure, &d, s->show_bones ? NULL : g);
     if (status && d.graphs) { /* such as graphs whose clips the pack lacks: the error was printed */

@@ -222,12 +222,14 @@ static int show(view_window *w, const view_run *run)
     int status = view_app_begin(&w->app);
     if (!status) status = view_panels_open(run->script != NULL);
     view_listen(w);
+    if (!status && run->vmc) status = view_capture_open(&w->app.capture, run->vmc);
     if (!status) status = convert(w, run, &converted);
     if (status || w->app.window.quits) {
         view_panels_close();
         view_app_close(&w->app);
         return status;
     }
+    desc.drivers = run->vmc ? w->app.capture.drivers : NULL;
     desc.converted = converted.count ? &converted : NULL;
     w->app.files.presets_path = run->presets;
     w->app.lazy = run->script != NULL;

@@ -11,6 +11,7 @@ typedef struct view_run {
     const char *script;     /* a text that moves the hand (view_script.h); NULL: none */
     const char *film;       /* of the frames, every second; NULL: none */
     const char *presets;    /* the file of user presets; NULL: in the model's folder */
+    const char *vmc;        /* where a capture is received (view_capture.h); NULL: nowhere */
     int plays;              /* a model that is opened plays its first clip */
     int fixed_camera;       /* the camera does not follow the figure */
     int native;             /* the context by GLX or WGL instead of EGL */
