@@ -162,6 +162,29 @@ static void too_deep_a_bundle_is_damage(void **state)
     assert_int_equal(osc_next(&r, &m), OSC_END);
 }
 
+/* Bytes behind the last element that are no size: by how much the bundle is longer than what it holds. */
+static void a_bundle_that_ends_in_a_size(void **state)
+{
+    (void)state;
+    for (size_t more = 1; more <= 4; more++) {
+        packet p = { { 0 }, 0 };
+        osc_reader r;
+        osc_message m;
+        size_t from;
+        begin_bundle(&p);
+        from = begin_element(&p);
+        put_text(&p, "/one");
+        end_element(&p, from);
+        memset(p.bytes + p.count, 0xff, sizeof p.bytes - p.count);
+        memcpy(p.bytes + p.count + 4, "#bundle", 8); /* past the end */
+        osc_begin(&r, p.bytes, p.count + more);
+        assert_int_equal(osc_next(&r, &m), OSC_MESSAGE);
+        assert_int_equal(osc_next(&r, &m), OSC_DAMAGED);
+        assert_int_equal(osc_next(&r, &m), OSC_END);
+        assert_int_equal(r.at, p.count + more);
+    }
+}
+
 /* ---- the protocol ---- */
 
 static void put_value(packet *p, const char *name, float weight)
@@ -435,11 +458,11 @@ static void thumbs_of_both_versions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(every_type_is_read),           cmocka_unit_test(bundles_hold_bundles),
-        cmocka_unit_test(too_deep_a_bundle_is_damage),  cmocka_unit_test(expressions_wait_for_apply),
-        cmocka_unit_test(wrong_messages_are_counted),   cmocka_unit_test(any_bytes_are_read),
-        cmocka_unit_test(bones_turn_as_they_were_sent), cmocka_unit_test(arms_that_hang_are_raised),
-        cmocka_unit_test(thumbs_of_both_versions),
+        cmocka_unit_test(every_type_is_read),          cmocka_unit_test(bundles_hold_bundles),
+        cmocka_unit_test(too_deep_a_bundle_is_damage), cmocka_unit_test(a_bundle_that_ends_in_a_size),
+        cmocka_unit_test(expressions_wait_for_apply),  cmocka_unit_test(wrong_messages_are_counted),
+        cmocka_unit_test(any_bytes_are_read),          cmocka_unit_test(bones_turn_as_they_were_sent),
+        cmocka_unit_test(arms_that_hang_are_raised),   cmocka_unit_test(thumbs_of_both_versions),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

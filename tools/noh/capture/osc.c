@@ -129,7 +129,7 @@ osc_kind osc_next(osc_reader *r, osc_message *out)
         if (!r->depth) {
             kind = take_element(r, end, out, &opened);
         } else {
-            size = end - r->at >= 4u ? big_endian(r->bytes + r->at, 4) : UINT64_MAX;
+            size = end - r->at > 4u ? big_endian(r->bytes + r->at, 4) : 0;
             if (!size || size > end - r->at - 4u) { /* the rest of this bundle is lost */
                 r->at = end;
                 return OSC_DAMAGED;
