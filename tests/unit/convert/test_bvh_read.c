@@ -264,19 +264,60 @@ static void check_warned(const char *text, uint32_t frames, const char *expected
     raw_set_free(set);
 }
 
-/* A clip ends before the first frame that cannot be read, and has at least one. */
+/* What frame `frame` has as its three channels, to a thousandth. */
+static void check_frame(const raw_set *set, uint32_t frame, double x, double y, double degrees)
+{
+    const raw_clip *c = &set->clips[0];
+    const double half = atan2((double)c->rotations[4 * frame + 2], (double)c->rotations[4 * frame + 3]);
+    assert_true(fabs((double)c->translations[3 * frame] - x) < 1e-3);
+    assert_true(fabs((double)c->translations[3 * frame + 1] - y) < 1e-3);
+    assert_true(fabs(half * 114.591559 - degrees) < 1e-3);
+}
+
+/* A frame that cannot be read repeats the one before it, or the first that can; so the others keep their times. */
+static void bad_frames_repeat_the_nearest(void **state)
+{
+    static const struct {
+        const char *rows, *warning;
+        double x[4]; /* of each frame, the first number */
+    } all[] = {
+        { "1 ? 3\n4 5 6\n7 8 9\n2 3 4\n", "line 10: '?' is not a number; 1 frames that", { 4, 4, 7, 2 } },
+        { "1 2\n1 2 nan\n7 8 9\n2 3 4\n",
+          "line 10: frame 0 has 2 numbers; the channels need 3; 2 frames",
+          { 7, 7, 7, 2 } },
+        { "1 2 3\n4 5 6 7\n7 8 9\n2 3 4\n", "line 11: frame 1 has more numbers than", { 1, 1, 7, 2 } },
+        { "1 2 3\n4 5\n-\n2 3 4\n", "line 11: frame 1 has 2 numbers; the channels need 3; 2 frames", { 1, 1, 1, 2 } },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        char text[512];
+        raw_set *set;
+        (void)snprintf(text, sizeof text, HEAD "Frames: 4\nFrame Time: 0.01\n%s", all[i].rows);
+        check_warned(text, 4, all[i].warning);
+        set = load(text);
+        for (uint32_t k = 0; k < 4; k++) {
+            const double x = all[i].x[k];
+            check_frame(set, k, x, x + 1.0, x + 2.0);
+        }
+        raw_set_free(set);
+    }
+    check_warned(HEAD "Frames: 4\nFrame Time: 0.01\n1 2 3\n?\n1 2 3\n4 5\n", 3,
+                 "the last 1 frames cannot be read, and the clip ends before them");
+}
+
+/* A clip ends before frames at its end that cannot be read. */
 static void bad_frames_end_the_clip(void **state)
 {
     (void)state;
     check_warned(HEAD CLIP_2 "1 2 3\n1 2\n", 1,
                  "line 11: frame 1 has 2 numbers; the channels need 3; the clip ends before it");
-    refused(HEAD CLIP_2 "1 2 3 4\n1 2 3\n", "frame 0 has more numbers than the 3 channels", "line 10");
+    refused(HEAD CLIP_2 "1 2 3 4\n1 2\n", "frame 0 has more numbers than the 3 channels", "line 10");
     check_warned(HEAD CLIP_2 "1 2 3\n", 1, "ends after 1 of 2 frames");
     check_warned(HEAD CLIP_2 "1 2 3\n\n\n4 5", 1, "line 13: frame 1 has 2 numbers");
     check_warned(HEAD CLIP_2 "1 2 3\n4 5 6\n7 8 9\n1 2 3\n", 2, "more frames than its header gives");
     check_warned(HEAD CLIP_2 "1 2 3\n4 5 6\n7 8\n", 2, "more frames than its header gives");
     check_warned(HEAD CLIP_2 "1 2 3\n4 5 nan\n", 1, "'nan' is not finite");
-    refused(HEAD CLIP_2 "1 -inf 3\n4 5 6\n", "'-inf' is not finite", "line 10");
+    refused(HEAD CLIP_2 "1 -inf 3\n4 inf 6\n", "'-inf' is not finite", "line 10");
     check_warned(HEAD CLIP_2 "1 2 3\n4 1e999 6\n", 1, "too large");
     check_warned(HEAD CLIP_2 "1 2 3\n4 1.1e12 6\n", 1, "too large");
     check_warned(HEAD CLIP_2 "1 2 3\n4 0x10 6\n", 1, "'0x10' is not a number");
@@ -285,22 +326,23 @@ static void bad_frames_end_the_clip(void **state)
     refused(HEAD CLIP_2, "ends after 0 of 2 frames", "line 10");
 }
 
-static void bad_clip_headers_are_refused(void **state)
+static void bad_clip_headers(void **state)
 {
     (void)state;
-    refused(HEAD "Frames: 0\nFrame Time: 0.01\n", "there are no frames", "line 8");
-    refused(HEAD "Frames: -5\nFrame Time: 0.01\n", "'-5' is not a whole number", "line 8");
-    refused(HEAD "Frames: 99999999999\nFrame Time: 0.01\n", "above the limit", "line 8");
-    refused(HEAD "Frames:\nFrame Time: 0.01\n", "a number is missing", "line 8");
+    refused(HEAD "Frames: 0\nFrame Time: 0.01\n", "there are no frames", "line 10");
+    check_warned(HEAD "Frames: 0\nFrame Time: 0.01\n1 2 3\n4 5 6\n", 2, "the header gives no frames; all that follow");
+    check_warned(HEAD "Frames: -5\nFrame Time: 0.01\n1 2 3\n", 1, "line 8: '-5' is not a whole number; all frames");
+    check_warned(HEAD "Frames: 99999999999\nFrame Time: 0.01\n1 2 3\n", 1, "above the limit");
+    check_warned(HEAD "Frames:\nFrame Time: 0.01\n1 2 3\n", 1, "line 8: a number is missing; all frames that follow");
     refused(HEAD "Frame Time: 0.01\n", "expected 'Frames:'", "line 8");
     refused(HEAD "Frames: 1\n1 2 3\n", "expected 'Frame Time:'", "line 9");
     check_warned(HEAD "Frames: 1\nFrame Time: 0\n1 2 3\n", 1,
                  "the frame time of 0 s is impossible; the clip was read at 30");
     check_warned(HEAD "Frames: 2\nFrame Time: 0\n1 2 3\n", 1, "read at 30 Hz; line 11: the file ends after 1 of 2");
     check_warned(HEAD "Frames: 1\nFrame Time: -0.01\n1 2 3\n", 1, "the frame time of -0.01 s is impossible");
-    refused(HEAD "Frames: 1\nFrame Time: nan\n1 2 3\n", "not finite", "line 9");
-    refused(HEAD "Frames: 1\nFrame Time:\n1 2 3\n", "not a number", "line 9");
-    refused(HEAD "Frames: 1 frame\nFrame Time: 1\n1 2 3\n", "'frame' is unexpected", "line 8");
+    check_warned(HEAD "Frames: 1\nFrame Time: nan\n1 2 3\n", 1, "not finite; the clip was read at 30 Hz");
+    check_warned(HEAD "Frames: 1\nFrame Time:\n1 2 3\n", 1, "not a number; the clip was read at 30 Hz");
+    check_warned(HEAD "Frames: 1 frame\nFrame Time: 1\n1 2 3\n", 1, "'frame' is unexpected here; all frames");
     refused(HEAD, "expected 'Frames:'", "line 8");
 }
 
@@ -551,8 +593,9 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(other_spellings),
     cmocka_unit_test(signs_do_not_jump),
     cmocka_unit_test(whole_rates_are_recognised),
+    cmocka_unit_test(bad_frames_repeat_the_nearest),
     cmocka_unit_test(bad_frames_end_the_clip),
-    cmocka_unit_test(bad_clip_headers_are_refused),
+    cmocka_unit_test(bad_clip_headers),
     cmocka_unit_test(bad_hierarchies_are_refused),
     cmocka_unit_test(joint_limit),
     cmocka_unit_test(frames_too_many_are_a_warning),

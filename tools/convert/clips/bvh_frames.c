@@ -66,11 +66,26 @@ static double sample_rate_of(double period_s, double last_digit_s)
     return sample_rate_hz;
 }
 
+/* The error of a value that the clip can do without becomes a warning, with what was done instead. */
+static int warn_of_error(bvh_file *f, const char *instead)
+{
+    model_error *reason = f->text.error;
+    char text[sizeof reason->what + sizeof reason->where + 160];
+    if (!reason->where[0]) return 1; /* out of memory */
+    (void)snprintf(text, sizeof text, "%s: %s; %s", reason->where, reason->what, instead);
+    reason->what[0] = reason->where[0] = '\0';
+    return warn(f, text);
+}
+
 static int read_sample_rate(bvh_file *f, double *sample_rate_hz)
 {
     double period_s = 0.0;
     text_word word = text_next_on_line(&f->text);
-    if (text_number(&f->text, word, &period_s) || expect_line_end(f)) return 1;
+    if (text_number(&f->text, word, &period_s) || expect_line_end(f)) {
+        *sample_rate_hz = 30.0;
+        (void)text_rest_of_line(&f->text);
+        return warn_of_error(f, "the clip was read at 30 Hz");
+    }
     if (!(period_s >= 1e-6 && period_s <= 1e3)) {
         char text[96];
         (void)snprintf(text, sizeof text, "the frame time of %g s is impossible; the clip was read at 30 Hz", period_s);
@@ -81,14 +96,26 @@ static int read_sample_rate(bvh_file *f, double *sample_rate_hz)
     return 0;
 }
 
+/* A number that cannot be read, and 0: as many as there are. */
 static int read_frame_count(bvh_file *f, uint32_t *out)
 {
+    const uint64_t most = RAW_BYTES_MAX / ((uint64_t)f->joint_count * RAW_JOINT_BYTES);
     text_word word = text_next_on_line(&f->text);
-    if (text_count(&f->text, word, RAW_FRAMES_MAX, out) || expect_line_end(f)) return 1;
-    if (*out == 0) return text_fail(&f->text, word.line, "there are no frames");
     if (f->channel_count == 0)
         return text_fail(&f->text, word.line, "no joint has a channel: there is nothing to animate");
-    if ((uint64_t)*out * f->joint_count * RAW_JOINT_BYTES > RAW_BYTES_MAX)
+    f->any_count = text_count(&f->text, word, RAW_FRAMES_MAX, out) || expect_line_end(f);
+    if (f->any_count) {
+        (void)text_rest_of_line(&f->text);
+        if (warn_of_error(f, "all frames that follow were read")) return 1;
+    } else if (!*out) {
+        f->any_count = 1;
+        if (warn(f, "the header gives no frames; all that follow were read")) return 1;
+    }
+    if (f->any_count) {
+        *out = (uint32_t)(most < RAW_FRAMES_MAX ? most : RAW_FRAMES_MAX);
+        return 0;
+    }
+    if (*out > most)
         return text_fail(&f->text, word.line, "%u frames of %u joints are more than the limit of %u MiB", *out,
                          f->joint_count, (uint32_t)(RAW_BYTES_MAX >> 20));
     return 0;
@@ -146,36 +173,75 @@ static void store_joint(raw_clip *clip, uint32_t frame, uint32_t j, double *q, c
     }
 }
 
-static int read_frame(bvh_file *f, uint32_t frame, double *values)
+static void copy_frame(raw_clip *clip, uint32_t from, uint32_t to)
 {
-    if (!text_next_line(&f->text))
-        return text_fail(&f->text, f->text.line, "the file ends after %u of %u frames", frame, f->frame_count);
-    if (read_values(f, frame, values)) return 1;
+    const size_t joints = clip->joint_count;
+    memcpy(clip->rotations + 4 * joints * to, clip->rotations + 4 * joints * from, 4 * joints * sizeof(float));
+    memcpy(clip->translations + 3 * joints * to, clip->translations + 3 * joints * from, 3 * joints * sizeof(float));
+    memcpy(clip->scales + 3 * joints * to, clip->scales + 3 * joints * from, 3 * joints * sizeof(float));
+}
+
+static void pose_frame(bvh_file *f, uint32_t frame, const double *values)
+{
     for (uint32_t j = 0; j < f->joint_count; ++j) {
         double q[4] = { 0.0, 0.0, 0.0, 1.0 }, t[3];
         pose_joint(f, &f->joints[j], values, q, t);
         store_joint(&f->set->clips[0], frame, j, q, t);
     }
+}
+
+/* The clip ends behind the last frame that can be read. Of those before it that cannot, the first is told. */
+static int end_clip(bvh_file *f, uint32_t frame, uint32_t end, uint32_t held, const model_error *bad)
+{
+    char text[sizeof bad->what + sizeof bad->where + 160];
+    f->set->clips[0].frame_count = end;
+    if (held) {
+        (void)snprintf(text, sizeof text, "%s: %s; %u frames that cannot be read repeat the nearest one", bad->where,
+                       bad->what, held);
+        if (warn(f, text)) return 1;
+    }
+    if (end < frame) {
+        if (held)
+            (void)snprintf(text, sizeof text, "the last %u frames cannot be read, and the clip ends before them",
+                           frame - end);
+        else
+            (void)snprintf(text, sizeof text, "%s: %s; the clip ends before it", bad->where, bad->what);
+        return warn(f, text);
+    }
+    if (!f->any_count && frame < f->frame_count) {
+        (void)snprintf(text, sizeof text, "line %u: the file ends after %u of %u frames; the clip ends before it",
+                       f->text.line, frame, f->frame_count);
+        return warn(f, text);
+    }
     return 0;
 }
 
-/* The clip ends before a frame that cannot be read; it needs its first. */
-static int cut_clip(bvh_file *f, uint32_t frame)
+/* A frame that cannot be read repeats the one before it, and those at the start the first that can. Some writers count
+ * the steps between frames and so announce one frame less than they write. */
+static int read_frames(bvh_file *f, double *values, uint32_t room)
 {
-    model_error *reason = f->text.error;
-    char text[sizeof reason->what + sizeof reason->where + 80];
-    if (!frame) return 1;
-    (void)snprintf(text, sizeof text, "%s: %s; the clip ends before it", reason->where, reason->what);
-    f->set->clips[0].frame_count = frame;
-    reason->what[0] = reason->where[0] = '\0';
-    return warn(f, text);
-}
-
-/* Some writers count the steps between frames and so announce one frame less than they write. */
-static int read_frames(bvh_file *f, double *values)
-{
-    for (uint32_t frame = 0; frame < f->frame_count; ++frame)
-        if (read_frame(f, frame, values)) return cut_clip(f, frame);
+    model_error *reason = f->text.error, bad = { "", "" };
+    uint32_t frame = 0, end = 0, wrong = 0, held = 0;
+    for (; frame < f->frame_count && frame < room && text_next_line(&f->text); ++frame) {
+        if (read_values(f, frame, values)) {
+            if (!wrong++) bad = *reason;
+            reason->what[0] = reason->where[0] = '\0';
+            (void)text_rest_of_line(&f->text);
+            if (end) copy_frame(&f->set->clips[0], frame - 1u, frame);
+            continue;
+        }
+        pose_frame(f, frame, values);
+        for (uint32_t first = 0; !end && first < frame; ++first) copy_frame(&f->set->clips[0], frame, first);
+        end = frame + 1u;
+        held = wrong;
+    }
+    if (!end) {
+        *reason = bad;
+        if (wrong) return 1;
+        return f->any_count ? text_fail(&f->text, f->text.line, "there are no frames")
+                            : text_fail(&f->text, f->text.line, "the file ends after 0 of %u frames", f->frame_count);
+    }
+    if (end_clip(f, frame, end, held, &bad)) return 1;
     return text_next_line(&f->text) ? warn(f, "the file has more frames than its header gives; they were left out") : 0;
 }
 
@@ -194,8 +260,9 @@ int bvh_read_frames(bvh_file *f)
         read_sample_rate(f, &clip->sample_rate_hz))
         return 1;
     double *values = model_zeros(f->channel_count, sizeof *values);
-    int failed = !values || raw_clip_alloc(clip, frames_to_hold(f), f->joint_count) ? bvh_out_of_memory(f)
-                                                                                    : read_frames(f, values);
+    const uint32_t room = frames_to_hold(f);
+    int failed = !values || raw_clip_alloc(clip, room, f->joint_count) ? bvh_out_of_memory(f)
+                                                                       : read_frames(f, values, room);
     free(values);
     return failed;
 }

@@ -26,6 +26,7 @@ typedef struct bvh_file {
     text_scan text;
     int end_joints;
     uint32_t frame_count; /* as announced */
+    int any_count;        /* 1: it was not, and frame_count is a limit */
     uint32_t joint_count, joint_capacity, channel_count, channel_capacity;
     bvh_joint *joints;
     bvh_channel *channels;
