@@ -190,7 +190,7 @@ static void pose_frame(bvh_file *f, uint32_t frame, const double *values)
     }
 }
 
-/* The clip ends behind the last frame that can be read. Of those before it that cannot, the first is told. */
+/* The clip ends behind the last frame that can be read. Of those before it that cannot, the first is reported. */
 static int end_clip(bvh_file *f, uint32_t frame, uint32_t end, uint32_t held, const model_error *bad)
 {
     char text[sizeof bad->what + sizeof bad->where + 160];

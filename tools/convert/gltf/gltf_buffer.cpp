@@ -122,6 +122,7 @@ static void load_buffer(file &f, buffer &b, bool first, const std::string &where
     else
         return;
     b.uri = std::string();
+    if (b.byte_length == UINT64_MAX) b.byte_length = b.data.size();
     if (b.data.size() < b.byte_length) {
         leave_out(f, where,
                   text(": the buffer has %zu bytes, but 'byteLength' says %llu: what lies behind them was left out",

@@ -6,7 +6,7 @@
  *
  *   gltf_read.cpp      model_read_gltf: the container, the order of the steps
  *   gltf_json.cpp      the JSON: checks, repairs, tinygltf
- *   gltf_members.cpp   required members
+ *   gltf_members.cpp   members and their types
  *   gltf_file.cpp      failures, warnings, names
  *   gltf_buffer.cpp    files, URIs, buffers
  *   gltf_meshopt.cpp   EXT_meshopt_compression, KHR_meshopt_compression
@@ -52,7 +52,7 @@ struct failure {
 /* tinygltf would load buffers and images itself, but a fallback buffer has no data
  * to load, and a bad image would fail the whole file: so the reader loads both. */
 struct buffer {
-    uint64_t byte_length = 0;
+    uint64_t byte_length = UINT64_MAX; /* that: all of the data */
     std::string uri;
     bool has_uri = false;
     bool fallback = false; /* only for readers without EXT_meshopt_compression: never loaded */
@@ -83,6 +83,7 @@ struct file {
     tinygltf::Model json;
     std::vector<buffer> buffers;
     std::vector<image> images;
+    std::vector<std::string> cameras; /* their names */
     bytes bin; /* the BIN chunk of a .glb */
     bool has_bin = false;
     std::vector<bytes> decoded_views; /* by meshopt, empty until used; by Draco, behind the file's own */

@@ -24,17 +24,33 @@ struct integer_rule {
     int64_t minimum, maximum;
 };
 static const int64_t int_max = 0x7fffffff, offset_max = 0xffffffff;
-static const integer_rule integer_rules[] = {
-    { "buffer", 0, int_max },        { "bufferView", -1, int_max }, { "byteLength", 0, offset_max },
-    { "byteOffset", 0, offset_max }, { "byteStride", 0, int_max },  { "children", 0, int_max },
-    { "componentType", 0, int_max }, { "count", 0, offset_max },    { "index", 0, int_max },
-    { "indices", -1, int_max },      { "input", 0, int_max },       { "magFilter", 0, int_max },
-    { "material", -1, int_max },     { "mesh", -1, int_max },       { "minFilter", 0, int_max },
-    { "mode", 0, int_max },          { "node", -1, int_max },       { "output", 0, int_max },
-    { "sampler", -1, int_max },      { "scene", -1, int_max },      { "skin", -1, int_max },
-    { "source", -1, int_max },       { "texCoord", 0, int_max },    { "wrapS", 0, int_max },
-    { "wrapT", 0, int_max }
-};
+static const integer_rule integer_rules[] = { { "buffer", 0, int_max },
+                                              { "bufferView", -1, int_max },
+                                              { "byteLength", 0, offset_max },
+                                              { "byteOffset", 0, offset_max },
+                                              { "byteStride", 0, int_max },
+                                              { "children", 0, int_max },
+                                              { "componentType", 0, int_max },
+                                              { "count", 0, offset_max },
+                                              { "index", 0, int_max },
+                                              { "indices", -1, int_max },
+                                              { "inverseBindMatrices", -1, int_max },
+                                              { "skeleton", -1, int_max },
+                                              { "input", 0, int_max },
+                                              { "magFilter", 0, int_max },
+                                              { "material", -1, int_max },
+                                              { "mesh", -1, int_max },
+                                              { "minFilter", 0, int_max },
+                                              { "mode", 0, int_max },
+                                              { "node", -1, int_max },
+                                              { "output", 0, int_max },
+                                              { "sampler", -1, int_max },
+                                              { "scene", -1, int_max },
+                                              { "skin", -1, int_max },
+                                              { "source", -1, int_max },
+                                              { "texCoord", 0, int_max },
+                                              { "wrapS", 0, int_max },
+                                              { "wrapT", 0, int_max } };
 
 /* Extensions that are understood, or may be ignored if they are not required. */
 static const char *const supported[] = { "KHR_mesh_quantization",  "EXT_meshopt_compression",
@@ -109,95 +125,135 @@ static const integer_rule *rule_of(const std::string &key)
     return nullptr;
 }
 
-static void check_integer(json &value, const integer_rule &rule, const std::string &path)
+/* "": it is a whole number within the range, now of the type that tinygltf wants. */
+static std::string fault_of_integer(json &value, const integer_rule &rule)
 {
     if (value.is_number_float()) { /* 3.0 is a whole number to JSON, but not to tinygltf */
         double number = value.get<double>();
         if (number == std::floor(number) && std::fabs(number) <= 4294967295.0) value = static_cast<int64_t>(number);
     }
-    if (!value.is_number_integer()) fail("glTF JSON" + path, text("'%s' must be a whole number", rule.key));
+    if (!value.is_number_integer()) return text("'%s' must be a whole number", rule.key);
     bool huge = value.is_number_unsigned() && value.get<uint64_t>() > static_cast<uint64_t>(rule.maximum);
     int64_t number = huge ? 0 : value.get<int64_t>();
     if (huge || number < rule.minimum || number > rule.maximum)
-        fail("glTF JSON" + path, text("'%s' is out of range (%lld to %lld)", rule.key,
-                                      static_cast<long long>(rule.minimum), static_cast<long long>(rule.maximum)));
+        return text("'%s' is out of range (%lld to %lld)", rule.key, static_cast<long long>(rule.minimum),
+                    static_cast<long long>(rule.maximum));
     if (!value.is_number_unsigned() && number >= 0) value = static_cast<uint64_t>(number);
+    return "";
 }
 
-static void check_value(json &value, const std::string &key, const std::string &path);
+static void repair_value(file &f, json &value, const std::string &key, const std::string &path);
 
 static bool holds_accessors(const std::string &key)
 {
     return key == "attributes" || key == "targets";
 }
 
-/* In "attributes" and "targets" every number is an accessor's index, whatever its key. */
-static void check_member(json &value, const std::string &key, const std::string &parent, const std::string &path)
+/* Whether a member of an object stays. In "attributes" and "targets" every number is an accessor's index, whatever its
+ * key. null: the member is not there. */
+static bool repair_member(file &f, json &value, const std::string &key, const std::string &parent,
+                          const std::string &path)
 {
     static const integer_rule accessor_rule = { "attribute", 0, int_max };
     if (key == "extras" || (parent == "extensions" && key != "EXT_meshopt_compression"))
-        return;                                                       /* not defined by glTF */
-    if (parent == "EXT_meshopt_compression" && key == "mode") return; /* there it is a string */
+        return true; /* not defined by glTF */
+    if (value.is_null()) return false;
+    if (parent == "EXT_meshopt_compression" && key == "mode") return true; /* there it is a string */
     const integer_rule *rule = holds_accessors(parent) ? &accessor_rule : rule_of(key);
-    if (rule && !value.is_structured())
-        check_integer(value, *rule, path + "/" + printable(key));
-    else
-        check_value(value, key, path + "/" + printable(key));
+    const bool is_list = value.is_array() && key == "children"; /* its elements are the whole numbers */
+    if (!rule || is_list) {
+        repair_value(f, value, key, path + "/" + printable(key));
+        return true;
+    }
+    if (value.is_object() && key == "indices" && parent == "sparse") {
+        repair_value(f, value, key, path + "/" + printable(key));
+        return true;
+    }
+    const std::string fault = fault_of_integer(value, *rule);
+    if (!fault.empty())
+        leave_out(f, "glTF JSON" + path + (holds_accessors(parent) ? "/" + printable(key) : ""),
+                  ": " + fault + "; it was left out");
+    return fault.empty();
 }
 
-static void check_value(json &value, const std::string &key, const std::string &path)
+/* Elements that are no nodes: a joint becomes the first one, which keeps the numbers of the others. */
+static void repair_nodes(file &f, json &list, const std::string &key, const std::string &path)
 {
-    if (value.is_object()) {
-        for (auto member = value.begin(); member != value.end(); ++member)
-            check_member(member.value(), member.key(), key, path);
-    } else if (value.is_array()) {
-        static const integer_rule node_rule = { "nodes", 0, int_max };
-        const integer_rule *rule = key == "nodes" || key == "joints" ? &node_rule : rule_of(key);
-        for (size_t i = 0; i < value.size(); ++i) {
-            std::string element = path + "/" + std::to_string(i);
-            if (rule && !value[i].is_structured())
-                check_integer(value[i], *rule, element);
-            else
-                check_value(value[i], key, element);
-        }
+    static const integer_rule node_rule = { "node", 0, int_max };
+    for (size_t i = 0; i < list.size(); ++i) {
+        const std::string fault = fault_of_integer(list[i], node_rule);
+        if (fault.empty()) continue;
+        leave_out(f, "glTF JSON" + path + "/" + std::to_string(i),
+                  ": " + fault + (key == "joints" ? "; the skin's first joint was used" : "; it was left out"));
+        if (key == "joints" && i > 0)
+            list[i] = list[0];
+        else if (key == "joints" && list.size() > 1 && fault_of_integer(list[1], node_rule).empty())
+            list[i] = list[1];
+        else
+            list.erase(i--);
     }
 }
 
-/* Top-level arrays must be arrays of objects, and small enough for tinygltf's structs. */
-static void check_top_level(const json &document)
+static void repair_value(file &f, json &value, const std::string &key, const std::string &path)
 {
-    static const char *const arrays[] = { "accessors", "animations", "bufferViews", "buffers", "cameras",
-                                          "images",    "materials",  "meshes",      "nodes",   "samplers",
-                                          "scenes",    "skins",      "textures" };
+    if (value.is_object()) {
+        for (auto member = value.begin(); member != value.end();) {
+            if (repair_member(f, member.value(), member.key(), key, path))
+                ++member;
+            else
+                member = value.erase(member);
+        }
+    } else if (value.is_array() && !path.empty() && path.find('/', 1) != std::string::npos &&
+               (key == "nodes" || key == "joints" || key == "children")) {
+        repair_nodes(f, value, key, path);
+    } else if (value.is_array()) {
+        for (size_t i = 0; i < value.size(); ++i) repair_value(f, value[i], key, path + "/" + std::to_string(i));
+    }
+}
+
+/* Top-level arrays must be arrays, and small enough for tinygltf's structs. */
+static void repair_top_level(file &f, json &document)
+{
+    static const char *const arrays[] = { "accessors", "animations", "bufferViews",    "buffers",           "images",
+                                          "materials", "meshes",     "nodes",          "samplers",          "scenes",
+                                          "skins",     "textures",   "extensionsUsed", "extensionsRequired" };
     for (const char *name : arrays) {
         auto found = document.find(name);
         if (found == document.end()) continue;
-        if (!found->is_array()) fail("glTF JSON", text("'%s' must be an array", name));
-        if (found->size() > array_max)
+        if (!found->is_array()) {
+            if (!found->is_null()) leave_out(f, "glTF JSON", text(": '%s' must be an array; it was left out", name));
+            document.erase(found);
+        } else if (found->size() > array_max) {
             fail("glTF JSON", text("'%s' has %zu elements; the limit is %llu", name, found->size(),
                                    static_cast<unsigned long long>(array_max)));
-        for (size_t i = 0; i < found->size(); ++i)
-            if (!(*found)[i].is_object()) fail(text("glTF JSON/%s/%zu", name, i), "this must be an object");
+        }
     }
 }
 
 static std::string string_member(const json &object, const char *key)
 {
-    auto found = object.find(key);
+    const auto found = object.is_object() ? object.find(key) : object.end();
     return found != object.end() && found->is_string() ? found->get<std::string>() : std::string();
 }
 
-static void check_asset(const json &document)
+/* glTF 1 has objects in place of arrays, and cannot be read. */
+static void check_asset(file &f, const json &document)
 {
-    auto asset = document.find("asset");
-    if (asset == document.end() || !asset->is_object())
-        fail("glTF JSON", "there is no 'asset' object: this is not a glTF file");
-    std::string version = string_member(*asset, "version"), minimum = string_member(*asset, "minVersion");
-    if (version.compare(0, 2, "2.") != 0)
+    const auto asset = document.find("asset"), meshes = document.find("meshes"), nodes = document.find("nodes");
+    const bool is_first = (meshes != document.end() && meshes->is_object() && !meshes->empty()) ||
+                          (nodes != document.end() && nodes->is_object() && !nodes->empty());
+    const bool has_asset = asset != document.end() && asset->is_object();
+    const std::string version = has_asset ? string_member(*asset, "version") : "",
+                      minimum = has_asset ? string_member(*asset, "minVersion") : "";
+    if (is_first || version.compare(0, 2, "1.") == 0)
         fail("glTF JSON/asset", "this is glTF version '" + printable(version) + "'; only version 2 is read");
+    if (version.compare(0, 2, "2.") != 0)
+        leave_out(f, "glTF JSON",
+                  has_asset ? ": this is glTF version '" + printable(version) + "'; it was read as version 2"
+                            : ": there is no 'asset' object; the file was read as glTF version 2");
     if (!minimum.empty() && minimum != "2.0")
-        fail("glTF JSON/asset",
-             "this file needs a reader of glTF version '" + printable(minimum) + "'; this one reads 2.0");
+        leave_out(f, "glTF JSON",
+                  ": the file needs a reader of glTF version '" + printable(minimum) + "'; it was read as version 2.0");
 }
 
 /* Draco's positions are nowhere else; of other extensions only what they add is lost. */
@@ -205,7 +261,6 @@ static void check_required(file &f, const json &document)
 {
     auto required = document.find("extensionsRequired");
     if (required == document.end()) return;
-    if (!required->is_array()) fail("glTF JSON", "'extensionsRequired' must be an array");
     for (const json &name : *required) {
         std::string extension = name.is_string() ? name.get<std::string>() : "?";
         if (is_supported(extension)) continue;
@@ -267,9 +322,11 @@ static void take_buffers(file &f, json &document)
     for (size_t i = 0; i < array.size(); ++i) {
         const json &object = array[i];
         auto length = object.find("byteLength");
-        if (length == object.end()) fail(text("buffer %zu", i), "'byteLength' is missing");
         buffer b;
-        b.byte_length = length->get<uint64_t>();
+        if (length == object.end())
+            leave_out(f, text("buffer %zu", i), ": 'byteLength' is missing; all of its bytes were taken");
+        else
+            b.byte_length = length->get<uint64_t>();
         b.has_uri = object.contains("uri");
         b.uri = string_member(object, "uri");
         b.fallback = is_fallback(object);
@@ -297,6 +354,39 @@ static void take_images(file &f, json &document)
         i.view = view != object.end() ? view->get<int>() : -1;
         f.images.push_back(std::move(i));
     }
+}
+
+/* tinygltf refuses a file with indices that are in no accessor, or in one without data. */
+static void repair_indices(file &f, json &document)
+{
+    const auto meshes = document.find("meshes"), accessors = document.find("accessors"),
+               views = document.find("bufferViews");
+    const size_t view_count = views != document.end() ? views->size() : 0;
+    for (size_t m = 0; meshes != document.end() && m < meshes->size(); ++m) {
+        json &primitives = (*meshes)[m]["primitives"];
+        for (size_t i = 0; i < primitives.size(); ++i) {
+            const auto found = primitives[i].find("indices");
+            const size_t index = found != primitives[i].end() && found->is_number_unsigned() ? found->get<size_t>()
+                                                                                             : SIZE_MAX;
+            const bool is_there = accessors != document.end() && index < accessors->size();
+            if (index == SIZE_MAX || primitives[i].contains("extensions") ||
+                (is_there && (*accessors)[index].value("bufferView", SIZE_MAX) < view_count))
+                continue;
+            leave_out(f, text("glTF JSON/meshes/%zu/primitives/%zu", m, i),
+                      text(is_there ? ": its indices (accessor %zu) have no data; it was left out"
+                                    : ": accessor %zu does not exist; it was left out",
+                           index));
+            primitives.erase(i--);
+        }
+    }
+}
+
+/* A pack has no cameras: only their names are of use. */
+static void take_cameras(file &f, json &document)
+{
+    const json array = take(document, "cameras");
+    for (size_t i = 0; array.is_array() && i < array.size(); ++i)
+        f.cameras.push_back(printable(name_or(string_member(array[i], "name"), "camera", i)));
 }
 
 /* A channel without a target node is legal, but tinygltf calls it an error: -1 says "none". */
@@ -350,15 +440,20 @@ static void find_extensions(file &f, const json &value, const std::string &where
     }
 }
 
-static const char *const named_arrays[][2] = { { "materials", "material" },   { "meshes", "mesh" },
-                                               { "nodes", "node" },           { "textures", "texture" },
-                                               { "images", "image" },         { "samplers", "sampler" },
-                                               { "cameras", "camera" },       { "scenes", "scene" },
-                                               { "animations", "animation" }, { "skins", "skin" },
-                                               { "accessors", "accessor" },   { "bufferViews", "buffer view" },
+static const char *const named_arrays[][2] = { { "materials", "material" },
+                                               { "meshes", "mesh" },
+                                               { "nodes", "node" },
+                                               { "textures", "texture" },
+                                               { "images", "image" },
+                                               { "samplers", "sampler" },
+                                               { "scenes", "scene" },
+                                               { "animations", "animation" },
+                                               { "skins", "skin" },
+                                               { "accessors", "accessor" },
+                                               { "bufferViews", "buffer view" },
                                                { "buffers", "buffer" } };
 
-/* After check_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
+/* After repair_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
  * the objects searched here; an extension that no object has is noted without a name. */
 static void find_unsupported(file &f, const json &document)
 {
@@ -397,12 +492,16 @@ static void run_tinygltf(file &f, const json &document)
 void parse_json(file &f, const char *text_begin, size_t size)
 {
     json document = parse_text(text_begin, size);
-    check_asset(document);
-    check_top_level(document);
+    check_asset(f, document);
+    document["asset"] = { { "version", "2.0" } };
+    repair_top_level(f, document);
     rename_meshopt(document);
     check_required(f, document);
-    check_value(document, "", "");
-    check_members(document);
+    repair_value(f, document, "", "");
+    repair_members(f, document);
+    repair_lists(f, document);
+    repair_indices(f, document);
+    take_cameras(f, document);
     find_unsupported(f, document);
     take_buffers(f, document);
     take_images(f, document);

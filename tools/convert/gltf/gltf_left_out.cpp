@@ -64,9 +64,7 @@ static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::
 
 static void find_in_scene(file &f)
 {
-    for (size_t i = 0; i < f.json.cameras.size(); ++i)
-        leave_out(f, "camera '" + printable(name_or(f.json.cameras[i].name, "camera", i)) + "'",
-                  ": cameras are not kept");
+    for (const std::string &camera : f.cameras) leave_out(f, "camera '" + camera + "'", ": cameras are not kept");
     for (size_t i = 0; i < f.json.nodes.size(); ++i)
         if (f.node_of[i] == MODEL_NONE)
             leave_out(f, "node '" + printable(name_or(f.json.nodes[i].name, "node", i)) + "'",

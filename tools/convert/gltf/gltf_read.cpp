@@ -18,52 +18,73 @@ struct chunk {
     size_t offset, size;
 };
 
-/* The chunk at `offset`, which must have this type. */
-static chunk read_chunk(const bytes &data, size_t length, size_t offset, const char *name)
+/* The chunk at `offset`. One that is longer than the file ends with it. */
+static chunk read_chunk(file &f, const bytes &data, size_t offset)
 {
-    std::string where = text("GLB chunk at byte %zu", offset);
-    if (length - offset < 8)
-        fail(where, "the file ends inside a chunk header: it is truncated, export or copy it again");
     chunk c = { offset + 8, read_u32(data, offset) };
-    if (c.size > length - c.offset)
-        fail(where,
-             text("the chunk says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
-                  c.size, length - c.offset));
-    if (memcmp(&data[offset + 4], name, 4) != 0) fail(where, text("this chunk must be %.4s", name));
+    const size_t left = data.size() - c.offset;
+    if (c.size > left) {
+        leave_out(f, text("GLB chunk at byte %zu", offset),
+                  text(": it says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
+                       c.size, left));
+        c.size = left;
+    }
     return c;
 }
 
-static size_t glb_length(const bytes &data)
+static bool is_chunk(const bytes &data, size_t offset, const char *name)
 {
-    if (data.size() < 12)
-        fail("GLB header", "the file ends inside its header: it is truncated, export or copy it again");
-    uint32_t version = read_u32(data, 4), length = read_u32(data, 8);
-    if (version != 2) fail("GLB header", text("this is glTF version %u; only version 2 is read", version));
-    if (length > data.size())
-        fail("GLB header", text("the header says %u bytes, but the file has %zu: it is truncated, export or copy it "
-                                "again",
-                                length, data.size()));
-    if (length < 12)
-        fail("GLB header", text("the header says %u bytes, which is shorter than the header itself", length));
-    return length;
+    return offset <= data.size() && data.size() - offset >= 8 && memcmp(&data[offset + 4], name, 4) == 0;
 }
 
-/* A .glb: a header, a JSON chunk, and at most one BIN chunk that counts. */
+/* The header's numbers are not needed where the first chunk is JSON, as in no file of version 1. */
+static void check_header(file &f, const bytes &data)
+{
+    if (data.size() < 20)
+        fail("GLB header", "the file ends inside its header: it is truncated, export or copy it again");
+    const uint32_t version = read_u32(data, 4), length = read_u32(data, 8);
+    if (!is_chunk(data, 12, "JSON"))
+        fail("GLB header",
+             version != 2 ? text("this is glTF version %u; only version 2 is read", version)
+                          : std::string("the first chunk must be JSON: the file is damaged, export or copy it again"));
+    if (version != 2) leave_out(f, "GLB header", text(": this is glTF version %u; it was read as version 2", version));
+    if (length > data.size())
+        leave_out(f, "GLB header",
+                  text(": it says %u bytes, but the file has %zu: it is truncated, export or copy it again", length,
+                       data.size()));
+}
+
+/* A .glb: a header, a JSON chunk, and at most one BIN chunk that counts. Others are passed over. */
 static void read_glb(file &f, const bytes &data)
 {
-    size_t length = glb_length(data);
-    if (length < data.size())
-        leave_out(f, "GLB header",
-                  text(": %zu bytes behind the end that it gives were left out", data.size() - length));
-    chunk json = read_chunk(data, length, 12, "JSON");
-    size_t next = json.offset + json.size;
-    if (next < length) {
-        chunk bin = read_chunk(data, length, next, "BIN\0");
-        f.bin.assign(data.begin() + static_cast<std::ptrdiff_t>(bin.offset),
-                     data.begin() + static_cast<std::ptrdiff_t>(bin.offset + bin.size));
-        f.has_bin = true;
+    check_header(f, data);
+    const size_t length = read_u32(data, 8), asked = size_t{ 20 } + read_u32(data, 12);
+    if (asked > data.size())
+        fail("GLB chunk at byte 12",
+             text("the chunk says %zu bytes, but only %zu follow: the file is truncated, export or copy it again",
+                  asked - 20, data.size() - 20));
+    size_t next = asked;
+    while (next < data.size() && !f.has_bin) {
+        if (data.size() - next < 8) {
+            if (next < length)
+                leave_out(f, text("GLB chunk at byte %zu", next),
+                          ": the file ends inside a chunk header: it is truncated, export or copy it again");
+            break;
+        }
+        const bool is_bin = is_chunk(data, next, "BIN\0");
+        if (!is_bin && next >= length) break;
+        const chunk c = read_chunk(f, data, next);
+        if (is_bin)
+            f.bin.assign(data.begin() + static_cast<std::ptrdiff_t>(c.offset),
+                         data.begin() + static_cast<std::ptrdiff_t>(c.offset + c.size));
+        else
+            leave_out(f, text("GLB chunk at byte %zu", next), ": it is neither JSON nor BIN, and was left out");
+        f.has_bin = is_bin;
+        next = c.offset + c.size;
     }
-    parse_json(f, reinterpret_cast<const char *>(&data[0]) + json.offset, json.size);
+    if (next < data.size())
+        leave_out(f, "GLB", text(": %zu bytes behind its chunks were left out", data.size() - next));
+    parse_json(f, reinterpret_cast<const char *>(&data[0]) + 20, asked - 20);
 }
 
 static bool looks_like_json(const bytes &data)

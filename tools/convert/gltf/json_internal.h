@@ -7,8 +7,12 @@
 namespace gltf
 {
 
-/* After the types of numbers and of top-level arrays have been checked. Throws failure. */
-void check_members(const nlohmann::json &document);
+struct file;
+
+/* After top-level arrays have been checked: members of a wrong type are left out. */
+void repair_members(file &f, nlohmann::json &document);
+/* After that, and after whole numbers have been checked: objects that lack a required member. */
+void repair_lists(file &f, nlohmann::json &document);
 
 } // namespace gltf
 
