@@ -389,8 +389,23 @@ static void seams_stay_shut(void **state)
     sheet_free(&s);
 }
 
-/* Twins that a target parts: at rest no gap may open between them. */
-static void parting_borders_are_locked(void **state)
+/* Points that touch at rest and that a target parts go in pairs: at rest no gap opens between them. */
+static uint32_t count_pairs(const sheet *s, const lod *l, uint32_t first, uint32_t end)
+{
+    uint8_t *used = test_zeros(s->mesh.vertex_count);
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < l->levels[0].index_count; i++) {
+        used[l->levels[0].indices[i]] = 1;
+    }
+    for (uint32_t y = first; y < end; y++) {
+        assert_int_equal(used[vertex_at(s, s->side / 2u, y)], used[s->side * s->side + y]);
+        count += used[s->side * s->side + y];
+    }
+    free(used);
+    return count;
+}
+
+static void parting_borders_stay_shut(void **state)
 {
     (void)state;
     sheet s = sheet_new(21, 2, 1);
@@ -399,16 +414,60 @@ static void parting_borders_are_locked(void **state)
         s.mesh.targets[0].position[(s.side * s.side + y) * 3u + 2u] = 0.01f;
     }
     lod *l = build_to(&s.mesh, LOD_QUALITY, 0.15f);
-    uint8_t *used = test_zeros(s.mesh.vertex_count);
-    for (uint32_t i = 0; i < l->levels[0].index_count; i++) {
-        used[l->levels[0].indices[i]] = 1;
-    }
-    for (uint32_t y = 0; y < s.side; y++) {
-        assert_true(used[vertex_at(&s, s.side / 2u, y)] && used[s.side * s.side + y]);
-    }
-    free(used);
+    const uint32_t kept = count_pairs(&s, l, 0, s.side);
+    assert_true(kept >= 2u && kept < s.side);
     lod_free(l);
     sheet_free(&s);
+}
+
+#define SLIT_FROM 4u /* rows of the sheet */
+#define SLIT_END 17u
+
+/* A closed mouth: a slit in the middle of a sheet, and a pocket behind it, so that no lip is a border. Where the slit
+ * ends, both lips are one surface. */
+static sheet mouth_new(void)
+{
+    sheet s = sheet_new(21, 2, 1);
+    const uint32_t inner = s.mesh.vertex_count, rows = SLIT_END - SLIT_FROM, own = s.side * s.side;
+    const size_t floats = (size_t)(inner + rows) * 3u * sizeof(float);
+    wrinkle(&s, 11);
+    s.mesh.position = realloc(s.mesh.position, floats);
+    s.mesh.normal = realloc(s.mesh.normal, floats);
+    s.mesh.uv = realloc(s.mesh.uv, floats);
+    s.mesh.targets[0].position = realloc(s.mesh.targets[0].position, floats);
+    s.mesh.indices = realloc(s.mesh.indices, (s.mesh.index_count + 12u * rows) * sizeof(uint32_t));
+    assert_true(s.mesh.position && s.mesh.normal && s.mesh.uv && s.mesh.targets[0].position && s.mesh.indices);
+    for (uint32_t i = 0; i < rows; i++) {
+        const uint32_t y = SLIT_FROM + i, v = inner + i;
+        place(&s, v, s.side / 2u, y);
+        s.mesh.position[v * 3u + 2u] = -0.01f;
+        memset(s.mesh.targets[0].position + v * 3u, 0, 3u * sizeof(float));
+        if (i > 0 && i + 1u < rows) {
+            s.mesh.targets[0].position[(own + y) * 3u] = 0.006f * sinf(3.1416f * (float)i / (float)(rows - 1u));
+        }
+    }
+    for (uint32_t i = 0; i + 1u < rows; i++) {
+        const uint32_t y = SLIT_FROM + i, a = vertex_at(&s, s.side / 2u, y), b = a + s.side, c = own + y, d = c + 1u;
+        const uint32_t v = inner + i, quads[12] = { a, v, v + 1u, a, v + 1u, b, c, d, v + 1u, c, v + 1u, v };
+        memcpy(s.mesh.indices + s.mesh.index_count, quads, sizeof quads);
+        s.mesh.index_count += 12u;
+        s.mesh.submeshes[1].index_count += 12u;
+    }
+    s.mesh.vertex_count += rows;
+    return s;
+}
+
+static void shut_lips_stay_shut(void **state)
+{
+    (void)state;
+    for (lod_mode mode = LOD_QUALITY; mode <= LOD_FAST; mode++) {
+        sheet s = mouth_new();
+        lod *l = build_to(&s.mesh, mode, 0.1f);
+        const uint32_t kept = count_pairs(&s, l, SLIT_FROM + 1u, SLIT_END - 1u);
+        assert_true(kept >= 1u && kept < SLIT_END - SLIT_FROM - 2u);
+        lod_free(l);
+        sheet_free(&s);
+    }
 }
 
 static void nothing_turns_over(void **state)
@@ -703,7 +762,8 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(same_bytes_twice),
         cmocka_unit_test(levels_by_error),
         cmocka_unit_test(seams_stay_shut),
-        cmocka_unit_test(parting_borders_are_locked),
+        cmocka_unit_test(parting_borders_stay_shut),
+        cmocka_unit_test(shut_lips_stay_shut),
         cmocka_unit_test(nothing_turns_over),
         cmocka_unit_test(outline_stays),
         cmocka_unit_test(fins_are_left),

@@ -58,7 +58,7 @@ static uint32_t list_candidates(builder *b, const lod_fan *fan, candidate *out)
     for (uint32_t i = 0; i < fan->ring_count; i++) {
         uint32_t at = count;
         candidate c = { fan->ring[i], 0.0 };
-        if (!lod_move_allowed(&b->surface, fan, c.to, &move)) {
+        if (!lod_move_allowed(&b->surface, fan, c.to, &move) || !lod_contact_allows(&b->surface, fan, c.to)) {
             continue;
         }
         c.quadric = lod_quadric_cost(&b->surface, b->quadrics, fan->point, c.to);
@@ -113,6 +113,28 @@ static double importance(const builder *b, uint32_t point, double squared)
     return weight * weight;
 }
 
+/* The cost of a point's best collapse together with the collapse of the point that touches it, the larger one. Returns 1
+ * when out of memory. */
+static int measure_contact(builder *b, uint32_t point, double *best)
+{
+    const uint32_t other = b->surface.other[point];
+    candidate c = { lod_contact_goes_to(&b->surface, b->best_to[point]), 0.0 };
+    float length = 0.0f;
+    lod_fan fan;
+    double cost;
+    if (other == LOD_NONE) {
+        return 0;
+    }
+    if (lod_fan_gather(&b->surface, other, &fan) || (b->track && lod_track_open(b->track, &fan))) {
+        return 1;
+    }
+    c.quadric = lod_quadric_cost(&b->surface, b->quadrics, other, c.to);
+    cost = measure(b, &fan, &c, HUGE_VAL, &length);
+    *best = cost > *best ? cost : *best;
+    b->best_length[point] = length > b->best_length[point] ? length : b->best_length[point];
+    return 0;
+}
+
 /* Find a point's best collapse and queue it. Returns 1 when out of memory. */
 static int queue_point(builder *b, uint32_t point)
 {
@@ -144,6 +166,9 @@ static int queue_point(builder *b, uint32_t point)
             b->best_to[point] = list[i].to;
             b->best_length[point] = length;
         }
+    }
+    if (measure_contact(b, point, &best)) {
+        return 1;
     }
     b->state[point] = QUEUED;
     lod_queue_put(&b->queue, point, (float)(best * importance(b, point, best)));
@@ -236,11 +261,30 @@ static int collapse(builder *b, lod_fan *fan, const lod_move *m)
         return 1;
     }
     for (uint32_t i = 0; i < fan->ring_count; i++) { /* `to` is among them */
-        if (change_point(b, fan->ring[i])) {
+        const uint32_t point = fan->ring[i], other = b->surface.other[point];
+        if (change_point(b, point) || (other != LOD_NONE && change_point(b, other))) {
             return 1;
         }
     }
     return 0;
+}
+
+/* The point that touches one that has gone follows it. Returns 1 when out of memory. */
+static int follow(builder *b, uint32_t point)
+{
+    const uint32_t other = b->surface.other[point];
+    lod_fan fan;
+    lod_move move;
+    if (other == LOD_NONE || lod_fan_gather(&b->surface, other, &fan) ||
+        !lod_move_allowed(&b->surface, &fan, lod_contact_goes_to(&b->surface, b->best_to[point]), &move)) {
+        return 0;
+    }
+    if (b->state[other] == QUEUED) {
+        lod_queue_drop(&b->queue, other);
+    }
+    b->state[other] = OUT;
+    b->best_length[other] = b->best_length[point];
+    return collapse(b, &fan, &move);
 }
 
 /* Take the cheapest point of the queue. Returns 1 when out of memory. */
@@ -252,10 +296,11 @@ static int take(builder *b, uint32_t point)
     if (lod_fan_gather(&b->surface, point, &fan)) {
         return 0;
     }
-    if (!lod_move_allowed(&b->surface, &fan, b->best_to[point], &move)) {
+    if (!lod_move_allowed(&b->surface, &fan, b->best_to[point], &move) ||
+        !lod_contact_allows(&b->surface, &fan, b->best_to[point])) {
         return queue_point(b, point); /* a change two rings away now forbids the collapse */
     }
-    return collapse(b, &fan, &move);
+    return collapse(b, &fan, &move) || follow(b, point);
 }
 
 /* Whether a point has to wait for a coarser level. */

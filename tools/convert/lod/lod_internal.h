@@ -74,6 +74,7 @@ typedef struct lod_surface {
     uint32_t *part;             /* [vertex_count] by point: the submesh of one of its triangles */
     uint64_t *shows;  /* [vertex_count][poses.words] by point: the poses in which a rim opens or closes there */
     uint8_t *faceted; /* [vertex_count] by point: nearly each triangle around it has a vertex of its own there */
+    uint32_t *other;  /* [vertex_count] by point: the one that touches it at rest and moves away, or LOD_NONE */
     uint32_t *card;   /* [vertex_count] by point: into cards, or LOD_NONE */
     lod_card *cards;
     uint32_t card_count;
@@ -134,6 +135,13 @@ typedef struct lod_move {
 /* 1 if the collapse keeps topology, seams, borders and orientation; fills *move. */
 int lod_move_allowed(lod_surface *s, const lod_fan *fan, uint32_t to, lod_move *move);
 void lod_move_apply(lod_surface *s, const lod_move *move);
+
+/* Find the points that touch. Returns 1 when out of memory. lod_contact.c */
+int lod_contacts_make(lod_surface *s);
+/* Where the point that touches one goes if that one goes to `to`. */
+uint32_t lod_contact_goes_to(const lod_surface *s, uint32_t to);
+/* 1 if the point that touches a fan's, if any, may go with it; `to` is allowed for the fan's own. */
+int lod_contact_allows(lod_surface *s, const lod_fan *fan, uint32_t to);
 
 /* Whether a card would keep its area, and the move done to it; to be called before lod_move_apply. lod_cards.c */
 int lod_cards_allow(const lod_surface *s, const lod_move *move);

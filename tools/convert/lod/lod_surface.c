@@ -197,52 +197,6 @@ static void lock_complex_points(lod_surface *s, uint8_t *border)
     }
 }
 
-static int place_compare(const float *a, const float *b)
-{
-    for (uint32_t k = 0; k < 3u; k++) {
-        if (a[k] != b[k]) {
-            return a[k] < b[k] ? -1 : 1;
-        }
-    }
-    return 0;
-}
-
-typedef struct border_point {
-    const float *at;
-    uint32_t point;
-} border_point;
-
-static int by_place(const void *a, const void *b)
-{
-    const border_point *p = a, *q = b;
-    int order = place_compare(p->at, q->at);
-    return order ? order : (p->point > q->point) - (p->point < q->point);
-}
-
-/* Lock two borders at one place that targets move apart: a gap that is closed at rest must stay closed. */
-static int lock_touching_borders(lod_surface *s, const uint8_t *border)
-{
-    uint32_t count = 0;
-    border_point *list = calloc(s->mesh->vertex_count + 1u, sizeof *list);
-    if (!list) {
-        return 1;
-    }
-    for (uint32_t p = 0; p < s->mesh->vertex_count; p++) {
-        if (border[p]) {
-            list[count].at = s->mesh->position + (size_t)p * 3u;
-            list[count++].point = p;
-        }
-    }
-    qsort(list, count, sizeof *list, by_place);
-    for (uint32_t i = 1; i < count; i++) {
-        if (!place_compare(list[i - 1u].at, list[i].at)) {
-            s->locked[list[i - 1u].point] = s->locked[list[i].point] = 1;
-        }
-    }
-    free(list);
-    return 0;
-}
-
 static int lock_points(lod_surface *s)
 {
     uint8_t *border = calloc(s->mesh->vertex_count + 1u, 1);
@@ -251,7 +205,7 @@ static int lock_points(lod_surface *s)
         return 1;
     }
     lock_complex_points(s, border);
-    failed = lock_touching_borders(s, border) || lod_cards_make(s, border);
+    failed = lod_contacts_make(s) || lod_cards_make(s, border);
     free(border);
     return failed;
 }
@@ -319,6 +273,7 @@ void lod_surface_free(lod_surface *s)
     free(s->part);
     free(s->mark);
     free(s->faceted);
+    free(s->other);
     free(s->card);
     free(s->cards);
     free(s->attribute);
