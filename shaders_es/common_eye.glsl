@@ -24,6 +24,12 @@ struct noh_eye {
     float across; /* its length, 1 at the rim of the iris */
 };
 
+/* Half a pixel in these lengths. Edges on the iris are at least a pixel wide, so that they do not break up from far. */
+float noh_half_pixel(noh_eye e)
+{
+    return 0.5 * fwidth(e.across);
+}
+
 noh_eye noh_eye_at(vec3 normal)
 {
     noh_eye e = noh_eye(vec3(0.0), vec3(0.0), 2.0);
@@ -93,10 +99,11 @@ vec3 noh_iris_normal(noh_surface s, noh_eye e)
     return normalize(s.normal - e.side * (1.4 * (1.0 - smoothstep(0.75, 1.0, e.across))));
 }
 
-/* The rim of an iris is dark, and fades into the white. */
-float noh_iris_rim(noh_eye e)
+/* The rim of an iris is dark, and fades into the white. Wider, it is paler by as much: half_pixel: from
+ * noh_half_pixel */
+float noh_iris_rim(noh_eye e, float half_pixel)
 {
-    return 1.0 - 0.35 * smoothstep(0.7, 0.95, e.across) * (1.0 - smoothstep(0.98, 1.2, e.across));
+    return 1.0 - 0.35 * (smoothstep(0.7 - half_pixel, 0.95 + half_pixel, e.across) - smoothstep(0.98 - half_pixel, 1.2 + half_pixel, e.across));
 }
 
 float noh_on_cornea = 1.0; /* 1 on the cornea and on balls without an iris, 0 on the white: noh_eye_light sets it */
@@ -117,8 +124,9 @@ vec3 noh_eye_light(inout noh_surface s)
     s.roughness = min(s.roughness, 0.12);
     if (e.gaze != vec3(0.0)) {
         mirror = noh_cornea(e, s.normal);
-        noh_on_cornea = 1.0 - smoothstep(0.8, 1.0, e.across);
-        s.albedo *= noh_iris_rim(e);
+        float half_pixel = noh_half_pixel(e);
+        noh_on_cornea = 1.0 - smoothstep(0.8 - half_pixel, 1.0 + half_pixel, e.across);
+        s.albedo *= noh_iris_rim(e, half_pixel);
         s.normal = noh_iris_normal(s, e);
     }
     if (noh_surface_more[0].x > noh_surface_more[1].x) {

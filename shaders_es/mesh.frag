@@ -6,7 +6,7 @@ uniform vec3 noh_bounds_size;
 in vec3 v_world;
 in vec3 v_normal;
 in vec2 v_uv;
-in vec4 v_color;
+centroid in vec4 v_color;
 /* Unused inputs are not declared, so they are neither interpolated nor computed. */
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES) || NOH_DEBUG_VIEW == 3
 in vec4 v_tangent;

@@ -4,7 +4,7 @@ out vec3 v_world;
 out vec3 v_normal;
 out vec4 v_tangent;
 out vec2 v_uv;
-out vec4 v_color;
+centroid out vec4 v_color;
 out vec3 v_model;
 
 void main()

@@ -160,6 +160,8 @@ static void two_lobes_send_out_no_more_than_comes(void **state)
 
 /* ---- eyes ---- */
 
+#define RIM_SPREAD 1.5
+
 #define IRIS 0.45f /* sine, and on a ball of radius 1 also the radius */
 
 static model_material eye_of(float red, float green, float blue)
@@ -273,6 +275,78 @@ static void lids_darken_the_ball(void **state)
     }
     free(rgba[0]);
     free(rgba[1]);
+}
+
+/* The dark rim of an iris takes as much light, wherever it lies between the pixels: its edges are a pixel wide at least,
+ * and what is wider is paler. The iris has a radius of a pixel and a half, its rim is 0.4 pixels wide. */
+static void the_rim_of_an_iris_is_a_pixel_wide(void **state)
+{
+    double low = 1e9, high = 0.0;
+    (void)state;
+    for (int i = 0; i < 16; i++) {
+        const float shift[2] = { 0.25f * (float)(i % 4) / (0.5f * (float)SIDE),
+                                 0.25f * (float)(i / 4) / (0.5f * (float)SIDE) };
+        const float small[12] = { 0.1f, 0, 0, shift[0], 0, 0.1f, 0, shift[1], 0, 0, 0.1f, 0 };
+        double sums[2] = { 0.0, 0.0 };
+        for (int has_iris = 0; has_iris < 2; has_iris++) {
+            model_material eye = eye_of(0.5f, 0.5f, 0.5f);
+            scene s;
+            eye.f90_loss = 1.0f;
+            memset(eye.f0, 0, sizeof eye.f0);
+            if (!has_iris) eye.surface_values[2] = eye.surface_values[3] = 0.0f;
+            scene_open(&s, &eye, NULL, 0, NULL);
+            uint8_t *rgba = scene_draw(&s, SPHERE, small, NULL);
+            for (uint32_t p = 0; p < SIDE * SIDE; p++) sums[has_iris] += decoded(rgba[4 * p + 1]);
+            free(rgba);
+            scene_close(&s);
+        }
+        low = fmin(low, sums[0] - sums[1]);
+        high = fmax(high, sums[0] - sums[1]);
+    }
+    print_message("# the rim takes %.3f to %.3f\n", low, high);
+    assert_true(low > 0.0 && high < RIM_SPREAD * low);
+}
+
+/* Where few samples of a pixel lie in a triangle, the pixel's middle lies outside of it. Colours there are not carried on
+ * beyond the colours of the triangle's corners: a rim one triangle wide would be dashed. */
+static void colours_stay_between_those_of_the_corners(void **state)
+{
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f };
+    const test_model_desc desc = { MESHES, 65, 0, TEST_UVS | TEST_COLORS, 1 };
+    model *m = test_model(&desc);
+    double least = 1.0, most = 0.0;
+    size_t count;
+    scene s;
+    (void)state;
+    m->materials = test_zeros(sizeof *m->materials);
+    m->materials[0] = scene_material(values);
+    m->materials[0].name = model_string("ball");
+    m->materials[0].unlit = 1;
+    m->material_count = 1;
+    for (int i = 0; i < MESHES; i++) m->meshes[i].submeshes[0].material = 0;
+    for (uint32_t v = 0; v < 65u * 65u; v++) {
+        const uint32_t column = v % 65u;
+        const float x = (float)(column / 2u) / 16.0f - 1.0f + (column % 2u ? 0.004f : 0.0f);
+        const float at[3] = { x + 0.1f * (float)(v / 65u) / 64.0f, (float)(v / 65u) / 32.0f - 1.0f, 0.0f };
+        memcpy(m->meshes[SQUARE].position + 3u * v, at, sizeof at);
+        for (int c = 0; c < 4; c++) {
+            m->meshes[SQUARE].color[4u * v + (uint32_t)c] = c == 3 ? 1.0f : (column + 1u) / 2u % 2u ? 0.25f : 0.0625f;
+        }
+    }
+    uint8_t *bytes = test_pack_of(m, &count, NULL);
+    model_free(m);
+    scene_open_pack(&s, bytes, count, NULL, 0, NULL);
+    uint8_t *rgba = scene_draw(&s, SQUARE, scene_identity, NULL);
+    for (uint32_t p = 0; p < SIDE * SIDE; p++) {
+        const uint32_t x = p % SIDE, y = p / SIDE;
+        if (x < 8 || x > SIDE - 8 || y < 4 || y > SIDE - 4) continue;
+        least = fmin(least, decoded(rgba[4 * p]));
+        most = fmax(most, decoded(rgba[4 * p]));
+    }
+    print_message("# colours of 0.0625 and 0.25: %.4f to %.4f\n", least, most);
+    assert_true(least > 0.058 && most < 0.26);
+    free(rgba);
+    scene_close(&s);
 }
 
 /* ---- teeth ---- */
@@ -478,6 +552,8 @@ int main(void)
         cmocka_unit_test(an_eye_shows_the_lamp),
         cmocka_unit_test(the_iris_lies_behind_the_cornea),
         cmocka_unit_test(lids_darken_the_ball),
+        cmocka_unit_test(the_rim_of_an_iris_is_a_pixel_wide),
+        cmocka_unit_test(colours_stay_between_those_of_the_corners),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
         cmocka_unit_test(a_toon_has_two_tones),
         cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),
