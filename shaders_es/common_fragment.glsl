@@ -24,6 +24,13 @@ float noh_strand_alpha(vec4 color)
     return 1.0 - pow(1.0 - min(color.a, 1.0), 1.0 + 2.06 * dark * dark);
 }
 
+/* The specular reflection of a strand: a highlight around the cone of its tangent. */
+float noh_strand_lobe(vec3 tangent, vec3 h, float sharpness)
+{
+    float c = dot(tangent, h);
+    return smoothstep(-1.0, 0.0, c) * pow(max(1.0 - c * c, 0.0), 0.5 * sharpness);
+}
+
 #ifdef NOH_TOON_SHADE
 vec3 noh_pixel_color = vec3(1.0); /* the vertex's, for the shade's own texture */
 #endif

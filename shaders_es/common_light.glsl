@@ -53,6 +53,24 @@ vec3 noh_fresnel(vec3 f0, float f90, float cosine)
     return f0 + (f90 - f0) * (away2 * away2 * away);
 }
 
+#ifdef NOH_HAIR
+/* Hair: matte light around the strand, and two highlights, one of the cuticle, white and nearer to the root, one that
+ * has been through the strand, wider, of its colour and nearer to the tip (Kajiya, Kay 1989; the shifts as Scheuermann,
+ * Practical real-time hair rendering and shading, 2004). Strands of every direction make up a card, so its edges are no
+ * mirrors. even: ambient light on a matte surface; key: colour of the key light that arrives */
+vec3 noh_hair_light(noh_surface s, vec3 even, vec3 key)
+{
+    float tl = dot(s.strand, noh_key), nl = dot(s.normal, noh_key), along = 1.0 - abs(dot(s.strand, s.view));
+    float narrow = clamp(22.0 / max(s.roughness * s.roughness, 0.01), 22.0, 300.0); /* 90 at a roughness of 0.5 */
+    vec3 h = normalize(noh_key + s.view), tint = 2.5 * s.albedo + 0.02;
+    float first = noh_strand_lobe(normalize(s.strand - 0.08 * s.normal), h, narrow);
+    float second = noh_strand_lobe(normalize(s.strand + 0.12 * s.normal), h, 0.25 * narrow);
+    vec3 color = s.albedo * (even + key * (clamp(0.25 + 0.75 * nl, 0.0, 1.0) * sqrt(max(1.0 - tl * tl, 0.0))));
+    color += s.f0 * (25.0 * smoothstep(-0.2, 0.4, nl)) * key * (0.06 * first + tint * second);
+    return color + s.f0 * even * (0.3 + 0.7 * along * along) * 1.25 + s.emissive;
+}
+#endif
+
 #ifdef NOH_LIT
 /* The isotropic GGX distribution times Smith's visibility, correlated in height (Heitz: Understanding the
  * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv. In the phone tier the
@@ -214,6 +232,12 @@ vec3 noh_light(noh_surface s)
 #endif
     return color * mix(vec3(most), light, 0.5) / max(most, 1.0) + s.emissive;
 }
+#elif defined(NOH_HAIR)
+vec3 noh_light(noh_surface s)
+{
+    float shadow = noh_key_shadow(s.position, s.geometric);
+    return noh_expose(noh_hair_light(s, noh_rest_light(s), noh_key_color * shadow));
+}
 #else
 vec3 noh_light(noh_surface s)
 {
@@ -303,6 +327,11 @@ vec3 noh_key_matte(noh_surface s)
 vec3 noh_light(noh_surface s)
 {
     return noh_toon(s, 1.0) + s.emissive;
+}
+#elif defined(NOH_HAIR)
+vec3 noh_light(noh_surface s)
+{
+    return noh_hair_light(s, 0.62 * s.occlusion * noh_sky(s.normal.y), vec3(1.02, 0.98, 0.92));
 }
 #else
 vec3 noh_light(noh_surface s)

@@ -9,6 +9,7 @@
  *   NOH_TOON          defined: it is a toon
  *   NOH_TOON_SHADE    defined: and its shade has a texture
  *   NOH_MATCAP        defined: and it has a matcap
+ *   NOH_HAIR          defined: it is hair
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
 #ifndef NOH_DEPTH_ONLY
@@ -43,6 +44,10 @@ uniform mediump sampler2D noh_wrinkle_weights_1; /* the matcap */
 #endif
 #endif
 
+#ifdef NOH_HAIR
+uniform vec4 noh_surface_values; /* xy: along the strands, in texture coordinates */
+#endif
+
 /* A pixel of a surface for lighting; in the world. */
 struct noh_surface {
     vec3 position;
@@ -60,6 +65,9 @@ struct noh_surface {
     float f90;       /* of non-metals, at grazing angles */
 #ifdef NOH_TOON
     vec3 shade;      /* linear colour where no light arrives */
+#endif
+#ifdef NOH_HAIR
+    vec3 strand;     /* unit, along the hair, perpendicular to the normal */
 #endif
 };
 
@@ -79,6 +87,19 @@ vec3 noh_map_normal(vec3 v, vec3 normal, vec4 tangent)
     float length2 = dot(t, t);
     t *= inversesqrt(max(length2, 1e-20));
     return length2 > 1e-20 ? normalize(t * v.x + cross(normal, t) * (tangent.w * v.y) + normal * v.z) : normal;
+}
+#endif
+
+#ifdef NOH_HAIR
+/* The direction of the strands on the surface, from the change of position and texture coordinates between pixels. */
+vec3 noh_strand(vec3 position, vec3 normal, vec2 uv)
+{
+    vec2 ux = dFdx(uv), uy = dFdy(uv), along = noh_surface_values.xy;
+    vec3 t = dFdx(position) * (along.x * uy.y - along.y * uy.x) + dFdy(position) * (ux.x * along.y - ux.y * along.x);
+    t *= ux.x * uy.y < ux.y * uy.x ? -1.0 : 1.0;
+    t -= normal * dot(normal, t);
+    float length2 = dot(t, t);
+    return length2 > 1e-30 ? t * inversesqrt(length2) : normalize(cross(normal, vec3(normal.y, -normal.x, 0.01)));
 }
 #endif
 
@@ -112,7 +133,13 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.normal = noh_map_normal(mapped, s.geometric, tangent);
 #endif
     s.geometric *= side;
+#ifdef NOH_HAIR
+    /* A tuft has no side that is seen at a grazing angle, and a card looks the same from both sides. */
+    s.normal = normalize(s.normal + (1.5 - dot(s.normal, s.view)) * s.view);
+    s.strand = noh_strand(position, s.normal, uv);
+#else
     s.normal *= side;
+#endif
 #ifdef NOH_SURFACE_MAP
     vec4 map = texture(noh_surface_texture, uv);
     s.occlusion = 1.0 + noh_maps.y * (map.r - 1.0);

@@ -21,13 +21,6 @@ vec2 strand(float cell)
     return fract(sin(vec2(cell * 12.9898 + v_strip * 78.233, cell * 39.346 + v_strip * 11.135)) * 43758.5453);
 }
 
-/* The specular reflection of a strand: a highlight around the cone of its tangent. */
-float lobe(vec3 tangent, vec3 h, float sharpness)
-{
-    float c = dot(tangent, h);
-    return smoothstep(-1.0, 0.0, c) * pow(max(1.0 - c * c, 0.0), 0.5 * sharpness);
-}
-
 void main()
 {
     float x = (v_at.x * 0.5 + 0.5) * 6.0, fine = clamp(1.6 - 1.6 * fwidth(x), 0.0, 1.0);
@@ -54,7 +47,7 @@ void main()
     float tl = dot(t, key), nl = dot(n, key);
     vec3 h = normalize(key + view);
     float shift = 0.12 * mix(0.0, own.x - 0.5, fine) + 0.1 * (v_strip - 0.5);
-    float first = lobe(normalize(t + (shift - 0.08) * n), h, 90.0), second = lobe(normalize(t + (shift + 0.12) * n), h, 22.0);
+    float first = noh_strand_lobe(normalize(t + (shift - 0.08) * n), h, 90.0), second = noh_strand_lobe(normalize(t + (shift + 0.12) * n), h, 22.0);
     float facing = clamp(mix(0.25, 1.0, nl), 0.0, 1.0);
     vec3 color = albedo * (even * deep + key_color * (facing * sqrt(max(1.0 - tl * tl, 0.0))));
     color += u_widths.w * smoothstep(-0.2, 0.4, nl) * key_color * (0.10 * first + (2.5 * albedo + 0.02) * second) * deep;

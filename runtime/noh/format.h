@@ -335,12 +335,14 @@ typedef struct noh_node {
  *          0 to 1: hardness of the edge; 1 colour of the rim; 2, at least 0: its Fresnel power; 3 its lift; 4 width of
  *          the outline, in world units, or below 0 in heights of the picture; 0: none; 5 colour of the outline. Colours
  *          are r + 256 g + 65536 b, where 0 to 255 are 255 times the square roots of linear values
+ *   hair   xy the direction of the strands in the texture, unit, from root to tip; the rest zeros
  * A plain surface has zeros. */
 #define NOH_SURFACE_PLAIN 0u
 #define NOH_SURFACE_SKIN 1u
 #define NOH_SURFACE_EYE 2u
 #define NOH_SURFACE_TEETH 3u /* also gums and tongue: lit only through the lips */
 #define NOH_SURFACE_TOON 4u  /* two tones with an edge between them, rim, matcap, outline; no gloss */
+#define NOH_SURFACE_HAIR 5u  /* cards of hair: two highlights around the strands; no mirror */
 
 /* The weight of a wrinkle map: by the surface's change of area in the pose; by twelve regions, weighted by the
  * expression; by the first weight map's red, always, and its green and blue as regions 3 and 6. */

@@ -445,6 +445,7 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
 #define NOH_FEATURE_PHONE 4096u /* the phone tier: approximations at pixels; set by the renderer, not by a material */
 
 #define NOH_FEATURE_TOON_SHADE 8192u /* with a toon: its shade has a texture */
+#define NOH_FEATURE_HAIR 8192u       /* without a toon */
 #define NOH_FEATURE_MATCAP 16384u    /* with a toon */
 #define NOH_FEATURE_OUTLINE 32768u   /* with a toon: the outline's hull in place of the surface */
 

@@ -62,7 +62,7 @@ check 'take a tint away' grep -q "material 'robe': plain, opaque, without tint" 
 gltf skin '{"surface":"wood","unitMm":-1,"tint":"no"}'
 noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras that say nothing'
-check 'are named' grep -q "the extra 'surface' must be plain, skin, eye, teeth or toon" "$work/out"
+check 'are named' grep -q "the extra 'surface' must be plain, skin, eye, teeth, hair or toon" "$work/out"
 check 'each of them' grep -q "the extra 'unitMm' must be" "$work/out"
 check 'tint, too' grep -q "the extra 'tint' must be true or false" "$work/out"
 noh info "$work/extras.noh"

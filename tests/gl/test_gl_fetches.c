@@ -338,11 +338,11 @@ static void the_counter_counts(void **state)
 
 static void no_pixel_reads_more_than_eight_texels(void **state)
 {
-    static const uint32_t surfaces[] = { 0, NOH_FEATURE_SKIN, NOH_FEATURE_EYE, NOH_FEATURE_TEETH };
+    static const uint32_t surfaces[] = { 0, NOH_FEATURE_SKIN, NOH_FEATURE_EYE, NOH_FEATURE_TEETH, NOH_FEATURE_HAIR };
     int most = 0;
     (void)state;
     for (uint32_t features = 0; features < 2048; features++) {
-        for (int i = 0; i < 16 && is_material(features); i++) {
+        for (int i = 0; i < 20 && is_material(features); i++) {
             const int lit = i & 1, crowd = i >> 1 & 1;
             const int fetches = fetches_of(features | surfaces[i >> 2], lit, crowd);
             assert_in_range(fetches, 1, NOH_GL_FETCHES_MAX);
@@ -356,7 +356,7 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
     }
     assert_int_equal(fetches_of(NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE, 1, 0), 1);
     for (uint32_t features = 0; features < 128; features++) {
-        for (uint32_t i = 0; i < 32 && !(features & ~(uint32_t)MAPS);
+        for (uint32_t i = 0; i < 40 && !(features & ~(uint32_t)MAPS);
              i++) { /* a transfer's records are read at vertices */
             const uint32_t transfer = (i & 1u ? 6u : 4u) | (i & 2u ? NOH_TRANSFER_ON_NORMAL : 0u);
             const int crowd = i >> 2 & 1;

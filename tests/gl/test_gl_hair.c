@@ -391,7 +391,7 @@ static void strands_are_in_order_from_24_angles(void **state)
     t = all_angles(&h);
     close_head(&h);
     fixture_expect_no_errors();
-    check_orders(&t, 64, 10);
+    check_orders(&t, 16, 10);
 }
 
 static const struct CMUnitTest tests[] = {

@@ -312,6 +312,7 @@ static void programs_have_what_materials_have(void **state)
                                          NOH_FEATURE_SKIN,
                                          NOH_FEATURE_EYE,
                                          NOH_FEATURE_TEETH,
+                                         NOH_FEATURE_HAIR,
                                          NOH_FEATURE_SPECULAR_MAP };
     gpu *g = fixture_gpu();
     noh_gl_ledger ledger;
@@ -326,7 +327,7 @@ static void programs_have_what_materials_have(void **state)
             NOH_OK);
         for (size_t k = 0; k < TEST_COUNT(names); k++) {
             const GLint at = g->gl.GetUniformLocation(v.program, names[k]);
-            assert_int_equal(at >= 0, i > 6u ? k == 4u : i > 3u ? k == 3u : k + 1u == i);
+            assert_int_equal(at >= 0, i > 7u ? k == 4u : i > 3u ? k == 3u : k + 1u == i);
         }
         noh_gl_variant_delete(&g->gl, &ledger, &v);
     }
@@ -354,6 +355,8 @@ static void features_follow_material_and_mesh(void **state)
     assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_SKIN);
     m.surface = NOH_SURFACE_TEETH;
     assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_TEETH);
+    m.surface = NOH_SURFACE_HAIR;
+    assert_int_equal(noh_gl_features_of(&mesh, &m), NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_HAIR);
     m.flags = NOH_MATERIAL_UNLIT;
     assert_int_equal(noh_gl_features_of(&mesh, &m), 0);
     m.flags = NOH_MATERIAL_UNLIT | NOH_MATERIAL_MASK;

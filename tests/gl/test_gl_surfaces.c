@@ -1,5 +1,6 @@
 /* test_gl_surfaces.c: skin, eyes, teeth and toons against closed forms and our own integrals: scatter, through its
- * function and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; teeth behind lips. */
+ * function and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; highlights of hair;
+ * teeth behind lips. */
 #include "support/light_scene.h"
 
 #include <math.h>
@@ -349,6 +350,112 @@ static void colours_stay_between_those_of_the_corners(void **state)
     scene_close(&s);
 }
 
+/* ---- hair ---- */
+
+static model_material hair_of(float albedo)
+{
+    const float values[4] = { albedo, 0.5f, 0.0f, 0.04f };
+    model_material m = scene_material(values);
+    m.surface = NOH_SURFACE_HAIR;
+    m.surface_values[1] = 1.0f; /* strands run up the ball */
+    return m;
+}
+
+static double strand_lobe(const double t[3], const double n[3], double shift, const double h[3], double sharpness)
+{
+    double moved[3], c = 0.0, length = 0.0, rise;
+    for (int k = 0; k < 3; k++) {
+        moved[k] = t[k] + shift * n[k];
+        length += moved[k] * moved[k];
+    }
+    for (int k = 0; k < 3; k++) c += moved[k] / sqrt(length) * h[k];
+    rise = fmin(fmax(c + 1.0, 0.0), 1.0);
+    return rise * rise * (3.0 - 2.0 * rise) * pow(fmax(1.0 - c * c, 0.0), 0.5 * sharpness);
+}
+
+static double dot_of(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void make_unit(double v[3])
+{
+    const double length = sqrt(dot_of(v, v));
+    for (int k = 0; k < 3; k++) v[k] /= length;
+}
+
+/* What hair of this albedo sends to the eye from a point of the ball, of a key light of 0.9 alone. */
+static double hair_at(double x, double y, const float key[3], double albedo)
+{
+    const double z = sqrt(1.0 - x * x - y * y), l[3] = { (double)key[0], (double)key[1], (double)key[2] };
+    double n[3] = { x, y, z + 1.5 - z }, t[3] = { 0.0, 1.0, -y / z }, h[3] = { l[0], l[1], l[2] + 1.0 };
+    make_unit(n);
+    make_unit(h);
+    const double lean = dot_of(n, t);
+    for (int k = 0; k < 3; k++) t[k] -= lean * n[k];
+    make_unit(t);
+    const double tl = dot_of(t, l), nl = dot_of(n, l), gloss = fmin(fmax((nl + 0.2) / 0.6, 0.0), 1.0);
+    const double first = strand_lobe(t, n, -0.08, h, 88.0), second = strand_lobe(t, n, 0.12, h, 22.0);
+    const double matte = albedo * fmin(fmax(0.25 + 0.75 * nl, 0.0), 1.0) * sqrt(1.0 - tl * tl);
+    return 0.9 * (matte + gloss * gloss * (3.0 - 2.0 * gloss) * (0.06 * first + (2.5 * albedo + 0.02) * second));
+}
+
+/* A ball of hair that runs from pole to pole has two highlights across the strands, by the formula. */
+static void hair_has_two_highlights(void **state)
+{
+    static const float keys[][3] = { { 0.0f, 0.0f, 1.0f }, { 0.48f, 0.6f, 0.64f }, { -0.6f, 0.0f, 0.8f } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(keys); i++) {
+        const model_material hair = hair_of(0.08f);
+        noh_lighting lighting;
+        double worst = 0.0, most = 0.0;
+        scene s;
+        scene_open(&s, &hair, &scene_black, 0, NULL);
+        key_alone(keys[i], &lighting);
+        uint8_t *rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
+        for (uint32_t p = 0; p < SIDE * SIDE; p++) {
+            const double x = pixel_at(p % SIDE), y = -pixel_at(p / SIDE);
+            if (x * x + y * y > 0.6) continue;
+            const double should = hair_at(x, y, keys[i], 0.08);
+            worst = fmax(worst, fabs(decoded(rgba[4 * p]) - should));
+            most = fmax(most, should);
+        }
+        print_message("# off by %.4f at most, of %.3f\n", worst, most);
+        assert_true(worst < 0.012 && most > 0.25);
+        free(rgba);
+        scene_close(&s);
+    }
+}
+
+/* A dark card of hair in white light is dark, also at a grazing angle, where a plain one is a mirror. */
+static void hair_is_not_silver(void **state)
+{
+    const float c = (float)cos(82.0 * PI / 180.0), d = (float)sin(82.0 * PI / 180.0);
+    const float turned[12] = { c, 0, d, 0, 0, 1, 0, 0, -d, 0, c, 0 };
+    double shown[2];
+    (void)state;
+    for (int is_hair = 0; is_hair < 2; is_hair++) {
+        model_material card = hair_of(0.03f);
+        noh_light light;
+        noh_lighting lighting;
+        scene s;
+        if (!is_hair) {
+            card.surface = NOH_SURFACE_PLAIN;
+            card.surface_values[1] = 0.0f;
+        }
+        scene_open(&s, &card, noh_environment_at(0), 0, NULL);
+        noh_light_from_environment(noh_environment_at(0), 6, &light);
+        noh_lighting_make(&light, NULL, 1, &lighting);
+        uint8_t *rgba = scene_draw(&s, SQUARE, turned, &lighting);
+        shown[is_hair] = decoded(rgba[4 * (SIDE / 2 * SIDE + SIDE / 2)]);
+        free(rgba);
+        scene_close(&s);
+    }
+    print_message("# plain %.3f, hair %.3f of white\n", shown[0], shown[1]);
+    assert_true(shown[1] > 0.03 && shown[1] < 0.1);
+    assert_true(shown[0] > 2.5 * shown[1]);
+}
+
 /* ---- teeth ---- */
 
 static void teeth_are_dark_behind_the_lips(void **state)
@@ -554,6 +661,8 @@ int main(void)
         cmocka_unit_test(lids_darken_the_ball),
         cmocka_unit_test(the_rim_of_an_iris_is_a_pixel_wide),
         cmocka_unit_test(colours_stay_between_those_of_the_corners),
+        cmocka_unit_test(hair_has_two_highlights),
+        cmocka_unit_test(hair_is_not_silver),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
         cmocka_unit_test(a_toon_has_two_tones),
         cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),

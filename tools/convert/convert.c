@@ -12,6 +12,7 @@
 #include "convert/mocap/clean.h"
 #include "convert/model/model_build.h"
 #include "convert/model/size_guess.h"
+#include "convert/model/strands.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
 #include "convert/model/texture_cut.h"
@@ -352,6 +353,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     }
     if (options->only == CONVERT_CLIPS) return 0;
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
+    strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }
 

@@ -76,6 +76,7 @@ static void put_surfaces(void)
         { "eye", NOH_FEATURE_EYE, UNLIT | LIT | TRANSFER | PHONE_LIT },
         { "teeth", NOH_FEATURE_TEETH, LIT | PHONE_LIT },
         { "toon", NOH_FEATURE_TOON, UNLIT | LIT },
+        { "cards", NOH_FEATURE_HAIR | NOH_FEATURE_ALPHA, LIT | PHONE_LIT },
     };
     static const struct {
         const char *name;

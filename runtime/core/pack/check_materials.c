@@ -121,7 +121,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     }
     if (!result) result = check_wrinkle_codes(check, m, at);
     if (!result) result = check_specular(check, m, at);
-    if (!result && m->surface > NOH_SURFACE_TOON) {
+    if (!result && m->surface > NOH_SURFACE_HAIR) {
         result = noh_check_fail(check, "material is of an unknown surface", at + offsetof(noh_material, surface));
     }
     if (!result && (m->priority < -128 || m->priority > 127)) {

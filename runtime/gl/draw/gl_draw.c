@@ -245,7 +245,8 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     }
     for (uint32_t k = 0; k < 3; k++) {
         static const uint32_t of[3] = { NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP, NOH_FEATURE_OUTLINE };
-        if (features & of[k]) bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->more_textures[k], pictures);
+        if (features & NOH_FEATURE_TOON && features & of[k])
+            bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->more_textures[k], pictures);
     }
 }
 
@@ -270,7 +271,7 @@ static void set_toon(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->Uniform3fv(v->u_surface_more, 4, more[0]);
 }
 
-/* Uniforms of skin, eye, teeth and toon materials. The unit of skin defaults to metres. */
+/* Uniforms of skin, eye, teeth, toon and hair materials. The unit of skin defaults to metres. */
 static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
 {
     const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;

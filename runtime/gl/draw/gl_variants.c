@@ -75,6 +75,7 @@ uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
     if (m->surface == NOH_SURFACE_SKIN) features |= NOH_FEATURE_SKIN;
     if (m->surface == NOH_SURFACE_EYE) features |= NOH_FEATURE_EYE;
     if (m->surface == NOH_SURFACE_TEETH) features |= NOH_FEATURE_TEETH;
+    if (m->surface == NOH_SURFACE_HAIR) features |= NOH_FEATURE_HAIR;
     if (m->surface == NOH_SURFACE_TOON) {
         features |= NOH_FEATURE_TOON;
         if (m->flags & NOH_MATERIAL_TOON_SHADE) features |= NOH_FEATURE_TOON_SHADE;
@@ -140,6 +141,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 {
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_WRINKLE);
     NOH_ASSERT(key.depth || !key.cut);
+    const unsigned is_toon = key.features & NOH_FEATURE_TOON;
     const struct {
         unsigned on;
         const char *line;
@@ -165,8 +167,9 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_SKIN, "#define NOH_SKIN\n" },
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
-                  { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
-                  { key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
+                  { is_toon, "#define NOH_TOON\n" },
+                  { is_toon && key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
+                  { !is_toon && key.features & NOH_FEATURE_HAIR, "#define NOH_HAIR\n" },
                   { key.features & NOH_FEATURE_MATCAP, "#define NOH_MATCAP\n" },
                   { key.features & NOH_FEATURE_OUTLINE, "#define NOH_OUTLINE\n" },
                   { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },

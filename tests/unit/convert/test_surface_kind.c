@@ -1,4 +1,4 @@
-/* Tests of tools/convert/model/surface_kind.c and surface_shape.c: which materials are skin, eyes and teeth, by name
+/* Tests of tools/convert/model/surface_kind.c and surface_shape.c: which materials are skin, eyes, teeth and hair, by name
  * and by option; where irises and lids are found. */
 #include "convert/model/surface_kind.h"
 #include "convert/model/tint.h"
@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "convert/model/strands.h"
 #include "convert/model/surface_shape.h"
 #include "noh/format.h"
 #include "support/support.h"
@@ -52,7 +53,15 @@ static void names_tell_surfaces(void **state)
                   { "ZÄHNE", NOH_SURFACE_TEETH },
                   { "зубы", NOH_SURFACE_TEETH },
                   { "舌", NOH_SURFACE_TEETH },
-                  { "hair", NOH_SURFACE_PLAIN },
+                  { "hair", NOH_SURFACE_HAIR },
+                  { "Std_Hair", NOH_SURFACE_HAIR },
+                  { "Wolf3D_Beard", NOH_SURFACE_HAIR },
+                  { "N00_000_00_HairBack_00_HAIR", NOH_SURFACE_HAIR },
+                  { "Haare", NOH_SURFACE_HAIR },
+                  { "волосы", NOH_SURFACE_HAIR },
+                  { "前髪", NOH_SURFACE_HAIR },
+                  { "hairbrush", NOH_SURFACE_PLAIN },
+                  { "eyebrow hair", NOH_SURFACE_PLAIN },
                   { "", NOH_SURFACE_PLAIN },
                   { "\xff\xc3", NOH_SURFACE_PLAIN } };
     (void)state;
@@ -61,6 +70,49 @@ static void names_tell_surfaces(void **state)
             fail_msg("'%s' is %u", names[i].name, surface_kind_of_name(names[i].name));
         }
     }
+}
+
+static void opaque_hair_is_plain(void **state)
+{
+    (void)state;
+    assert_int_equal(surface_kind_by_name("hair", MODEL_ALPHA_OPAQUE), NOH_SURFACE_PLAIN);
+    assert_int_equal(surface_kind_by_name("hair", MODEL_ALPHA_MASK), NOH_SURFACE_HAIR);
+    assert_int_equal(surface_kind_by_name("hair", MODEL_ALPHA_BLEND), NOH_SURFACE_HAIR);
+    assert_int_equal(surface_kind_by_name("skin", MODEL_ALPHA_OPAQUE), NOH_SURFACE_SKIN);
+}
+
+/* Stripes in a texture, twice as wide as high, tell where strands run; a chequered one does not. */
+static void strands_run_along_stripes(void **state)
+{
+    static const float steps[][2] = { { 1.0f, 0.0f }, { 0.0f, 1.0f }, { 1.0f, 1.0f }, { 1.0f, -1.0f } };
+    static uint8_t rgba[64 * 32 * 4];
+    model_texture picture = { .width = 64, .height = 32, .rgba = rgba };
+    model_material hair = model_material_default();
+    model m = { .materials = &hair, .material_count = 1, .textures = &picture, .texture_count = 1 };
+    (void)state;
+    hair.surface = NOH_SURFACE_HAIR;
+    hair.base_color_texture = 0;
+    for (size_t i = 0; i <= TEST_COUNT(steps); i++) {
+        double should[2] = { 0.0, 1.0 };
+        for (uint32_t p = 0; p < 64u * 32u; p++) {
+            const float x = (float)(p % 64u), y = (float)(p / 64u);
+            const float wave = i < TEST_COUNT(steps) ? sinf(0.9f * (steps[i][0] * x + steps[i][1] * y))
+                                                     : sinf(0.9f * x) * sinf(0.9f * y);
+            memset(rgba + 4 * p, (int)(128.0f + 100.0f * wave), 3);
+            rgba[4 * p + 3] = 255;
+        }
+        if (i < TEST_COUNT(steps)) { /* in texels, then in shares of the picture */
+            const double along[2] = { -(double)steps[i][1] / 64.0, (double)steps[i][0] / 32.0 };
+            const double length = hypot(along[0], along[1]);
+            const double sign = (fabs(along[1]) >= fabs(along[0]) ? along[1] : along[0]) < 0.0 ? -1.0 : 1.0;
+            for (int k = 0; k < 2; k++) should[k] = sign * along[k] / length;
+        }
+        strands_find(&m, NULL);
+        for (int k = 0; k < 2; k++) assert_true(fabs((double)hair.surface_values[k] - should[k]) < 0.01);
+    }
+    hair.base_color_texture = MODEL_NONE;
+    strands_find(&m, NULL);
+    assert_true(hair.surface_values[0] == 0.0f && hair.surface_values[1] == 1.0f);
 }
 
 static void long_names_have_words_too(void **state)
@@ -350,6 +402,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(names_tell_surfaces),
+        cmocka_unit_test(opaque_hair_is_plain),
+        cmocka_unit_test(strands_run_along_stripes),
         cmocka_unit_test(long_names_have_words_too),
         cmocka_unit_test(options_name_a_material_and_a_surface),
         cmocka_unit_test(another_surface_forgets_the_toon),

@@ -417,7 +417,7 @@ static float nan_value(void)
     X(material_normal_missing, DATA, "texture", f->materials[0].normal_texture = 1)                                  \
     X(material_normal_colors, DATA, "colour texture for data", f->materials[0].normal_texture = 0)                   \
     X(material_weights_missing, DATA, "texture", f->materials[0].more_textures[2] = 1)                               \
-    X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_TOON + 1)                     \
+    X(material_surface, DATA, "unknown surface", f->materials[0].surface = NOH_SURFACE_HAIR + 1)                     \
     X(material_f0_nan, DATA, "not finite", f->materials[0].f0[2] = nan_value())                                      \
     X(material_values_nan, DATA, "not finite", f->materials[1].surface_values[3] = nan_value())                      \
     X(material_more_nan, DATA, "not finite", f->materials[1].surface_more[5] = nan_value())                          \

@@ -110,6 +110,8 @@ const char *const names_table[] = {
     "material teeth gencives langue diente dientes encía encia lengua dente dentes gengiva língua lingua denti lingue",
     "material teeth tand tanden tong zęby zeby język jezyk зуб зубы язык дёсны десны *歯 *舌 *牙 *齿 *이빨 *혀",
     "material toon toon mtoon celshade",
+    "material hair hair hairs beard moustache mustache ponytail haar haare bart cheveux barbe pelo cabello barba cabelo",
+    "material hair capelli haren baard włosy wlosy broda волосы борода *髪 *发 *髮 *머리카락",
     "material beside-eye line highlight lash lashes eyelash eyelashes brow brows eyebrow eyebrows lid",
     "material beside-eye lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture",
     "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",

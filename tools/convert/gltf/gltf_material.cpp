@@ -522,12 +522,12 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 static toon_maps read_surface(file &f, size_t index, model_material &out, const std::string &where)
 {
     const tinygltf::Material &m = f.json.materials[index];
-    uint32_t kind = surface_kind_of_name(m.name.c_str());
+    uint32_t kind = surface_kind_by_name(m.name.c_str(), out.alpha);
     if (m.extras.IsObject() && m.extras.Has("surface")) {
         const tinygltf::Value &word = m.extras.Get("surface");
         const uint32_t named = word.IsString() ? surface_kind_named(word.Get<std::string>().c_str()) : MODEL_NONE;
         if (named == MODEL_NONE)
-            leave_out(f, where, ": the extra 'surface' must be plain, skin, eye, teeth or toon, and was ignored");
+            leave_out(f, where, ": the extra 'surface' must be plain, skin, eye, teeth, hair or toon, and was ignored");
         else
             kind = named;
     }

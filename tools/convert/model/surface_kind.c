@@ -6,7 +6,9 @@
 #include "convert/model/model_build.h"
 #include "noh/format.h"
 
-static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" }; /* in the order of NOH_SURFACE_* */
+static const char *const names[] = {
+    "plain", "skin", "eye", "teeth", "toon", "hair"
+}; /* in the order of NOH_SURFACE_* */
 
 uint32_t surface_kind_named(const char *word)
 {
@@ -85,7 +87,14 @@ uint32_t surface_kind_of_name(const char *name)
     if (!is_of(name, "beside-eye") && is_of(name, "eye")) return NOH_SURFACE_EYE;
     if (is_of(name, "teeth")) return NOH_SURFACE_TEETH;
     if (is_of(name, "skin")) return NOH_SURFACE_SKIN;
+    if (!is_of(name, "beside-eye") && is_of(name, "hair")) return NOH_SURFACE_HAIR;
     return is_of(name, "toon") ? NOH_SURFACE_TOON : NOH_SURFACE_PLAIN;
+}
+
+uint32_t surface_kind_by_name(const char *name, model_alpha alpha)
+{
+    const uint32_t kind = surface_kind_of_name(name);
+    return kind == NOH_SURFACE_HAIR && alpha == MODEL_ALPHA_OPAQUE ? NOH_SURFACE_PLAIN : kind;
 }
 
 /* ---- materials ---- */
@@ -100,7 +109,7 @@ static void forget_toon(model_material *m)
 
 void surface_kind_set(model_material *m, uint32_t kind)
 {
-    static const float straight[] = { 0.04f, 0.028f, 0.025f, 0.04f, 0.04f };
+    static const float straight[] = { 0.04f, 0.028f, 0.025f, 0.04f, 0.04f, 0.04f };
     static const float shade[] = { 0.88f, 0.78f, 0.8f };
     const float before = straight[m->surface];
     if (kind == NOH_SURFACE_TOON) m->unlit = 0; /* exporters write both, for readers that know no toons */
@@ -154,7 +163,8 @@ int surface_kind_assign(model *m, const char *assignment, model_error *error)
     const size_t length = equals ? (size_t)(equals - assignment) : 0u;
     int found = 0;
     if (kind == MODEL_NONE) {
-        return model_fail(error, "", "--surface must be MATERIAL=skin, =eye, =teeth, =toon or =plain, not '%.80s'",
+        return model_fail(error, "",
+                          "--surface must be MATERIAL=skin, =eye, =teeth, =hair, =toon or =plain, not '%.80s'",
                           assignment);
     }
     for (uint32_t i = 0; i < m->material_count; i++) {

@@ -1,4 +1,4 @@
-/* surface_kind.h: finds materials of skin, eyes, teeth and tongue. */
+/* surface_kind.h: finds materials of skin, eyes, teeth and tongue, hair. */
 #ifndef NOH_CONVERT_MODEL_SURFACE_KIND_H
 #define NOH_CONVERT_MODEL_SURFACE_KIND_H
 
@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* The NOH_SURFACE_* called "plain", "skin", "eye", "teeth" or "toon"; MODEL_NONE for any other word. */
+/* The NOH_SURFACE_* called "plain", "skin", "eye", "teeth", "toon" or "hair"; MODEL_NONE for any other word. */
 uint32_t surface_kind_named(const char *word);
 
 /* By the words of a material's name (names.h) in English, German, French, Spanish, Portuguese, Italian, Dutch, Polish,
@@ -16,6 +16,8 @@ uint32_t surface_kind_named(const char *word);
  * letters do, and before a capital behind a small letter. The surroundings of an eye are excluded: lashes, brows,
  * lids, shadows, glasses. name: UTF-8; other bytes match no word. */
 uint32_t surface_kind_of_name(const char *name);
+/* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
+uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
 /* Set a material's kind. Unlit materials stay plain. The default reflectance (0.04) becomes the surface's: 0.028 for
  * skin, 0.025 for eyes. */

@@ -39,7 +39,7 @@ static int make_materials(const obj_text *o, model *m)
         if (!name) continue;
         m->materials[m->material_count] = material_plain();
         m->materials[m->material_count].name = model_string(name);
-        surface_kind_set(&m->materials[m->material_count], surface_kind_of_name(name));
+        surface_kind_set(&m->materials[m->material_count], surface_kind_by_name(name, MODEL_ALPHA_OPAQUE));
         if (!m->materials[m->material_count++].name) return 1;
     }
     return 0;
@@ -146,7 +146,10 @@ static void set_opacity(library *l, int transparency)
     double d[3];
     if (read_numbers(l, d) == 0) return;
     l->at->base_color[3] = (float)fmin(fmax(transparency ? 1.0 - d[0] : d[0], 0.0), 1.0);
-    if (l->at->base_color[3] < 1.0f) l->at->alpha = MODEL_ALPHA_BLEND;
+    if (l->at->base_color[3] < 1.0f) {
+        l->at->alpha = MODEL_ALPHA_BLEND;
+        surface_kind_set(l->at, surface_kind_by_name(l->at->name, l->at->alpha));
+    }
 }
 
 /* Blinn-Phong's exponent as a roughness of the same width (Walter et al. 2007). */

@@ -86,6 +86,7 @@ static unsigned keep_of_surface(uint32_t surface)
     return surface == NOH_SURFACE_SKIN    ? KEEP_SKIN
            : surface == NOH_SURFACE_EYE   ? KEEP_EYE
            : surface == NOH_SURFACE_TEETH ? KEEP_TEETH
+           : surface == NOH_SURFACE_HAIR  ? KEEP_HAIR
                                           : 0u;
 }
 

@@ -53,6 +53,7 @@ static double material_cost(const budget_phone *p, uint32_t features, int transf
                           : features & NOH_FEATURE_EYE   ? "eye"
                           : features & NOH_FEATURE_TEETH ? "teeth"
                           : features & NOH_FEATURE_TOON  ? "toon"
+                          : features & NOH_FEATURE_HAIR  ? "cards"
                                                          : "plain";
     const char *maps = features & NOH_FEATURE_WRINKLE_PIXEL                            ? "-codes"
                        : features & NOH_FEATURE_WRINKLES                               ? "-wrinkles"

@@ -134,7 +134,7 @@ const char *const help_formats_text[] = {
     "the names stands for left and right:",
     "   target WHAT NAME...                         WHAT: a channel of a recipe, or one of ARKit's 52 targets",
     "   joint WHAT NAME...                          WHAT: a bone of a person by VRM's name, such as *UpperArm, *Eye, head",
-    "   material KIND WORD...                       KIND: skin, eye, teeth, toon or plain; beside-eye: no eye, though a word",
+    "   material KIND WORD...                       KIND: skin, eye, teeth, hair, toon or plain; beside-eye: no eye, though a word",
     "                                               says so; occlusion-shell, tear-shell: in front of an eye; a word in",
     "                                               small letters, *PART anywhere in the name",
     "   strip NAME...                               what programs put in front of names, or behind them",

@@ -45,7 +45,7 @@ static const char *alpha_of(const noh_material *m)
 
 static const char *surface_of(const noh_material *m)
 {
-    static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon" };
+    static const char *const names[] = { "plain", "skin", "eye", "teeth", "toon", "hair" };
     return names[m->surface];
 }
 
