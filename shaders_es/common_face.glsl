@@ -56,7 +56,8 @@ void noh_face_vertex(vec3 rest, vec3 model, vec3 normal)
     vec3 from = rest - noh_surface_values.yzw;
     vec2 beside = abs(from.xy) / max(noh_surface_more[0].xy, 1e-6);
     float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, 0.8 * beside.y)), slope = noh_surface_more[0].z;
-    vec3 out_of = vec3(0.3 * from.x, from.y, from.z + 0.1 / max(slope, 1e-6)); /* the inner rims of lips face in, too */
+    float arch = 0.1 + 1.2 * beside.x * beside.x; /* teeth stand in an arch: cheeks are behind the foremost, and outside */
+    vec3 out_of = vec3(0.3 * from.x, from.y, from.z + arch / max(slope, 1e-6)); /* the inner rims of lips face in, too */
     inside *= 1.0 - smoothstep(-0.2, 0.1, dot(normal, normalize(out_of)));
     float depth = inside * max(0.5 - from.z * slope, 0.3); /* lips are thick */
     noh_v_depth = slope > 0.0 ? depth / noh_half_gap(model - rest, 0.5 * slope) : 0.0;

@@ -1,6 +1,6 @@
 /* test_gl_surfaces.c: skin, eyes, teeth and toons against closed forms and our own integrals: scatter, through its
- * function and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; highlights of hair;
- * teeth behind lips. */
+ * function and on a ball; a furnace; the lamp in an eye; the iris behind its cornea; highlights of hair; teeth behind
+ * lips, and cheeks. */
 #include "support/light_scene.h"
 
 #include <math.h>
@@ -485,6 +485,35 @@ static void teeth_are_dark_behind_the_lips(void **state)
     free(rgba[1]);
 }
 
+/* The back of a mouth is dark; cheeks, which bend back at the corners of the mouth and so lie behind the foremost, are not. */
+static void cheeks_are_not_inside_the_mouth(void **state)
+{
+    static const float values[4] = { 0.8f, 0.9f, 0.0f, 0.04f };
+    (void)state;
+    for (int is_back = 0; is_back < 2; is_back++) {
+        uint8_t *rgba[2];
+        double least = 1.0;
+        for (int i = 0; i < 2; i++) {
+            model_material skin = skin_of(values, 1000.0f);
+            scene s;
+            skin.surface_values[3] = is_back ? 0.5f : 0.98f; /* the foremost teeth */
+            skin.surface_more[0] = 0.8f;
+            skin.surface_more[1] = 0.4f;
+            skin.surface_more[2] = i ? 2.0f : 0.0f; /* 0: there is no mouth */
+            scene_open(&s, &skin, NULL, 0, NULL);
+            rgba[i] = scene_draw(&s, is_back ? SQUARE : SPHERE, scene_identity, NULL);
+            scene_close(&s);
+        }
+        for (size_t p = 0; p < 4 * (size_t)SIDE * SIDE; p += 4) {
+            if (rgba[0][p] > 64) least = fmin(least, decoded(rgba[1][p]) / decoded(rgba[0][p]));
+        }
+        print_message("# %s: %.3f of the light\n", is_back ? "back of the mouth" : "cheeks", least);
+        assert_true(is_back ? least < 0.4 : least > 0.95);
+        free(rgba[0]);
+        free(rgba[1]);
+    }
+}
+
 /* ---- a highlight ---- */
 
 /* The cosine between a normal along z and the half vector of light along z, seen from x, 0, 1.5. */
@@ -664,6 +693,7 @@ int main(void)
         cmocka_unit_test(hair_has_two_highlights),
         cmocka_unit_test(hair_is_not_silver),
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
+        cmocka_unit_test(cheeks_are_not_inside_the_mouth),
         cmocka_unit_test(a_toon_has_two_tones),
         cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),
         cmocka_unit_test(a_toon_has_an_outline),
