@@ -1407,7 +1407,7 @@ static void mtoon_is_a_toon(void **state)
         "\"parametricRimFresnelPowerFactor\":3,\"parametricRimLiftFactor\":0.5,\"outlineWidthMode\":\"worldCoordinates\","
         "\"outlineWidthFactor\":0.002,\"outlineColorFactor\":[0,1,0],\"outlineLightingMixFactor\":0}}},"
         "{\"name\":\"hair\",\"extensions\":{\"KHR_materials_unlit\":{},\"VRMC_materials_mtoon\":{\"shadeColorFactor\":7}}},"
-        "{\"name\":\"hat\",\"extensions\":{\"KHR_materials_unlit\":{}}}]";
+        "{\"name\":\"hat\",\"extensions\":{\"KHR_materials_unlit\":{}}},{\"name\":\"N00_000_00_Face_00_SKIN\"}]";
     scene *s = vrm_scene("\"VRMC_vrm\":{}");
     (void)state;
     APPEND(s->rest, "%s", materials);
@@ -1420,6 +1420,7 @@ static void mtoon_is_a_toon(void **state)
     assert_int_equal(hair->surface, NOH_SURFACE_TOON);
     assert_true(hair->surface_values[0] == 0.0f && hair->surface_more[0] == 0.9f);
     assert_true(m->materials[2].unlit && m->materials[2].surface == NOH_SURFACE_PLAIN);
+    assert_int_equal(m->materials[3].surface, NOH_SURFACE_TOON); /* VRoid's, without its MToon */
     assert_true(skin->surface_more[1] == 255.0f + 65536.0f * 128.0f && skin->surface_more[2] == 3.0f);
     assert_true(skin->surface_more[3] == 0.5f && skin->surface_more[4] == 0.002f && skin->surface_more[5] == 65280.0f);
     assert_true(!skin->toon_shade && !skin->outline_lit && skin->more_textures[NOH_TOON_MATCAP] == MODEL_NONE);

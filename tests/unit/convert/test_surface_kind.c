@@ -115,6 +115,23 @@ static void strands_run_along_stripes(void **state)
     assert_true(hair.surface_values[0] == 0.0f && hair.surface_values[1] == 1.0f);
 }
 
+static void vroid_draws_toons(void **state)
+{
+    static const char *const names[] = { "N00_000_00_Body_00_SKIN (Instance)", "F00_000_00_EyeIris_00_EYE",
+                                         "N00_000_Hair_00_HAIR", "N00_010_01_Onepiece_00_CLOTH_01 (Instance)" };
+    static const char *const others[] = { "",
+                                          "N00",
+                                          "N00_000_",
+                                          "N00_000_Lamp",
+                                          "head_skin.001",
+                                          "n00_000_00_Body_00_SKIN",
+                                          "NN0_000_00_Body_00_SKIN",
+                                          "Wolf3D_SKIN" };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(names); i++) assert_true(surface_is_of_vroid(names[i]));
+    for (size_t i = 0; i < TEST_COUNT(others); i++) assert_false(surface_is_of_vroid(others[i]));
+}
+
 static void long_names_have_words_too(void **state)
 {
     char name[4096];
@@ -406,6 +423,7 @@ int main(void)
         cmocka_unit_test(strands_run_along_stripes),
         cmocka_unit_test(long_names_have_words_too),
         cmocka_unit_test(options_name_a_material_and_a_surface),
+        cmocka_unit_test(vroid_draws_toons),
         cmocka_unit_test(another_surface_forgets_the_toon),
         cmocka_unit_test(faces_take_no_tint),
         cmocka_unit_test(reflectance_follows_the_surface),

@@ -522,7 +522,8 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 static toon_maps read_surface(file &f, size_t index, model_material &out, const std::string &where)
 {
     const tinygltf::Material &m = f.json.materials[index];
-    uint32_t kind = surface_kind_by_name(m.name.c_str(), out.alpha);
+    const char *name = m.name.c_str();
+    uint32_t kind = surface_is_of_vroid(name) ? NOH_SURFACE_TOON : surface_kind_by_name(name, out.alpha);
     if (m.extras.IsObject() && m.extras.Has("surface")) {
         const tinygltf::Value &word = m.extras.Get("surface");
         const uint32_t named = word.IsString() ? surface_kind_named(word.Get<std::string>().c_str()) : MODEL_NONE;

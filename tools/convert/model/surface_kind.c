@@ -97,6 +97,26 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha)
     return kind == NOH_SURFACE_HAIR && alpha == MODEL_ALPHA_OPAQUE ? NOH_SURFACE_PLAIN : kind;
 }
 
+/* Each capital of the pattern stands for one, each 0 for a digit. */
+static int begins_as(const char *name, const char *pattern)
+{
+    for (; *pattern; name++, pattern++) {
+        const int fits = *pattern == '0'                       ? *name >= '0' && *name <= '9'
+                         : is_capital((unsigned char)*pattern) ? is_capital((unsigned char)*name)
+                                                               : *name == *pattern;
+        if (!fits) return 0;
+    }
+    return 1;
+}
+
+int surface_is_of_vroid(const char *name)
+{
+    static const char *const parts[] = { "_SKIN", "_FACE", "_EYE", "_HAIR", "_CLOTH" };
+    int found = 0;
+    for (size_t i = 0; i < sizeof parts / sizeof parts[0]; i++) found |= strstr(name, parts[i]) != NULL;
+    return found && begins_as(name, "N00_000_");
+}
+
 /* ---- materials ---- */
 
 static void forget_toon(model_material *m)

@@ -19,6 +19,10 @@ uint32_t surface_kind_of_name(const char *name);
 /* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
 uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
+/* 1 for the materials of VRoid Studio ("N00_000_00_Face_00_SKIN"), whose characters are drawn as toons, also where an
+ * exporter dropped their MToon. */
+int surface_is_of_vroid(const char *name);
+
 /* Set a material's kind. Unlit materials stay plain. The default reflectance (0.04) becomes the surface's: 0.028 for
  * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);

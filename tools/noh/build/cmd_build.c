@@ -661,7 +661,7 @@ static const option options[] = {
       .at = offsetof(build_args, materials.surfaces),
       .value = "MATERIAL=skin|eye|teeth|toon|plain",
       .what =
-          "draw a material as skin, eye, teeth (also gums and tongue), hair, two-tone toon, or plain; may repeat; default: from its extras (\"surface\") or VRM's MToon, else from words in its name",
+          "draw a material as skin, eye, teeth (also gums and tongue), hair, two-tone toon, or plain; may repeat; default: from its extras (\"surface\") or VRM's MToon, else from its name: VRoid's are toons, and words tell the others",
       .example = "face=skin",
       .excludes = "--only=anim" },
     { .name = "--tint",
