@@ -10,8 +10,13 @@ for verb in info budget verify; do
     expect 0 "$verb --json"
     cp "$work/out" "$work/$verb.json"
 done
+noh render "$pack" -o /dev/stdout --json
+expect 2 'a picture and JSON do not both go to stdout'
+noh render "$pack" -o "$work/face.png" --size 64x64 --camera face,0,4 --light room --json
+expect 0 'render --json'
+cp "$work/out" "$work/render.json"
 if [ -z "$json" ]; then
-    for verb in info budget verify; do
+    for verb in info budget verify render; do
         skip "$verb --json parses" 'neither node nor python3 is here'
     done
     finish
@@ -29,6 +34,8 @@ holds info 'j.meshes[0].vertices !== 0 && j.meshes[0].indices !== 0 && j.meshes[
 holds info 'j.meshes[0].pairs !== 0 && j.meshes[0].texels !== 0 && j.meshes[0].target_bytes !== 0'
 holds info 'j.meshes[0].name !== "" && j.meshes[0].lods !== 0 && j.skeletons !== 0 && j.clips[0].name !== "" && j.events !== 1'
 holds info 'j.clips[0].rate_errors_cm[0] === 0 && j.clips[0].rate_errors_cm[3] !== 0 && j.clips[0].error_shell_cm === 0'
+holds render 'j.width === 64 && j.height === 64 && j.camera.view_deg === 30 && j.light.name === "room" && j.light.exposure !== 0'
+holds render 'j.camera.eye[0] === 0 && j.camera.eye[2] !== 0 && j.camera.forward[0] === 0 && j.camera.forward[2] !== 0 && j.light.key_direction[1] !== 0'
 holds budget 'j.cpu_bytes !== 0 && j.gpu_bytes !== 0 && j.parts[0].name !== "" && j.parts[0].cpu_bytes + j.parts[0].gpu_bytes !== 0'
 holds budget "j.pack_bytes === $(wc -c <"$pack")"
 holds verify 'j.ok === true && j.driver !== "" && j.gl_version !== ""'

@@ -48,9 +48,11 @@ web-bench: deps-web
 	$(MAKE) --no-print-directory DEPS=0 web WEB_WIRE= WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
 	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
 
-# Pictures compared with three.js's standard materials.
-LOOKS ?= $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb $(BUILD)/mask.glb
-look-compare: deps-web $(BUILD)/noh $(BUILD)/mask.glb
+# Heads and bodies by noh, three.js and model-viewer, in noh's lights, as one sheet. LOOKS="FILE FILE:full": other models;
+# LOOK_MORE=FILES: more of them.
+LOOK_MORE ?=
+LOOKS ?= $(BUILD)/mask.glb $(BUILD)/demo/nell.glb $(BUILD)/demo/puppet.glb:full $(ASSETS)/hero/head_skin.glb $(ASSETS)/hero/body.glb:full $(LOOK_MORE)
+look: deps-web $(BUILD)/noh $(BUILD)/tests/gl/panorama $(BUILD)/mask.glb $(BUILD)/demo/nell.glb $(BUILD)/demo/puppet.glb
 	@NOH_BUILD="$(BUILD)" sh tests/web_look.sh $(LOOKS)
 
 $(WEB)/page.nohz: $(WEB_PACK) $(BUILD)/noh

@@ -6,6 +6,7 @@
 
 #include "draw/picture.h"
 #include "gpu/gpu_args.h"
+#include "cli/json.h"
 #include "cli/message.h"
 #include "file/png_file.h"
 #include "cli/options.h"
@@ -18,7 +19,7 @@ typedef struct render_args {
         *decal_kind;
     uint32_t size[2];
     double time_s, lod, turn, swing;
-    int show_bones;
+    int show_bones, as_json;
     debug_kind shows;
     option_list weights, clips, anims, emotions, decals;
     figure_mark marks[NOH_DECALS_MAX];
@@ -99,7 +100,41 @@ static int check_args(render_args *a)
     if (!status && !(a->swing >= 0.0 && a->swing <= 60.0)) status = tool_usage("--swing must be 0 to 60 seconds");
     a->view.width = a->size[0];
     a->view.height = a->size[1];
+    if (!status && a->as_json && a->output && report_stream(a->output) != stdout) {
+        status = tool_usage("--json and -o both write to stdout");
+    }
     return status;
+}
+
+static void json_vector(json *j, const char *key, const float v[3])
+{
+    json_open(j, key, '[');
+    for (int i = 0; i < 3; i++) json_number(j, NULL, (double)v[i]);
+    json_close(j, ']');
+}
+
+/* What another renderer needs for the same picture. */
+static int print_json(const render_args *a, const noh_gl_camera *camera)
+{
+    const float *m = camera->view_projection;
+    json j = json_begin();
+    json_text(&j, "picture", a->output);
+    json_integer(&j, "width", a->size[0]);
+    json_integer(&j, "height", a->size[1]);
+    json_open(&j, "camera", '{');
+    json_vector(&j, "eye", camera->eye);
+    json_vector(&j, "forward", (const float[3]){ m[3], m[7], m[11] }); /* of the row of w */
+    json_number(&j, "view_deg", ORBIT_VIEW_RAD * 57.29577951308232);
+    json_close(&j, '}');
+    if (a->figure.light) {
+        const noh_lighting *told = &a->figure.light->told;
+        json_open(&j, "light", '{');
+        json_text(&j, "name", a->figure.light->name);
+        json_number(&j, "exposure", (double)told->exposure);
+        json_vector(&j, "key_direction", told->key_direction);
+        json_close(&j, '}');
+    }
+    return json_end(&j);
 }
 
 /* Once the picture is written. plan: NULL where bones were drawn. */
@@ -125,9 +160,8 @@ static int strike(picture *p, const render_args *a)
     return status ? status : figure_strike(&p->figure, &camera, a->size[0], a->size[1]);
 }
 
-static int draw(picture *p, const render_args *a, uint8_t *rgba)
+static int draw(picture *p, const render_args *a, noh_gl_camera *camera, uint8_t *rgba)
 {
-    noh_gl_camera camera;
     const int alive = a->figure.alive;
     const int lives = alive || a->figure.stands || a->body.has_ground;
     const int hangs = !alive && !a->body.has_ground && a->rests && p->figure.hair.is_there;
@@ -141,14 +175,15 @@ static int draw(picture *p, const render_args *a, uint8_t *rgba)
     if (!status) {
         const bounds box = picture_bounds(p, figure_framed(&p->figure, view_frame_of(&a->view), &a->clips));
         if (p->figure.shows_floor) figure_fit_floor(&p->figure, figure_bounds(&p->figure, FRAME_FULL).low[1]);
-        status = view_camera(&a->view, &box, &camera);
+        status = view_camera(&a->view, &box, camera);
     }
-    return status ? status : picture_read(p, &camera, rgba);
+    return status ? status : picture_read(p, camera, rgba);
 }
 
 static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
 {
     picture p;
+    noh_gl_camera camera;
     uint8_t *rgba = malloc((size_t)a->size[0] * a->size[1] * 4);
     noh_gl_morph_plan plan;
     int status = rgba ? picture_open(&p, g, &a->figure, shows_bones, a->size[0], a->size[1])
@@ -156,12 +191,13 @@ static int draw_and_write(gpu *g, const render_args *a, int shows_bones)
     if (!status) {
         const figure *f = &p.figure;
         status = picture_debug(&p, g, a->shows, a->joint);
-        if (!status) status = draw(&p, a, rgba);
+        if (!status) status = draw(&p, a, &camera, rgba);
         if (!shows_bones) (void)noh_stage_morph_plan(&f->stage_desc, &g->caps, &f->plan, &plan, NULL);
         picture_close(&p);
     }
     if (!status) status = tool_write_png(a->output, a->size[0], a->size[1], rgba);
-    if (!status) print_done(a, shows_bones ? NULL : &plan);
+    if (!status && a->as_json) status = print_json(a, &camera);
+    if (!status && !a->as_json) print_done(a, shows_bones ? NULL : &plan);
     free(rgba);
     return status;
 }
@@ -301,6 +337,7 @@ static const option options[] = {
     OPTION_PATH(render_args, path, .initial = "auto", .excludes = "--bones"),
     OPTION_ACCUMULATE(render_args, accumulate, .initial = "auto", .excludes = "--bones"),
     OPTION_DRIVER(render_args, driver, .initial = "egl"),
+    OPTION_JSON(render_args, as_json),
 };
 
 const verb verb_render = {
