@@ -11,7 +11,8 @@
  *   NOH_MATCAP        defined: and it has a matcap
  *   NOH_HAIR          defined: it is hair
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
- *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read */
+ *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read
+ *   NOH_COLORS        defined: targets colour four regions of a map */
 #ifndef NOH_DEPTH_ONLY
 uniform vec3 noh_f0;       /* reflectance of non-metals at normal incidence; limited to noh_f90 */
 uniform float noh_f90;     /* and at grazing angles */
@@ -30,6 +31,30 @@ uniform mediump sampler2D noh_specular_texture;
 #ifdef NOH_EMISSIVE
 uniform vec3 noh_emissive;
 uniform mediump sampler2D noh_emissive_texture;
+#endif
+
+#ifdef NOH_COLORS
+uniform mediump sampler2D noh_color_texture; /* how far each of four regions covers the texel */
+uniform vec4 noh_colors[4]; /* rgb: colour of a region, linear; a: its weight, in crowds 1 */
+#ifdef NOH_CROWD
+flat in vec4 noh_v_colors;
+#endif
+
+/* The weights of the regions at a pixel. */
+vec4 noh_color_weights(vec2 uv)
+{
+    vec4 weights = texture(noh_color_texture, uv) * vec4(noh_colors[0].a, noh_colors[1].a, noh_colors[2].a, noh_colors[3].a);
+#ifdef NOH_CROWD
+    weights *= noh_v_colors;
+#endif
+    return weights;
+}
+
+vec3 noh_colored(vec3 albedo, vec4 weights)
+{
+    for (int i = 0; i < 4; i++) albedo = mix(albedo, noh_colors[i].rgb, weights[i]);
+    return albedo;
+}
 #endif
 
 #ifdef NOH_TOON
@@ -111,6 +136,10 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.position = position;
     s.view = normalize(noh_camera - position);
     s.albedo = base.rgb;
+#ifdef NOH_COLORS
+    vec4 colored = noh_color_weights(uv);
+    s.albedo = noh_colored(s.albedo, colored);
+#endif
     s.alpha = base.a;
     s.roughness = noh_material.x;
     s.metallic = noh_material.y;
@@ -160,7 +189,11 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
 #endif
     s.f0 = min(s.f0, vec3(s.f90)); /* KHR_materials_specular */
 #ifdef NOH_TOON_SHADE
-    s.shade = noh_surface_values.rgb * noh_pixel_color * texture(noh_wrinkle_weights_0, uv).rgb;
+    s.shade = noh_pixel_color * texture(noh_wrinkle_weights_0, uv).rgb;
+#ifdef NOH_COLORS
+    s.shade = noh_colored(s.shade, colored);
+#endif
+    s.shade *= noh_surface_values.rgb;
 #elif defined(NOH_TOON)
     s.shade = noh_surface_values.rgb * s.albedo;
 #endif

@@ -57,6 +57,10 @@ flat out highp ivec4 noh_v_regions; /* three regions of 8 bits in each component
 #endif
 #endif
 
+#if defined(NOH_COLORS) && defined(NOH_CROWD) && !defined(NOH_DEPTH_ONLY)
+flat out vec4 noh_v_colors; /* weights of the regions of the colour map */
+#endif
+
 #if defined(NOH_PHONE) && defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
 out vec3 noh_v_ambient; /* of a white matte surface */
 #endif
@@ -223,6 +227,9 @@ noh_vertex noh_fetch()
     noh_wrinkle_vertex(v.uv);
 #endif
 #ifndef NOH_DEPTH_ONLY
+#if defined(NOH_COLORS) && defined(NOH_CROWD)
+    noh_v_colors = noh_crowd_row(5);
+#endif
 #ifdef NOH_EYE
     noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, noh_world_row(0), noh_world_row(1),
                     noh_world_row(2));

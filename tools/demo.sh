@@ -22,6 +22,8 @@ echo
 "$noh" sheet "$build/mask.noh" -o "$build/mask_targets.png" --path "$path"
 "$noh" sheet "$build/mask.noh" -o "$build/mask_faces.png" --target smile --target surprise --target anger --target blink \
     --columns 5 --tile 288 --camera 14,4 --path "$path"
+"$noh" sheet "$build/demo/flush.noh" -o "$build/mask_colors.png" --target smile --target surprise --target anger --columns 4 \
+    --tile 256 --light room
 "$noh" budget "$build/mask.noh" --path layered --nominal
 echo
 echo 'LOD levels (--lod-fast; without it their errors are smaller, and the build takes a minute):'
@@ -38,4 +40,5 @@ echo "  $build/mask.png           a mask at rest"
 echo "  $build/mask_smile.png     --weight smile=1"
 echo "  $build/mask_targets.png   every target"
 echo "  $build/mask_faces.png     a Noh mask's faces"
+echo "  $build/mask_colors.png    --color-map: it blushes, pales, reddens"
 echo "  $build/mask_levels.png    every LOD level: at rest, smiling, eyes shut, and at the size at which it is used"

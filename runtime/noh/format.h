@@ -271,16 +271,24 @@ typedef struct noh_influences_header {
     uint32_t reserved[8];
 } noh_influences_header;
 
-/* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the matrix. How much each target
- * wrinkles each of twelve regions (pack.h); more_textures of a material place the regions on the skin. ---- */
+/* ---- CHUNK_WRINKLES, none or one for a mesh, in the order of meshes: header, then the arrays. How much each target
+ * wrinkles each of twelve regions, and colours each of four (pack.h). more_textures of a material place the first on the
+ * skin, the four channels of color_texture the others: a texel's channel is how far its region covers it. ---- */
 
-#define NOH_WRINKLE_REGIONS 12u
+#define NOH_WRINKLE_FOLDS 12u   /* regions of a wrinkle map */
+#define NOH_WRINKLE_COLORS 4u   /* regions of colour */
+#define NOH_WRINKLE_REGIONS 16u /* both, in this order */
 
 typedef struct noh_wrinkles_header {
-    uint32_t mesh;          /* the n-th mesh chunk */
-    uint32_t target_count;  /* of the mesh */
-    uint32_t matrix_offset; /* uint8_t[target_count][NOH_WRINKLE_REGIONS], 255: all at weight 1 */
-    uint32_t reserved[5];
+    uint32_t mesh;           /* the n-th mesh chunk */
+    uint32_t target_count;   /* of the mesh */
+    uint32_t matrix_offset;  /* uint8_t[target_count][NOH_WRINKLE_FOLDS], 255: all at weight 1 */
+    uint32_t colors_offset;  /* 0: no colours. uint8_t[NOH_WRINKLE_COLORS + target_count][4]: the regions' colours, 255
+                              * times the square roots of linear r, g, b, then 0; then for each target how much it
+                              * colours each region, 255: all at weight 1 */
+    uint32_t color_material; /* colours show on submeshes of this material; 0 without colours */
+    uint32_t color_texture;  /* LINEAR; 0 without colours */
+    uint32_t reserved[2];
 } noh_wrinkles_header;
 
 /* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
@@ -648,8 +656,8 @@ NOH_STATIC_ASSERT(sizeof(noh_pack_cover_header) == 32, pack_cover_header);
  * [least, greatest][14][8][2]; boxes past the last are 127 and -127. Libraries older than this chunk refuse a pack with
  * it. ---- */
 
-#define NOH_MATCH_FEATURES 28u    /* with the last, which is 0 */
-#define NOH_MATCH_COARSE 20u      /* features from here on have half the scale */
+#define NOH_MATCH_FEATURES 28u /* with the last, which is 0 */
+#define NOH_MATCH_COARSE 20u   /* features from here on have half the scale */
 #define NOH_MATCH_GROUP_BYTES (8u * NOH_MATCH_FEATURES)
 #define NOH_MATCH_LEVELS 3u /* boxes of 16, 64 and 512 rows */
 

@@ -251,7 +251,7 @@ typedef struct noh_gl_variant_key {
     uint8_t encode_srgb;     /* as in noh_gl_renderer_desc */
     uint8_t depth;           /* 1: only depth (NOH_DRAW_DEPTH): positions, and the inputs of alpha if cut */
     uint8_t two_layers;      /* 1: noh_gl_morph_binding.layer_count is 2; with depth 0 */
-    uint16_t features;       /* NOH_FEATURE_* of the material; with depth 0 */
+    uint32_t features;       /* NOH_FEATURE_* of the material; with depth 0 */
     uint8_t cut;             /* with depth, 1: for alpha-cut materials. Without depth 0: NOH_FEATURE_ALPHA */
     uint8_t lit;             /* 1: lit by noh_gl.h; NOH_LIT_SOFT: its shadows are soft; with depth 0 */
     uint8_t transfer;        /* with lit: the order of the mesh's transfer, and NOH_TRANSFER_ON_NORMAL; 0: none */
@@ -326,7 +326,8 @@ typedef struct noh_gl_mesh {
 #define NOH_UNIT_ENVIRONMENT 11u
 #define NOH_UNIT_SPECULAR 12u
 #define NOH_UNIT_LISTS 13u /* path direct: lists; starts on the next; delta texels on NOH_UNIT_LAYERS */
-#define NOH_UNIT_USER 15u  /* the first unit for a game's own shaders */
+#define NOH_UNIT_COLORS 15u
+#define NOH_UNIT_USER 16u /* the first unit for a game's own shaders */
 
 #define NOH_GL_RENDERER_BYTES 4u /* the white texel */
 

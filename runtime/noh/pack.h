@@ -154,7 +154,7 @@ void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out);
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);
 
 /* ======== wrinkles ========
- * Wrinkle weights of the twelve regions of a face, from its morph weights.
+ * Weights of the regions of a face, from its morph weights: twelve that wrinkle, four that change colour (a blush).
  *
  *   noh_wrinkles_of       the matrix of a mesh
  *   noh_wrinkles_weights  region weights from morph weights
@@ -165,16 +165,18 @@ uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i);
 /* A view: valid as long as the pack and its bytes are. */
 typedef struct noh_wrinkles {
     uint32_t target_count;
-    const uint8_t *matrix; /* [target_count][NOH_WRINKLE_REGIONS], 255: all at weight 1 */
+    const uint8_t *matrix; /* [target_count][NOH_WRINKLE_FOLDS], 255: all at weight 1 */
+    const uint8_t *colors; /* as at noh_wrinkles_header.colors_offset; NULL: no colours */
+    uint32_t color_material, color_texture;
 } noh_wrinkles;
 
 /* Get the wrinkles of a mesh; the same at every LOD level.
- * errors  NOT_FOUND the mesh has no wrinkles: its pack was built without --wrinkles and --region-mask; *wrinkles is
- *         untouched */
+ * errors  NOT_FOUND the mesh has no wrinkles or colours: its pack was built without --wrinkles, --region-mask and
+ *         --color-map; *wrinkles is untouched */
 noh_result noh_wrinkles_of(const noh_mesh *mesh, noh_wrinkles *wrinkles, noh_error *error);
 
 /* Compute region weights from morph weights: the sum of weight times matrix, clamped to 0..1. Channel c of the
- * material's weight map k is region 3 * c + k.
+ * material's weight map k is region 3 * c + k, channel c of the colour map region NOH_WRINKLE_FOLDS + c.
  * shapes  weights[target_count]; regions[NOH_WRINKLE_REGIONS]
  * ranges  weights finite; those below 0 count as 0 */
 void noh_wrinkles_weights(const noh_wrinkles *wrinkles, const float *weights, float *regions);

@@ -1,6 +1,6 @@
 #!/bin/sh
 # noh build --wrinkles, --wrinkle-map, --region-mask: deterministic bytes, painted files instead of generated ones,
-# refused input.
+# refused input; --color-map: colours that fade in with targets.
 . "$(dirname "$0")/lib.sh"
 
 noh build "$build/mask.glb" -o "$work/auto.noh" --wrinkles auto --only mesh
@@ -80,6 +80,42 @@ noh build "$build/mask.glb" -o "$work/rows.noh" --wrinkles auto --recipe "$work/
 expect 0 'rows of wrinkles in a recipe'
 check 'warns of a target that is not there' grep -q "rows.recipe:2: no mesh has the target 'nobody'" "$work/out"
 check 'they change the table' test "$(cmp -l "$work/auto.noh" "$work/rows.noh" | wc -l)" -gt 2
+
+flush=$build/demo/flush.png
+printf 'tint r b02020\ncolor smile r 0.5\ncolor anger r\ncolor nobody r\n' >"$work/blush.recipe"
+noh build "$build/mask.glb" -o "$work/blush.noh" --color-map "$flush" --recipe "$work/blush.recipe" --only mesh
+expect 0 'build --color-map'
+check 'reports size and rows' grep -q "^colours of mesh 'mask', material 'paint': 64 x 64, 2 rows of the recipe" "$work/out"
+check 'warns of a target that is not there' grep -q "blush.recipe:4: no mesh has the target 'nobody'" "$work/out"
+noh verify "$work/blush.noh"
+expect 0 'verify'
+noh info "$work/blush.noh"
+check 'info names the map' grep -q "^material 'paint'.* colours by target 'mask colours'" "$work/out"
+noh strip "$work/blush.noh" -o "$work/again.noh" --from-level 0 --quiet
+check 'strip keeps the colours' cmp "$work/blush.noh" "$work/again.noh"
+noh build "$build/mask.glb" -o "$work/plain.noh" --only mesh --quiet
+for weight in 0 1; do
+    for pack in blush plain; do
+        noh render "$work/$pack.noh" -o "$work/$pack$weight.png" --size 64x64 --weight smile=$weight
+        expect 0 "render, $pack, smile $weight"
+    done
+done
+check 'at rest the mask has no colours' cmp "$work/blush0.png" "$work/plain0.png"
+check 'it blushes with its smile' sh -c "! cmp -s '$work/blush1.png' '$work/plain1.png'"
+noh build "$build/mask.glb" -o "$work/no.noh" --color-map "$flush"
+expect 1 'a map without rows'
+says 'color TARGET CHANNEL'
+noh build "$build/mask.glb" -o "$work/no.noh" --color-map "$flush" --color-material nothing --recipe "$work/blush.recipe"
+expect 1 'a material that is not there'
+says 'it has no such material'
+printf 'tint a b02020\ncolor smile a\n' >"$work/alpha.recipe"
+noh build "$build/mask.glb" -o "$work/no.noh" --color-map "$flush" --recipe "$work/alpha.recipe"
+expect 1 'a channel that the map does not have'
+says 'it has no alpha channel'
+noh build "$build/mask.glb" -o "$work/no.noh" --recipe "$work/blush.recipe" --only mesh
+check 'rows without a map are said' grep -q 'color rows have no effect without --color-map' "$work/out"
+noh build "$build/mask.glb" -o "$work/no.noh" --color-material paint
+expect 2 '--color-material without --color-map'
 
 noh render "$build/mask.noh" -o "$work/map.png" --size 64x64
 noh build "$build/mask.glb" -o "$work/painted.noh" --wrinkle-map "$work/map.png" --region-mask "$work/map.png" --only mesh

@@ -291,7 +291,7 @@ static char *whole_text(noh_gl_variant_key key)
 static int fetches_of_transfer(uint32_t features, int lit, int crowd, uint32_t transfer)
 {
     noh_gl_variant_key key = { 0 };
-    key.features = (uint16_t)features;
+    key.features = features;
     key.lit = (uint8_t)(transfer && !lit ? 1 : lit);
     key.transfer = (uint8_t)transfer;
     key.crowd = key.texture = crowd != 0;
@@ -308,13 +308,13 @@ static int fetches_of(uint32_t features, int lit, int crowd)
 }
 
 #define MAPS (NOH_FEATURE_NORMAL_MAP | NOH_FEATURE_SURFACE_MAP | NOH_FEATURE_EMISSIVE | NOH_FEATURE_WRINKLES)
-#define MORE_MAPS (MAPS | NOH_FEATURE_WRINKLE_PIXEL | NOH_FEATURE_SPECULAR_MAP)
+#define MORE_MAPS (MAPS | NOH_FEATURE_WRINKLE_PIXEL | NOH_FEATURE_SPECULAR_MAP | NOH_FEATURE_COLORS)
 
 /* As many maps as packs may have, of those that a pixel reads. */
 static int is_material(uint32_t features)
 {
     uint32_t count = 0;
-    for (uint32_t bit = 1; bit <= NOH_FEATURE_SPECULAR_MAP; bit *= 2) count += (features & bit & MORE_MAPS) != 0;
+    for (uint32_t bit = 1; bit <= NOH_FEATURE_COLORS; bit *= 2) count += (features & bit & MORE_MAPS) != 0;
     return !(features & ~(uint32_t)(MORE_MAPS | NOH_FEATURE_SPECULAR_ROUGHNESS)) && count <= NOH_MATERIAL_MAPS_MAX &&
            (features & NOH_FEATURE_WRINKLES || !(features & NOH_FEATURE_WRINKLE_PIXEL)) &&
            (features & NOH_FEATURE_SPECULAR_MAP || !(features & NOH_FEATURE_SPECULAR_ROUGHNESS));
@@ -341,7 +341,8 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
     static const uint32_t surfaces[] = { 0, NOH_FEATURE_SKIN, NOH_FEATURE_EYE, NOH_FEATURE_TEETH, NOH_FEATURE_HAIR };
     int most = 0;
     (void)state;
-    for (uint32_t features = 0; features < 2048; features++) {
+    for (uint32_t k = 0; k < 4096; k++) {
+        const uint32_t features = (k & 2047u) | (k & 2048u ? NOH_FEATURE_COLORS : 0);
         for (int i = 0; i < 20 && is_material(features); i++) {
             const int lit = i & 1, crowd = i >> 1 & 1;
             const int fetches = fetches_of(features | surfaces[i >> 2], lit, crowd);
@@ -349,10 +350,11 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
             most = fetches > most ? fetches : most;
         }
     }
-    for (uint32_t i = 0; i < 32; i++) { /* a toon reads no surface and specular maps */
-        const uint32_t maps = (i & 1u ? NOH_FEATURE_NORMAL_MAP : 0) | (i & 2u ? NOH_FEATURE_EMISSIVE : 0) |
-                              (i & 4u ? NOH_FEATURE_TOON_SHADE : 0) | (i & 8u ? NOH_FEATURE_MATCAP : 0);
-        assert_in_range(fetches_of(NOH_FEATURE_TOON | maps, i > 15u, 0), 1, NOH_GL_FETCHES_MAX);
+    for (uint32_t i = 0; i < 64; i++) { /* a toon reads no surface and specular maps */
+        const uint32_t maps = (i & 32u ? NOH_FEATURE_COLORS : 0) | (i & 1u ? NOH_FEATURE_NORMAL_MAP : 0) |
+                              (i & 2u ? NOH_FEATURE_EMISSIVE : 0) | (i & 4u ? NOH_FEATURE_TOON_SHADE : 0) |
+                              (i & 8u ? NOH_FEATURE_MATCAP : 0);
+        assert_in_range(fetches_of(NOH_FEATURE_TOON | maps, i >> 4 & 1u, 0), 1, NOH_GL_FETCHES_MAX);
     }
     assert_int_equal(fetches_of(NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE, 1, 0), 1);
     for (uint32_t features = 0; features < 128; features++) {
@@ -369,6 +371,8 @@ static void no_pixel_reads_more_than_eight_texels(void **state)
     assert_int_equal(most, NOH_GL_FETCHES_MAX); /* the shadow map takes what is left */
     assert_int_equal(fetches_of(MAPS | NOH_FEATURE_SKIN, 1, 0), 8);
     assert_int_equal(fetches_of(0, 0, 0), 1);
+    assert_int_equal(fetches_of(NOH_FEATURE_COLORS, 0, 0), 2); /* one for four regions, also of a toon with a shade */
+    assert_int_equal(fetches_of(NOH_FEATURE_COLORS | NOH_FEATURE_TOON | NOH_FEATURE_TOON_SHADE, 0, 0), 3);
     assert_int_equal(fetches_of(0, 1, 0), 6); /* base colour, environment, four of the shadow map */
     assert_int_equal(fetches_of(NOH_FEATURE_PHONE, 1, 0), 3);
     assert_int_equal(fetches_of(0, NOH_LIT_SOFT, 0), 3); /* one of a soft map */

@@ -38,7 +38,7 @@ typedef struct program {
     char text[4096];
 } program;
 
-static void program_open_with(program *p, uint16_t features, const char *vertex, const char *fragment)
+static void program_open_with(program *p, uint32_t features, const char *vertex, const char *fragment)
 {
     static const noh_gl_input added[] = { { 8, GL_FLOAT_VEC3 }, { 9, GL_FLOAT } }; /* area_vertex */
     static char log[8192];
@@ -254,7 +254,7 @@ static void pixels_read_masks_as_the_source_does(void **state)
     test_random r = test_random_from(12);
     memset(&ledger, 0, sizeof ledger);
     for (uint32_t i = 0; i < SIDE * SIDE * 4; i++) codes[i] = (uint8_t)(i < 1024 ? i / 4 : test_random_below(&r, 256));
-    for (uint32_t i = 0; i < NOH_WRINKLE_REGIONS; i++) {
+    for (uint32_t i = 0; i < NOH_WRINKLE_FOLDS; i++) {
         regions[i] = (float)(30 + 20 * i) / 255.0f;
         rows[4 * (i % 3) + i / 3] = regions[i];
     }
@@ -306,9 +306,9 @@ static void each_region_has_its_own_weight(void **state)
         one_texel(&p, &maps[k], &ledger, texel, NOH_UNIT_WRINKLE_WEIGHTS + k);
     }
     p.gl->Uniform2i(p.variant.u_wrinkle_models, NOH_WRINKLE_BY_REGION, 255);
-    for (uint32_t r = 0; r < 2u * NOH_WRINKLE_REGIONS; r++) {
-        const uint32_t region = r % NOH_WRINKLE_REGIONS;
-        const int literal = r >= NOH_WRINKLE_REGIONS;
+    for (uint32_t r = 0; r < 2u * NOH_WRINKLE_FOLDS; r++) {
+        const uint32_t region = r % NOH_WRINKLE_FOLDS;
+        const int literal = r >= NOH_WRINKLE_FOLDS;
         const double right = (10 + 60 * (region / 3) + 20 * (region % 3)) / 255.0;
         float regions[NOH_WRINKLE_REGIONS] = { 0.0f };
         regions[region] = 1.0f;
@@ -323,6 +323,63 @@ static void each_region_has_its_own_weight(void **state)
     print_message("weights in a row: %u of 12 regions get another's\n", literal_wrong);
     assert_true(literal_wrong >= 9);
     for (uint32_t k = 0; k < 3; k++) noh_gl_texture_delete(p.gl, &ledger, &maps[k]);
+    program_close(&p);
+    fixture_frame_close(&frame);
+}
+
+/* ---- colours ---- */
+
+static const char color_fragment[] = "void main() {\n"
+                                     "    ivec2 i = ivec2(gl_FragCoord.xy);\n"
+                                     "    vec3 albedo = vec3(i.x, i.y, i.x + i.y & 63) / 63.0;\n"
+                                     "    show(noh_colored(albedo, noh_color_weights(vec2(0.5)))[test_pick]);\n"
+                                     "}\n";
+
+static const char color_vertex[] = "void main() {\n"
+                                   "    gl_Position = vec4(float(gl_VertexID & 1) * 4.0 - 1.0,\n"
+                                   "                       float(gl_VertexID >> 1) * 4.0 - 1.0, 0.0, 1.0);\n"
+                                   "}\n";
+
+/* The weights are those that the renderer keeps for a mesh drawn alone. */
+static void colors_are_those_of_the_cpu(void **state)
+{
+    static const uint8_t colors[4][4] = {
+        { 204, 51, 51, 0 }, { 20, 250, 130, 0 }, { 90, 90, 200, 0 }, { 255, 255, 255, 0 }
+    };
+    static const uint8_t texel[4] = { 200, 31, 128, 77 };
+    const noh_wrinkles wrinkles = { .colors = colors[0] };
+    float regions[NOH_WRINKLE_REGIONS] = { 0.0f }, sent[4][4], worst = 0.0f;
+    noh_gl_renderer renderer;
+    noh_gl_ledger ledger;
+    noh_gl_texture map;
+    fixture_frame frame;
+    program p;
+    (void)state;
+    memset(&renderer, 0, sizeof renderer);
+    memset(&ledger, 0, sizeof ledger);
+    fixture_frame_open(&frame, SIDE);
+    program_open_with(&p, NOH_FEATURE_COLORS, color_vertex, color_fragment);
+    one_texel(&p, &map, &ledger, texel, NOH_UNIT_COLORS);
+    for (uint32_t c = 0; c < 4; c++) regions[NOH_WRINKLE_FOLDS + c] = (float)(51u * (c + 1u)) / 255.0f;
+    noh_gl_draw_wrinkles(&renderer, regions);
+    for (uint32_t c = 0; c < 4; c++) {
+        for (uint32_t i = 0; i < 3; i++) sent[c][i] = (float)(colors[c][i] * colors[c][i]) / 65025.0f;
+        sent[c][3] = renderer.wrinkles[NOH_WRINKLE_FOLDS + c];
+    }
+    p.gl->Uniform4fv(p.variant.u_colors, 4, sent[0]);
+    for (int picked = 0; picked < 3; picked++) {
+        uint8_t *rgba = cover(&p, &frame, picked);
+        for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+            const uint32_t x = i % SIDE, y = i / SIDE;
+            float rgb[3] = { (float)x / 63.0f, (float)y / 63.0f, (float)((x + y) & 63u) / 63.0f };
+            noh_wrinkles_color(&wrinkles, texel, regions, rgb);
+            worst = fmaxf(worst, fabsf(float_at(rgba, i) - rgb[picked]));
+        }
+        free(rgba);
+    }
+    print_message("colours differ from the CPU's by at most %.2g\n", (double)worst);
+    assert_true(worst < 5e-4f); /* filtered texels of drivers are off by that much; a byte is 4e-3 */
+    noh_gl_texture_delete(p.gl, &ledger, &map);
     program_close(&p);
     fixture_frame_close(&frame);
 }
@@ -596,7 +653,7 @@ static noh_place place_of(uint32_t i)
     return place;
 }
 
-static void crowd_open(crowd *c, uint32_t actors)
+static void crowd_open(crowd *c, uint32_t actors, const char *name)
 {
     static const float middle[3] = { 0.0f, 0.0f, 0.0f };
     static char log[4096];
@@ -604,7 +661,7 @@ static void crowd_open(crowd *c, uint32_t actors)
     char path[1024];
     const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, log, sizeof log };
     memset(c, 0, sizeof *c);
-    snprintf(path, sizeof path, "%s/mask.noh", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build");
+    snprintf(path, sizeof path, "%s/%s", getenv("NOH_BUILD") ? getenv("NOH_BUILD") : "build", name);
     if (noh_file_map(path, &c->file, &said)) fail_msg("%s: %s", path, said.what);
     c->pack = test_open(c->file.data, c->file.bytes);
     c->kind.mesh = &c->pack;
@@ -675,7 +732,7 @@ static void each_actor_of_a_crowd_has_its_own_wrinkles(void **state)
     crowd many, one;
     uint32_t *together, *smooth;
     (void)state;
-    crowd_open(&many, ACTORS);
+    crowd_open(&many, ACTORS, "mask.noh");
     for (uint32_t i = 0; i < ACTORS; i++) spawn(&many, i, i);
     together = crowd_draw(&many);
     for (uint32_t i = 0; i < ACTORS; i++) {
@@ -683,7 +740,7 @@ static void each_actor_of_a_crowd_has_its_own_wrinkles(void **state)
         assert_int_equal(noh_actor_set_appearance(many.stage, many.actors[i], &look, NULL), NOH_OK);
     }
     smooth = crowd_draw(&many); /* what a crowd without regions would show */
-    crowd_open(&one, 1);
+    crowd_open(&one, 1, "mask.noh");
     for (uint32_t i = 0; i < ACTORS; i++) {
         uint32_t *alone;
         spawn(&one, i, i);
@@ -701,6 +758,49 @@ static void each_actor_of_a_crowd_has_its_own_wrinkles(void **state)
     crowd_close(&many);
 }
 
+static void blush(crowd *c, uint32_t i, const char *target)
+{
+    const noh_place place = place_of(i);
+    assert_int_equal(noh_stage_spawn(c->stage, 0, &place, &c->actors[i], &said), NOH_OK);
+    const uint32_t index = noh_stage_find(c->stage, 0, NOH_NAME_FLOAT, target);
+    assert_true(index != NOH_NONE);
+    assert_int_equal(noh_actor_hold_float(c->stage, c->actors[i], index, 1.0f, 1.0f, &said), NOH_OK);
+}
+
+/* An actor in a crowd has the colours that it has alone, and the mask without colours differs from it where it blushes.
+ * With a target that colours nothing it is the mask without colours. */
+static void each_actor_of_a_crowd_has_its_own_colors(void **state)
+{
+    static const char *const targets[ACTORS] = { "smile", "surprise", "anger", "browInnerUp" };
+    static const int is_colored[ACTORS] = { 1, 1, 1, 0 };
+    crowd many, one, plain;
+    (void)state;
+    crowd_open(&many, ACTORS, "demo/flush.noh");
+    crowd_open(&plain, ACTORS, "mask.noh");
+    crowd_open(&one, 1, "demo/flush.noh");
+    for (uint32_t i = 0; i < ACTORS; i++) {
+        blush(&many, i, targets[i]);
+        blush(&plain, i, targets[i]);
+    }
+    uint32_t *together = crowd_draw(&many), *without = crowd_draw(&plain);
+    for (uint32_t i = 0; i < ACTORS; i++) {
+        blush(&one, i, targets[i]);
+        uint32_t *alone = crowd_draw(&one);
+        const uint32_t colored = differing(together, without, i);
+        print_message("%s: %u pixels differ from the actor alone, %u from one without colours\n", targets[i],
+                      differing(together, alone, i), colored);
+        assert_true(differing(together, alone, i) <= 4);
+        assert_true(is_colored[i] ? colored > 100 : colored == 0);
+        assert_int_equal(noh_stage_despawn(one.stage, one.actors[i], NULL), NOH_OK);
+        free(alone);
+    }
+    free(together);
+    free(without);
+    crowd_close(&one);
+    crowd_close(&plain);
+    crowd_close(&many);
+}
+
 /* Smoothed out, an actor looks as the same mesh does whose wrinkles no model shows; half smoothed, it lies between. */
 static void looks_smooth_wrinkles_out(void **state)
 {
@@ -708,7 +808,7 @@ static void looks_smooth_wrinkles_out(void **state)
     uint32_t *pictures[3];
     crowd c;
     (void)state;
-    crowd_open(&c, 1);
+    crowd_open(&c, 1, "mask.noh");
     spawn(&c, 0, 0);
     for (int i = 0; i < 3; i++) {
         const noh_appearance look = { .smoothed = smoothed[i] };
@@ -728,11 +828,13 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(channels_add_up_to_one),
     cmocka_unit_test(pixels_read_masks_as_the_source_does),
     cmocka_unit_test(each_region_has_its_own_weight),
+    cmocka_unit_test(colors_are_those_of_the_cpu),
     cmocka_unit_test(what_has_no_wrinkles_is_drawn),
     cmocka_unit_test(texels_become_normals_before_they_mix),
     cmocka_unit_test(areas_by_derivatives_are_exact),
     cmocka_unit_test(areas_of_a_human_head),
     cmocka_unit_test(each_actor_of_a_crowd_has_its_own_wrinkles),
+    cmocka_unit_test(each_actor_of_a_crowd_has_its_own_colors),
     cmocka_unit_test(looks_smooth_wrinkles_out),
 };
 

@@ -236,9 +236,11 @@ static void report_warnings(FILE *report, const source *s)
 static int make_wrinkles(const source *s, const recipe_text *recipe, const convert_options *options, model_error *error)
 {
     wrinkle_settings settings = options->wrinkles;
-    settings.report = options->report;
-    settings.recipe = recipe;
-    return options->only != CONVERT_CLIPS && wrinkles_make(s->m, &settings, error);
+    color_settings colors = options->colors;
+    settings.report = colors.report = options->report;
+    settings.recipe = colors.recipe = recipe;
+    return options->only != CONVERT_CLIPS &&
+           (wrinkles_make(s->m, &settings, error) || colors_make(s->m, &colors, error));
 }
 
 static int set_textures(const source *s, const convert_options *options, model_error *error)

@@ -11,6 +11,7 @@
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_write.h"
 #include "convert/sources.h"
+#include "convert/wrinkle/color_make.h"
 #include "convert/wrinkle/wrinkle_make.h"
 
 typedef enum convert_only { CONVERT_ALL, CONVERT_MESH, CONVERT_CLIPS } convert_only;
@@ -21,6 +22,7 @@ typedef struct convert_options {
     clips_settings clip;
     source_options source;       /* skin.report is filled in by convert_files */
     wrinkle_settings wrinkles;   /* zeros: none; report is filled in by convert_files */
+    color_settings colors;       /* likewise */
     transfer_settings transfer;  /* order 0: none; progress is filled in by convert_files */
     const char *const *surfaces; /* [surface_count] "MATERIAL=KIND", see surface_kind.h */
     uint32_t surface_count;

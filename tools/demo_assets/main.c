@@ -5,8 +5,10 @@
  * demo_assets --get-up OUT.glb: the puppet's skeleton, with clips that get up from back and front.
  * demo_assets --roam OUT.glb: the same skeleton, with clips that walk wherever a stick points.
  * demo_assets --arm OUT.glb: arms in parts and in one piece, bent and twisted by each kind of skinning.
+ * demo_assets --flush OUT.png: where the mask changes colour with its targets (noh build --color-map).
  * demo_assets --festival OUT: a festival's square, as OUT.obj and OUT.mtl. */
 #include "festival/festival.h"
+#include "mask/flush.h"
 #include "mask/gltf_write.h"
 #include "mask/mask.h"
 #include "nell/nell.h"
@@ -95,6 +97,15 @@ static int make_arm(const char *path)
     return good;
 }
 
+static int make_flush(const char *path)
+{
+    Buffer file = { 0 };
+    flush_write(&file);
+    int good = save(path, &file);
+    buffer_free(&file);
+    return good;
+}
+
 static int make_festival(const char *path)
 {
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -139,10 +150,15 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--arm")) {
         return make_arm(argv[2]) ? 0 : 1;
     }
+    if (argc == 3 && !strcmp(argv[1], "--flush")) {
+        return make_flush(argv[2]) ? 0 : 1;
+    }
     if (argc == 3 && !strcmp(argv[1], "--festival")) {
         return make_festival(argv[2]) ? 0 : 1;
     }
-    fprintf(stderr,
-            "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--arm] OUT.glb, or demo_assets --festival OUT\n");
+    fprintf(
+        stderr,
+        "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--arm] OUT.glb, demo_assets --flush OUT.png, or "
+        "demo_assets --festival OUT\n");
     return 2;
 }

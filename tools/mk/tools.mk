@@ -178,6 +178,12 @@ $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --wrinkles auto --quiet
+# The mask with colours that fade in with its targets.
+FLUSH := tools/demo_assets/mask/flush.recipe
+$(BUILD)/demo/flush.noh: $(BUILD)/mask.glb $(FLUSH) $(BUILD)/noh
+	@mkdir -p $(@D)
+	$(BUILD)/demo_assets --flush $(BUILD)/demo/flush.png
+	$(BUILD)/noh build $< -o $@ --wrinkles auto --color-map $(BUILD)/demo/flush.png --recipe $(FLUSH) --only mesh --quiet
 $(BUILD)/page/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	@mkdir -p $(@D)
 	$(BUILD)/noh build $< -o $@ --wrinkles auto --lod 4 --lod-fast --lod-color 1.2 --quiet

@@ -15,6 +15,11 @@ extern "C" {
  * area at rest keeps its rest weight. */
 float noh_wrinkles_area(float area_at_rest, float area);
 
+/* Blend the colours of regions onto an albedo, one region after the other.
+ * shapes  cover: a texel of the colour map; regions[NOH_WRINKLE_REGIONS]; rgb: linear albedo
+ * state   wrinkles->colors is not NULL */
+void noh_wrinkles_color(const noh_wrinkles *wrinkles, const uint8_t cover[4], const float *regions, float rgb[3]);
+
 /* Blend a wrinkle normal onto a base normal, with the wrinkle's slopes times weight.
  * shapes  base, wrinkle, out: [3] unit, tangent space; out may be base or wrinkle
  * ranges  z of both above 0; weight 0..1

@@ -59,6 +59,9 @@ NOH_COLD noh_result noh_check_name(const noh_check *check, uint32_t name, uint32
 NOH_CHUNKS(NOH_CHECKER)
 #undef NOH_CHECKER
 
+/* check_materials.c: how many maps a pixel reads besides the base colour. */
+NOH_COLD uint32_t noh_material_maps(const noh_material *m);
+
 /* check_mesh_part.c: what every level of a mesh has; `h` is that level's header. */
 NOH_COLD noh_result noh_check_texture_shape(const noh_check *check, const noh_mesh_header *h);
 noh_result noh_check_indices(const noh_check *check, const noh_mesh_header *h);

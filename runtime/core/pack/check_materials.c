@@ -63,15 +63,21 @@ static noh_result check_wrinkle_codes(const noh_check *check, const noh_material
 }
 
 #define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)
+uint32_t noh_material_maps(const noh_material *m)
+{
+    const int is_toon = m->surface == NOH_SURFACE_TOON;
+    const int maps = (m->normal_texture != NOH_NONE) + (m->surface_texture != NOH_NONE) +
+                     (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
+                     (m->wrinkle_texture != NOH_NONE) + ((m->flags & SPECULAR) != 0) +
+                     ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0) + ((m->flags & NOH_MATERIAL_TOON_SHADE) != 0) +
+                     (is_toon && m->more_textures[NOH_TOON_MATCAP] != NOH_NONE);
+    return (uint32_t)maps;
+}
+
 static noh_result check_specular(const noh_check *check, const noh_material *m, uint64_t at)
 {
     const uint32_t kind = m->flags & SPECULAR;
     const uint64_t where = at + offsetof(noh_material, specular_texture);
-    const int maps = (m->normal_texture != NOH_NONE) + (m->surface_texture != NOH_NONE) +
-                     (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
-                     (m->wrinkle_texture != NOH_NONE) + (kind != 0) + ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0) +
-                     ((m->flags & NOH_MATERIAL_TOON_SHADE) != 0) +
-                     (m->surface == NOH_SURFACE_TOON && m->more_textures[NOH_TOON_MATCAP] != NOH_NONE);
     if (!(m->f90_loss >= 0.0f && m->f90_loss <= 1.0f)) {
         return noh_check_fail(check, "what a material reflects at grazing angles is not within 0 to 1",
                               at + offsetof(noh_material, f90_loss));
@@ -80,7 +86,7 @@ static noh_result check_specular(const noh_check *check, const noh_material *m, 
         return noh_check_fail(check, "material has a specular map without a use of its alpha, or one without the other",
                               where);
     }
-    if (maps > (int)NOH_MATERIAL_MAPS_MAX) {
+    if (noh_material_maps(m) > NOH_MATERIAL_MAPS_MAX) {
         return noh_check_fail(check, "material has more maps than a pixel may read", at);
     }
     return kind ? check_texture_of(check, m->specular_texture, 0, where) : NOH_OK;

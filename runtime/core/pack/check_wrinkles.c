@@ -1,4 +1,4 @@
-/* check_wrinkles.c: the checker of what wrinkles regions. */
+/* check_wrinkles.c: the checker of what wrinkles and colours regions. */
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -25,6 +25,31 @@ static noh_result check_header(const noh_check *check, const noh_wrinkles_header
     return NOH_OK;
 }
 
+/* A pixel reads the colour map besides the material's other maps. */
+static noh_result check_colors(const noh_check *check, const noh_wrinkles_header *h)
+{
+    const noh_pack *pack = check->pack;
+    const noh_texture_header *t = noh_pack_chunk_at(pack, NOH_CHUNK_TEXTURE, h->color_texture);
+    if (!h->colors_offset) {
+        return h->color_material || h->color_texture
+                   ? noh_check_fail(check, "a mesh without colours has a material or a map of them",
+                                    offsetof(noh_wrinkles_header, color_material))
+                   : NOH_OK;
+    }
+    if (h->color_material >= pack->material_count) {
+        return noh_check_fail(check, "colours name a material that is not there",
+                              offsetof(noh_wrinkles_header, color_material));
+    }
+    if (!t || !(t->flags & NOH_TEXTURE_LINEAR)) {
+        return noh_check_fail(check, "colours have no map, or one of colours in place of data",
+                              offsetof(noh_wrinkles_header, color_texture));
+    }
+    return noh_material_maps(&pack->materials[h->color_material]) < NOH_MATERIAL_MAPS_MAX
+               ? NOH_OK
+               : noh_check_fail(check, "material has more maps than a pixel may read, with its map of colours",
+                                offsetof(noh_wrinkles_header, color_material));
+}
+
 noh_result noh_check_wrinkles(noh_check *check)
 {
     const noh_wrinkles_header *h = (const noh_wrinkles_header *)(const void *)check->bytes;
@@ -32,7 +57,12 @@ noh_result noh_check_wrinkles(noh_check *check)
     if (!result) result = check_header(check, h);
     if (!result) {
         result = noh_check_array(check, offsetof(noh_wrinkles_header, matrix_offset), h->target_count,
-                                 NOH_WRINKLE_REGIONS);
+                                 NOH_WRINKLE_FOLDS);
+    }
+    if (!result) result = check_colors(check, h);
+    if (!result && h->colors_offset) {
+        result = noh_check_array(check, offsetof(noh_wrinkles_header, colors_offset),
+                                 (uint64_t)NOH_WRINKLE_COLORS + h->target_count, 4);
     }
     return result ? result : noh_check_end(check);
 }

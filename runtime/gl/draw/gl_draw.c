@@ -90,8 +90,9 @@ void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_RE
 {
     NOH_ASSERT(r);
     memset(r->wrinkles, 0, sizeof r->wrinkles);
-    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* by map, then by channel */
-        r->wrinkles[4u * (i % 3u) + i / 3u] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
+    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* of wrinkles by map, then by channel */
+        const uint32_t at = i < NOH_WRINKLE_FOLDS ? 4u * (i % 3u) + i / 3u : i;
+        r->wrinkles[at] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
     }
 }
 
@@ -299,6 +300,24 @@ static void set_wrinkles(const noh_gl_renderer *r, const noh_gl_variant *v, cons
     r->gl->Uniform2i(v->u_wrinkle_models, models | (in_rows ? REGIONS_IN_ROWS : 0), 255 - r->smoothed);
 }
 
+/* noh_colors: the regions' colours and weights, which a crowd has in a row of each instance. */
+static void set_colors(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_mesh *mesh,
+                       const noh_gl_texture *pictures)
+{
+    float colors[NOH_WRINKLE_COLORS][4];
+    noh_wrinkles wrinkles;
+    (void)noh_wrinkles_of(mesh, &wrinkles, NULL); /* the feature says that it has colours */
+    for (uint32_t c = 0; c < NOH_WRINKLE_COLORS; c++) {
+        for (uint32_t i = 0; i < 3; i++) {
+            const float root = (float)wrinkles.colors[4u * c + i] / 255.0f;
+            colors[c][i] = root * root;
+        }
+        colors[c][3] = v->key.crowd ? 1.0f : r->wrinkles[NOH_WRINKLE_FOLDS + c];
+    }
+    bind_picture(r, NOH_UNIT_COLORS, wrinkles.color_texture, pictures);
+    r->gl->Uniform4fv(v->u_colors, NOH_WRINKLE_COLORS, colors[0]);
+}
+
 static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_mesh *mesh, const noh_material *m,
                          float cutoff, const noh_gl_texture *pictures)
 {
@@ -310,6 +329,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
         if (v->key.features & NOH_FEATURE_WRINKLES) {
             set_wrinkles(r, v, m, v->key.crowd && noh_gl_crowd_rows(mesh) > NOH_CROWD_ROWS, pictures);
         }
+        if (v->key.features & NOH_FEATURE_COLORS) set_colors(r, v, mesh, pictures);
         if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m);
     }
     if ((m->flags & NOH_MATERIAL_DOUBLE_SIDED) && !is_outline(v)) {
@@ -365,7 +385,7 @@ static int is_in_depth(draw_part part)
 }
 
 /* NULL if the renderer's desc did not ask for this variant. */
-static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint16_t features)
+static const noh_gl_variant *variant_of(const draw_job *j, draw_part part, uint32_t features)
 {
     noh_gl_variant_key key = noh_gl_variant_key_of(&j->mesh->mesh, j->skin, !j->world, j->r->layers_uint, j->r->view);
     key.fade = j->lod->from > 0.0f || j->lod->to < 1.0f;
@@ -469,7 +489,7 @@ static void draw_part_of(const draw_job *j, draw_part part, int priority)
     for (uint32_t i = 0; i < level.header->submesh_count; i++) {
         const noh_submesh *s = &level.submeshes[i];
         const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
-        const uint16_t features = is_in_depth(part)      ? 0
+        const uint32_t features = is_in_depth(part)      ? 0
                                   : part == PART_OUTLINE ? noh_gl_outline_features(m)
                                                          : noh_gl_features_of(&j->mesh->mesh, m);
         if (draws_nothing(j, s) || !is_in_part(m, part) || (part == PART_BLENDED && m->priority != priority)) {
@@ -562,6 +582,7 @@ void noh_gl_draw_end(const noh_gl_renderer *r)
                                     NOH_UNIT_EMISSIVE,
                                     NOH_UNIT_SPECULAR,
                                     NOH_UNIT_BASE_COLOR,
+                                    NOH_UNIT_COLORS,
                                     NOH_UNIT_LISTS,
                                     NOH_UNIT_LISTS + 1u,
                                     NOH_UNIT_LAYERS };

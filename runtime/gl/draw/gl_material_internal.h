@@ -10,7 +10,7 @@
 const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh);
 
 /* The features of a material's outline; 0: it has none. */
-uint16_t noh_gl_outline_features(const noh_material *m);
+uint32_t noh_gl_outline_features(const noh_material *m);
 
 /* The core of a blended surface, where alpha is at least this, is drawn as opaque. */
 #define NOH_GL_CORE_ALPHA 0.9f

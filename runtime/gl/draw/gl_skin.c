@@ -234,18 +234,21 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
 noh_result noh_gl_skin_set_wrinkles(noh_gl_skin *skin, uint32_t instance, const float *regions, noh_error *error)
 {
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
-    float values[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    const uint32_t rows = noh_gl_crowd_rows(&m->mesh);
+    float values[2][4] = { { 0.0f } };
     span changed = { UINT32_MAX, 0 };
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
         return no_crowds(instance, error);
     }
-    if (noh_gl_crowd_rows(&m->mesh) == NOH_CROWD_ROWS) {
+    if (rows == NOH_CROWD_ROWS) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the instance's mesh has no wrinkles", instance, 0);
     }
     for (uint32_t i = 0; i < NOH_WRINKLE_REGIONS && regions; i++) { /* three bytes each, exact as floats */
-        values[i / 3u] += (float)((uint32_t)(regions[i] * 255.0f + 0.5f) << 8u * (i % 3u));
+        const uint32_t byte = (uint32_t)(regions[i] * 255.0f + 0.5f);
+        if (i < NOH_WRINKLE_FOLDS) values[0][i / 3u] += (float)(byte << 8u * (i % 3u));
+        if (i >= NOH_WRINKLE_FOLDS) values[1][i - NOH_WRINKLE_FOLDS] = (float)byte / 255.0f;
     }
-    put_rows(skin, first_row(m, instance) + NOH_CROWD_REGIONS, values, 1, &changed);
+    put_rows(skin, first_row(m, instance) + NOH_CROWD_REGIONS, values[0], rows - NOH_CROWD_REGIONS, &changed);
     send(skin, &changed);
     return NOH_OK;
 }

@@ -40,6 +40,7 @@ float noh_gl_normal_rows(const float world[12], float rows[12]);
 
 #define NOH_CROWD_ROWS 4u            /* before an instance's palettes in a texture: see crowd_row */
 #define NOH_CROWD_REGIONS 4u         /* index of one more row, of a mesh with wrinkle regions */
+#define NOH_CROWD_COLORS 5u          /* and of one more, if targets colour them */
 #define NOH_SKIN_ROWS_MAX (1u << 26) /* 1 GiB */
 
 /* One mesh of the desc. */

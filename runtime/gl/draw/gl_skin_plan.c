@@ -109,7 +109,8 @@ static noh_result shape_texture(uint64_t rows, uint32_t side_max, noh_gl_skin_pl
 uint32_t noh_gl_crowd_rows(const noh_mesh *mesh)
 {
     noh_wrinkles wrinkles;
-    return NOH_CROWD_ROWS + (mesh->pack && noh_wrinkles_of(mesh, &wrinkles, NULL) == NOH_OK);
+    if (!mesh->pack || noh_wrinkles_of(mesh, &wrinkles, NULL) != NOH_OK) return NOH_CROWD_ROWS;
+    return wrinkles.colors ? NOH_CROWD_COLORS + 1u : NOH_CROWD_REGIONS + 1u;
 }
 
 uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *mesh, uint32_t palette)

@@ -52,13 +52,22 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     return key;
 }
 
-uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
+/* Whether the mesh has colours by target on this material. */
+static int has_colors(const noh_mesh *mesh, const noh_material *m)
 {
-    unsigned features = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
+    noh_wrinkles wrinkles;
+    return mesh->pack && noh_wrinkles_of(mesh, &wrinkles, NULL) == NOH_OK && wrinkles.colors &&
+           m == &mesh->pack->materials[wrinkles.color_material];
+}
+
+uint32_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
+{
+    uint32_t features = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
     NOH_ASSERT(mesh && mesh->header && m);
     if (m->flags & NOH_MATERIAL_UNLIT) {
-        return (uint16_t)features;
+        return features;
     }
+    if (has_colors(mesh, m)) features |= NOH_FEATURE_COLORS;
     if (mesh->header->flags & NOH_MESH_TANGENTS) {
         if (m->normal_texture != NOH_NONE) features |= NOH_FEATURE_NORMAL_MAP;
         if (m->wrinkle_texture != NOH_NONE) {
@@ -81,16 +90,16 @@ uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
         if (m->flags & NOH_MATERIAL_TOON_SHADE) features |= NOH_FEATURE_TOON_SHADE;
         if (m->more_textures[NOH_TOON_MATCAP] != NOH_NONE) features |= NOH_FEATURE_MATCAP;
     }
-    return (uint16_t)features;
+    return features;
 }
 
-uint16_t noh_gl_outline_features(const noh_material *m)
+uint32_t noh_gl_outline_features(const noh_material *m)
 {
-    const unsigned cut = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
+    const uint32_t cut = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
     const int has_outline = m->surface == NOH_SURFACE_TOON && m->surface_more[4] != 0.0f &&
                             !(m->flags & NOH_MATERIAL_UNLIT) &&
                             (!(m->flags & NOH_MATERIAL_BLEND) || noh_gl_has_core(m));
-    return (uint16_t)(has_outline ? NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE | cut : 0u);
+    return has_outline ? NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE | cut : 0u;
 }
 
 noh_gl_variant_key noh_gl_variant_key_depth(noh_gl_variant_key key, int cut)
@@ -130,7 +139,7 @@ static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
                                      NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP,
-                                     NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP };
+                                     NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP,        NOH_FEATURE_COLORS };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
     if (features & NOH_FEATURE_PHONE) return 1u;
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
@@ -176,6 +185,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },
                   { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" },
+                  { (key.features & NOH_FEATURE_COLORS) != 0, "#define NOH_COLORS\n" },
                   { key.features & NOH_FEATURE_PHONE, "#define NOH_PHONE\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
@@ -315,7 +325,8 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_rest", offsetof(noh_gl_variant, u_rest) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },
                      { "noh_wrinkle_regions", offsetof(noh_gl_variant, u_wrinkle_regions) },
-                     { "noh_wrinkle_models", offsetof(noh_gl_variant, u_wrinkle_models) } };
+                     { "noh_wrinkle_models", offsetof(noh_gl_variant, u_wrinkle_models) },
+                     { "noh_colors", offsetof(noh_gl_variant, u_colors) } };
     for (size_t i = 0; i < sizeof uniforms / sizeof uniforms[0]; i++) {
         const GLint at = gl->GetUniformLocation(v->program, uniforms[i].name);
         memcpy((char *)v + uniforms[i].at, &at, sizeof at);
@@ -376,7 +387,8 @@ static noh_result create_program(const noh_gl_device *device, const noh_gl_varia
                                                                       "noh_environment",
                                                                       "noh_specular_texture",
                                                                       "noh_lists",
-                                                                      "noh_starts" };
+                                                                      "noh_starts",
+                                                                      "noh_color_texture" };
     char defines[NOH_GL_DEFINES_BYTES];
     whole_source vertex, fragment;
     noh_gl_input inputs[INPUTS_MAX];

@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /* NOH_FEATURE_* of a material on a mesh. Normal maps need tangents; unlit materials have NOH_FEATURE_ALPHA at most. */
-uint16_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
+uint32_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *material);
 
 /* The key that draws the same triangles with the same depth, to the bit, without colour.
  * cut  1: for alpha-cut materials */

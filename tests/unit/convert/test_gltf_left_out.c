@@ -131,6 +131,11 @@ static void further_uvs_and_colours(void **state)
            "mesh 'm' primitive 0: the attribute TEXCOORD_1 was left out",
            "mesh 'm' primitive 0: the attribute COLOR_1 was left out",
            "mesh 'm' primitive 0: the attribute _HEAT was left out");
+    EXPECT(
+        "", ",\"targets\":[{\"POSITION\":0,\"COLOR_0\":0},{\"POSITION\":0,\"_HEAT\":0}]", "",
+        "mesh 'm' primitive 0 target 0: the deltas of COLOR_0 were ignored: noh build --color-map makes colours that "
+        "fade in",
+        "mesh 'm' primitive 0 target 1: the deltas of _HEAT were ignored which cannot be morphed");
     /* the set that the texture uses is the one that is kept */
     EXPECT(
         ",\"TEXCOORD_1\":1", ",\"material\":0",

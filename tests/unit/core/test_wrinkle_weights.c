@@ -12,9 +12,9 @@
 static void regions_come_from_expressions(void **state)
 {
     (void)state;
-    static const uint8_t matrix[3 * NOH_WRINKLE_REGIONS] = { 255, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255,
-                                                             255, 0,  0, 0, 0, 0, 0, 0, 0, 0, 0, 102 };
-    const noh_wrinkles wrinkles = { 3, matrix };
+    static const uint8_t matrix[3 * NOH_WRINKLE_FOLDS] = { 255, 51, 0, 0, 0, 0, 0, 0, 0, 0, 0, 255,
+                                                           255, 0,  0, 0, 0, 0, 0, 0, 0, 0, 0, 102 };
+    const noh_wrinkles wrinkles = { .target_count = 3, .matrix = matrix };
     float regions[NOH_WRINKLE_REGIONS];
     noh_wrinkles_weights(&wrinkles, (const float[3]){ 0.5f, 0.25f, 9.0f }, regions);
     assert_true(fabsf(regions[0] - 0.75f) < 1e-6f); /* both expressions */
@@ -25,6 +25,41 @@ static void regions_come_from_expressions(void **state)
     assert_true(regions[0] == 1.0f); /* never above */
     noh_wrinkles_weights(&wrinkles, (const float[3]){ -1.0f, 0.5f, 0.0f }, regions);
     assert_true(fabsf(regions[0] - 0.5f) < 1e-6f); /* what is below 0 takes nothing away */
+    for (uint32_t c = 0; c < 4; ++c) assert_true(regions[NOH_WRINKLE_FOLDS + c] == 0.0f); /* it has no colours */
+}
+
+/* A blush by the first target and half of it by the second, pallor by the third. Regions are blended one after the
+ * other, so what covers whole hides what is below. */
+static void colors_fade_in_with_targets(void **state)
+{
+    static const uint8_t matrix[3 * NOH_WRINKLE_FOLDS] = { 255 };
+    static const uint8_t colors[7][4] = { { 204, 51, 51, 0 },
+                                          { 0 },
+                                          { 0 },
+                                          { 153, 204, 255, 0 }, /* square roots */
+                                          { 255, 0, 0, 0 },
+                                          { 102, 0, 0, 0 },
+                                          { 0, 0, 0, 255 } };
+    const noh_wrinkles wrinkles = { .target_count = 3, .matrix = matrix, .colors = colors[0] };
+    const float albedo[3] = { 0.5f, 0.4f, 0.3f };
+    float regions[NOH_WRINKLE_REGIONS], rgb[3];
+    (void)state;
+    noh_wrinkles_weights(&wrinkles, (const float[3]){ 0.5f, 0.5f, 0.0f }, regions);
+    assert_true(regions[0] == 0.5f);
+    assert_true(fabsf(regions[NOH_WRINKLE_FOLDS] - 0.7f) < 1e-6f);
+    for (uint32_t c = 1; c < 4; ++c) assert_true(regions[NOH_WRINKLE_FOLDS + c] == 0.0f);
+    memcpy(rgb, albedo, sizeof rgb);
+    noh_wrinkles_color(&wrinkles, (const uint8_t[4]){ 51, 255, 255, 255 }, regions, rgb);
+    for (int i = 0; i < 3; ++i) { /* 0.7 of a fifth of the way to 0.64, 0.04, 0.04 */
+        assert_true(fabsf(rgb[i] - (albedo[i] + 0.14f * ((i ? 0.04f : 0.64f) - albedo[i]))) < 1e-6f);
+    }
+    memcpy(rgb, albedo, sizeof rgb);
+    noh_wrinkles_color(&wrinkles, (const uint8_t[4]){ 0, 255, 255, 255 }, regions, rgb);
+    assert_memory_equal(rgb, albedo, sizeof rgb); /* where no region is, no bit changes */
+    noh_wrinkles_weights(&wrinkles, (const float[3]){ 9.0f, 0.0f, 1.0f }, regions);
+    assert_true(regions[NOH_WRINKLE_FOLDS] == 1.0f && regions[NOH_WRINKLE_FOLDS + 3] == 1.0f);
+    noh_wrinkles_color(&wrinkles, (const uint8_t[4]){ 255, 0, 0, 255 }, regions, rgb);
+    for (int i = 0; i < 3; ++i) assert_true(fabsf(rgb[i] - (const float[3]){ 0.36f, 0.64f, 1.0f }[i]) < 1e-6f);
 }
 
 static double area_of(double p[3][3])
@@ -123,9 +158,9 @@ static void wrinkled_normals_are_unit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(regions_come_from_expressions),    cmocka_unit_test(areas_do_not_follow_the_camera),
-        cmocka_unit_test(no_area_at_rest_wrinkles_nothing), cmocka_unit_test(normals_of_areas_are_unit),
-        cmocka_unit_test(wrinkled_normals_are_unit),
+        cmocka_unit_test(regions_come_from_expressions), cmocka_unit_test(areas_do_not_follow_the_camera),
+        cmocka_unit_test(colors_fade_in_with_targets),   cmocka_unit_test(no_area_at_rest_wrinkles_nothing),
+        cmocka_unit_test(normals_of_areas_are_unit),     cmocka_unit_test(wrinkled_normals_are_unit),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

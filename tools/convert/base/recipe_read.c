@@ -306,7 +306,7 @@ static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_wo
     for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
         const wrinkle_row *other = &recipe->wrinkles[i];
         if (other->region == region && strcmp(other->target, target) == 0) {
-            return text_fail(s, line, "%s has region %u twice; the first is in line %u", target, region, other->line);
+            return text_fail(s, line, "%s has the region twice; the first is in line %u", target, other->line);
         }
     }
     if (recipe->wrinkle_count == NOH_FACE_ROWS_MAX) {
@@ -315,21 +315,44 @@ static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_wo
     return recipe_add_wrinkle(recipe, target, region, weight, line) ? text_fail(s, line, "out of memory") : 0;
 }
 
-/* Behind the word `wrinkle`. */
-static int read_wrinkle(text_scan *s, recipe_text *recipe)
+static int take_region(text_scan *s, uint32_t line, text_word word, uint32_t *region)
 {
-    static const char form[] = "wrinkle TARGET REGION [WEIGHT]";
+    double number;
+    char shown[TEXT_SHOWN];
+    if (text_number(s, word, &number)) return 1;
+    if (!(number >= 0.0 && number < NOH_WRINKLE_FOLDS) || number != (double)(uint32_t)number) {
+        return text_fail(s, line, "'%s' is not a region: regions are 0 to %u, numbered as by noh mask",
+                         text_show(word, shown), NOH_WRINKLE_FOLDS - 1u);
+    }
+    *region = (uint32_t)number;
+    return 0;
+}
+
+/* A channel of the colour map. */
+static int take_channel(text_scan *s, uint32_t line, text_word word, uint32_t *channel)
+{
+    static const char names[NOH_WRINKLE_COLORS] = { 'r', 'g', 'b', 'a' };
+    char shown[TEXT_SHOWN];
+    for (uint32_t c = 0; c < NOH_WRINKLE_COLORS; c++) {
+        *channel = c;
+        if (word.size == 1 && word.text[0] == names[c]) return 0;
+    }
+    return text_fail(s, line, "'%s' is not a channel of the colour map: channels are r, g, b and a",
+                     text_show(word, shown));
+}
+
+/* Behind the word `wrinkle` or `color`. */
+static int read_wrinkle(text_scan *s, recipe_text *recipe, int is_color)
+{
+    const char *form = is_color ? "color TARGET CHANNEL [WEIGHT]" : "wrinkle TARGET REGION [WEIGHT]";
     const uint32_t line = s->line;
     text_word target, word;
-    double region, weight = 1.0;
+    uint32_t region;
+    double weight = 1.0;
     char shown[TEXT_SHOWN];
     if (take_target(s, line, form, &target) || text_take_on_line(s, &word)) return 1;
-    if (!word.size) return text_fail(s, line, "the region is missing: a row of wrinkles is `%s`", form);
-    if (text_number(s, word, &region)) return 1;
-    if (!(region >= 0.0 && region < NOH_WRINKLE_REGIONS) || region != (double)(uint32_t)region) {
-        return text_fail(s, line, "'%s' is not a region: regions are 0 to %u, numbered as by noh mask",
-                         text_show(word, shown), NOH_WRINKLE_REGIONS - 1u);
-    }
+    if (!word.size) return text_fail(s, line, "the region is missing: the row is `%s`", form);
+    if (is_color ? take_channel(s, line, word, &region) : take_region(s, line, word, &region)) return 1;
     if (text_take_on_line(s, &word)) return 1;
     if (word.size) {
         if (text_number(s, word, &weight)) return 1;
@@ -338,7 +361,33 @@ static int read_wrinkle(text_scan *s, recipe_text *recipe)
         }
         if (end_rule(s, form)) return 1;
     }
-    return add_wrinkle(s, recipe, line, target, (uint32_t)region, (float)weight);
+    return add_wrinkle(s, recipe, line, target, region + (is_color ? NOH_WRINKLE_FOLDS : 0u), (float)weight);
+}
+
+/* Behind the word `tint`. */
+static int read_tint(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "tint CHANNEL RRGGBB", digits[] = "0123456789abcdef";
+    const uint32_t line = s->line;
+    text_word channel, word;
+    uint32_t region, value = 1;
+    char shown[TEXT_SHOWN];
+    if (text_take_on_line(s, &channel) || text_take_on_line(s, &word)) return 1;
+    if (!word.size) return text_fail(s, line, "write the colour of a region as `%s`, such as `tint r c03030`", form);
+    if (take_channel(s, line, channel, &region)) return 1;
+    for (size_t i = 0; i < word.size && value; i++) {
+        const char *digit = memchr(digits, word.text[i] | (word.text[i] >= 'A' ? 32 : 0), 16);
+        value = digit && value < 1u << 24 ? value << 4 | (uint32_t)(digit - digits) : 0;
+    }
+    if (value >> 24 != 1u) {
+        return text_fail(s, line, "'%s' is not a colour: six hexadecimal digits, RRGGBB, as in `tint r c03030`",
+                         text_show(word, shown));
+    }
+    if (recipe->tints[region]) {
+        return text_fail(s, line, "the channel %s has a colour already", text_show(channel, shown));
+    }
+    recipe->tints[region] = value;
+    return end_rule(s, form);
 }
 
 /* ---- lines ---- */
@@ -359,7 +408,9 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "expression")) return read_expression(s, recipe);
     if (text_is(channel, "override")) return read_override(s, recipe);
     if (text_is(channel, "binary")) return read_binary(s, recipe);
-    if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe);
+    if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe, 0);
+    if (text_is(channel, "color")) return read_wrinkle(s, recipe, 1);
+    if (text_is(channel, "tint")) return read_tint(s, recipe);
     count = find_channels(channel, channels);
     joint = find_joint_channel(channel);
     if (!count && !joint) {

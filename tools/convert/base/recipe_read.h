@@ -3,7 +3,8 @@
  * expression NAME TARGET [WEIGHT] makes a row of channel ':' and the name. override EMOTION-upper USER block|blend makes
  * a row of channel override-USER with the emotion for a target, binary EMOTION-upper one of channel binary; the name of
  * an expression above may stand for the emotion.
- * wrinkle TARGET REGION [WEIGHT] is a row of the table from expressions to wrinkle regions. */
+ * wrinkle TARGET REGION [WEIGHT] is a row of the table from expressions to wrinkle regions, color TARGET CHANNEL
+ * [WEIGHT] one to regions of colour, and tint CHANNEL RRGGBB the colour of one. */
 #ifndef NOH_CONVERT_BASE_RECIPE_READ_H
 #define NOH_CONVERT_BASE_RECIPE_READ_H
 
@@ -18,7 +19,7 @@ typedef struct recipe_row {
     uint32_t line;
 } recipe_row;
 
-/* How much a target wrinkles a region of the skin, 0..1. */
+/* How much a target wrinkles a region of the skin, or from NOH_WRINKLE_FOLDS on, colours it, 0..1. */
 typedef struct wrinkle_row {
     char *target;
     uint32_t region, line;
@@ -29,6 +30,7 @@ typedef struct recipe_text {
     recipe_row *rows;
     wrinkle_row *wrinkles; /* for wrinkles_make; packs have the resulting table */
     uint32_t count, wrinkle_count;
+    uint32_t tints[4]; /* colour of each region of colour: 0x1RRGGBB, sRGB; 0: none */
 } recipe_text;
 
 /* Channels of rows that name a joint of the face in place of a target. */

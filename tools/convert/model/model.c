@@ -61,6 +61,7 @@ model_material model_material_default(void)
                                    .emissive_texture = MODEL_NONE,
                                    .specular_texture = MODEL_NONE,
                                    .wrinkle_texture = MODEL_NONE,
+                                   .color_texture = MODEL_NONE,
                                    .more_textures = { MODEL_NONE, MODEL_NONE, MODEL_NONE } };
     return plain;
 }
@@ -91,6 +92,7 @@ void model_mesh_clear(model_mesh *mesh)
     free(mesh->joints);
     free(mesh->joint_weights);
     free(mesh->wrinkles);
+    free(mesh->colors);
     free(mesh->recipe);
 }
 

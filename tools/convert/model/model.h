@@ -65,6 +65,7 @@ typedef struct model_material {
     float normal_scale, occlusion_strength, emissive[3], f0[3];
     /* as noh_material has them: indices into textures or MODEL_NONE */
     uint32_t normal_texture, surface_texture, emissive_texture, wrinkle_texture, more_textures[3];
+    uint32_t color_texture;  /* of the regions that a mesh's targets colour (model_mesh.colors), or MODEL_NONE */
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
     uint8_t wrinkle_codes;   /* 1: more_textures[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
     uint32_t surface;        /* NOH_SURFACE_* of format.h */
@@ -125,6 +126,8 @@ typedef struct model_mesh {
     uint32_t palette_limit;  /* joints that one draw may use; 0: as many as the format holds */
     char *recipe;            /* lines of a face's recipe (base/recipe_read.h) out of the mesh's extras; NULL: none */
     uint8_t *wrinkles; /* [target_count][12] how much each target wrinkles each region, 255 all; NULL: no wrinkles */
+    uint8_t *colors;   /* as at noh_wrinkles_header.colors_offset, [4 + target_count][4]; NULL: no colours */
+    uint32_t color_material; /* with colours: index into materials */
 } model_mesh;
 
 typedef struct model_node {

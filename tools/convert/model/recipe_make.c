@@ -76,7 +76,10 @@ static int add_wrinkles(recipe_text *recipe, uint32_t own, const recipe_text *ex
     for (uint32_t i = 0; !failed && i < extras->wrinkle_count; i++) {
         const wrinkle_row *row = &extras->wrinkles[i];
         int has = 0;
-        for (uint32_t k = 0; k < own; k++) has |= strcmp(recipe->wrinkles[k].target, row->target) == 0;
+        for (uint32_t k = 0; k < own; k++) {
+            has |= strcmp(recipe->wrinkles[k].target, row->target) == 0 &&
+                   (recipe->wrinkles[k].region < NOH_WRINKLE_FOLDS) == (row->region < NOH_WRINKLE_FOLDS);
+        }
         failed = !has && recipe_add_wrinkle(recipe, row->target, row->region, row->weight, 0);
     }
     return failed;
@@ -93,6 +96,9 @@ int recipe_add_extras(recipe_text *recipe, model *m)
         if (!has_row(recipe, own, row)) failed = recipe_add_row(recipe, row->target, row->channel, row->weight, 0);
     }
     failed = failed || add_wrinkles(recipe, recipe->wrinkle_count, extras);
+    for (uint32_t c = 0; !failed && c < 4; c++) {
+        if (!recipe->tints[c]) recipe->tints[c] = extras->tints[c];
+    }
     recipe_free(extras);
     return failed;
 }

@@ -310,14 +310,24 @@ static void write_list(pack_writer *w, uint32_t index)
 static void write_regions(pack_writer *w, uint32_t index)
 {
     const model_mesh *mesh = &w->m->meshes[index];
+    const size_t matrix_bytes = (size_t)mesh->target_count * NOH_WRINKLE_FOLDS;
     noh_wrinkles_header h;
     memset(&h, 0, sizeof h);
     h.mesh = index;
     h.target_count = mesh->target_count;
     h.matrix_offset = sizeof h;
+    if (mesh->colors) {
+        h.colors_offset = (uint32_t)(sizeof h + (matrix_bytes + 15u) / 16u * 16u);
+        h.color_material = mesh->color_material;
+        h.color_texture = w->m->materials[mesh->color_material].color_texture;
+    }
     chunk_begin(w, NOH_CHUNK_WRINKLES, mesh->name);
     buffer_append(&w->out, &h, sizeof h);
-    buffer_append(&w->out, mesh->wrinkles, (size_t)mesh->target_count * NOH_WRINKLE_REGIONS);
+    buffer_append(&w->out, mesh->wrinkles, matrix_bytes); /* NULL: zeros */
+    if (mesh->colors) {
+        buffer_align(&w->out, 16);
+        buffer_append(&w->out, mesh->colors, 4u * (NOH_WRINKLE_COLORS + (size_t)mesh->target_count));
+    }
     chunk_end(w);
 }
 
@@ -333,7 +343,7 @@ static void write_wrinkles(pack_writer *w, const void *made)
 {
     (void)made;
     for (uint32_t i = 0; i < w->m->mesh_count; i++) {
-        if (w->m->meshes[i].wrinkles) write_regions(w, i);
+        if (w->m->meshes[i].wrinkles || w->m->meshes[i].colors) write_regions(w, i);
     }
 }
 

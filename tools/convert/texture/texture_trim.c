@@ -44,7 +44,7 @@ static void join(trim *t, uint32_t a, uint32_t b)
     t->group_of[find(t, a)] = find(t, b);
 }
 
-#define MAPS 9u
+#define MAPS 10u
 #define MATCAP 6u
 
 /* It is read by normals, not by texture coordinates. */
@@ -55,9 +55,9 @@ static uint32_t matcap_of(const model_material *m)
 
 static void maps_of(const model_material *m, uint32_t maps[MAPS])
 {
-    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,   m->surface_texture,
-                                 m->emissive_texture,   m->wrinkle_texture,  m->more_textures[0],
-                                 m->more_textures[1],   m->more_textures[2], m->specular_texture };
+    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,   m->surface_texture,  m->emissive_texture,
+                                 m->wrinkle_texture,    m->more_textures[0], m->more_textures[1], m->more_textures[2],
+                                 m->specular_texture,   m->color_texture };
     memcpy(maps, all, sizeof all);
     if (matcap_of(m) != MODEL_NONE) maps[MATCAP] = MODEL_NONE;
 }

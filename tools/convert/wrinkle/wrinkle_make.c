@@ -219,7 +219,7 @@ static void take_rows(const recipe_text *recipe, const model_mesh *mesh, uint8_t
         int seen = 0;
         for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
             const wrinkle_row *row = &recipe->wrinkles[i];
-            if (strcmp(row->target, mesh->targets[t].name) != 0) continue;
+            if (row->region >= REGION_COUNT || strcmp(row->target, mesh->targets[t].name) != 0) continue;
             if (!seen) memset(regions, 0, REGION_COUNT);
             regions[row->region] = (uint8_t)(row->weight * 255.0f + 0.5f);
             seen = 1;
@@ -231,7 +231,8 @@ static int has_rows(const recipe_text *recipe, const model_mesh *mesh)
 {
     for (uint32_t t = 0; t < mesh->target_count && recipe; t++) {
         for (uint32_t i = 0; i < recipe->wrinkle_count; i++) {
-            if (strcmp(recipe->wrinkles[i].target, mesh->targets[t].name) == 0) return 1;
+            const wrinkle_row *row = &recipe->wrinkles[i];
+            if (row->region < REGION_COUNT && strcmp(row->target, mesh->targets[t].name) == 0) return 1;
         }
     }
     return 0;
@@ -269,8 +270,8 @@ static int warn_of_idle(model *m, const model_mesh *mesh, const wrinkles *w)
 
 /* ---- into the model ---- */
 
-static int add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
-                       const uint8_t clamped[2], model_texture_use use)
+int wrinkle_add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
+                        const uint8_t clamped[2], model_texture_use use)
 {
     model_texture *grown = realloc(m->textures, (m->texture_count + 1u) * sizeof *grown);
     const size_t bytes = strlen(mesh) + strlen(what) + 2;
@@ -334,14 +335,14 @@ static int add_weights(model *m, const char *mesh, const wrinkle_field *f, int b
     static const char *const names[REGION_MAP_COUNT] = { "wrinkle weights 0", "wrinkle weights 1",
                                                          "wrinkle weights 2" };
     for (uint32_t k = 0; k < REGION_MAP_COUNT && !by_pixel; k++) {
-        if (add_texture(m, mesh, names[k], &w->weights.map[k], w->weights.width, w->weights.height, f->clamped,
-                        MODEL_TEXTURE_DATA))
+        if (wrinkle_add_texture(m, mesh, names[k], &w->weights.map[k], w->weights.width, w->weights.height, f->clamped,
+                                MODEL_TEXTURE_DATA))
             return 1;
         m->materials[own].more_textures[k] = m->texture_count - 1u;
     }
     if (!by_pixel) return 0;
-    if (add_texture(m, mesh, "wrinkle regions", &w->mask.rgba, w->mask.width, w->mask.height, f->clamped,
-                    MODEL_TEXTURE_CODES))
+    if (wrinkle_add_texture(m, mesh, "wrinkle regions", &w->mask.rgba, w->mask.width, w->mask.height, f->clamped,
+                            MODEL_TEXTURE_CODES))
         return 1;
     m->materials[own].more_textures[0] = m->texture_count - 1u;
     m->materials[own].wrinkle_codes = 1;
@@ -362,7 +363,8 @@ static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, cons
     uint32_t own = f->material;
     int by_pixel = settings->by_pixel;
     if (is_shared(m, mesh, own) && own_material(m, mesh, own, &own)) return 1;
-    if (add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped, MODEL_TEXTURE_NORMAL))
+    if (wrinkle_add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped,
+                            MODEL_TEXTURE_NORMAL))
         return 1;
     m->materials[own].wrinkle_texture = m->texture_count - 1u;
     m->materials[own].wrinkle_models = models_of(settings, is_face);
@@ -452,11 +454,19 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     return failed;
 }
 
+int wrinkle_has_rows(const recipe_text *recipe, uint32_t first, uint32_t count)
+{
+    for (uint32_t i = 0; recipe && i < recipe->wrinkle_count; i++) {
+        if (recipe->wrinkles[i].region - first < count) return 1;
+    }
+    return 0;
+}
+
 int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error)
 {
     uint32_t made = 0;
     if (!settings->automatic && !settings->map && !settings->mask) {
-        return settings->recipe && settings->recipe->wrinkle_count &&
+        return wrinkle_has_rows(settings->recipe, 0, REGION_COUNT) &&
                model_warn(
                    m,
                    "the recipe's wrinkle rows have no effect without --wrinkles auto, --wrinkle-map or --region-mask") &&

@@ -31,6 +31,15 @@ typedef struct wrinkle_settings {
  * Returns 0, or 1 and *error. */
 int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error);
 
+/* Whether a recipe, which may be NULL, has rows of `count` regions from `first` on. */
+int wrinkle_has_rows(const recipe_text *recipe, uint32_t first, uint32_t count);
+
+/* Append a texture named "MESH WHAT" to the model, which takes *rgba and leaves NULL there.
+ * clamped  for s and t, 1: clamped at the edges, 0: repeated
+ * Returns 0, or 1: out of memory. */
+int wrinkle_add_texture(model *m, const char *mesh, const char *what, uint8_t **rgba, uint32_t width, uint32_t height,
+                        const uint8_t clamped[2], model_texture_use use);
+
 #ifdef __cplusplus
 }
 #endif

@@ -89,6 +89,7 @@ typedef struct build_args {
     texture_args textures;
     light_args light;
     wrinkle_args wrinkles;
+    color_settings colors;
     face_args face;
     attach_args attach;
     terrain_args terrain;
@@ -284,6 +285,7 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     if (!o->wrinkles.by_pixel && strcmp(a->wrinkles.lookup, "vertex") != 0) {
         return tool_usage("--wrinkle-lookup must be vertex or pixel, not '%s'", a->wrinkles.lookup);
     }
+    o->colors = a->colors;
     o->wrinkles.automatic = a->wrinkles.make != NULL;
     o->wrinkles.map = a->wrinkles.map;
     o->wrinkles.mask = a->wrinkles.mask;
@@ -571,6 +573,21 @@ static const option options[] = {
           "side of a generated crease map, texels, a power of two from 64 to 2048; 0: 256 or 512, the smallest that shows each crease",
       .example = "256",
       .excludes = "--only=anim" },
+    { .name = "--color-map",
+      .kind = OPTION_INPUT,
+      .at = offsetof(build_args, colors.map),
+      .value = "FILE",
+      .what =
+          "colours that fade in with targets, such as a blush: a painted picture, PNG or JPEG, whose channels r, g, b and a say where each of four colours shows; rows `tint` and `color` of a recipe give the colours and the targets (noh help formats)",
+      .example = "blush.png",
+      .excludes = "--only=anim" },
+    { .name = "--color-material",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, colors.material),
+      .value = "NAME",
+      .what = "the material that --color-map is for; without it, in each mesh the material of the most triangles",
+      .example = "skin",
+      .needs = "--color-map" },
     { .name = "--textures",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, textures.format),

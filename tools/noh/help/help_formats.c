@@ -111,6 +111,8 @@ const char *const help_formats_text[] = {
     "   wrinkle TARGET REGION [WEIGHT]              how much, 0 to 1 (1), the target wrinkles a region, 0 to 11 (noh mask).",
     "                                               A target with such rows has no other regions; one without wrinkles the",
     "                                               regions it compresses (noh build --wrinkles, --region-mask)",
+    "   tint CHANNEL RRGGBB                         the colour, sRGB, of channel r, g, b or a of --color-map",
+    "   color TARGET CHANNEL [WEIGHT]               how much, 0 to 1 (1), the target's weight shows this colour",
     "Range, oppose and share apply only on request: with --weight-rules in verbs that show a pack, and by kind in games.",
     "A channel without a row takes targets of known names (names, below), or the first built-in recipe that fits their names (ARKit, VRM, "
     "facial units), and a mouth shape without one uses the nearest other shape. A row with a target that no mesh has is a warning. noh face PACK shows the result. "

@@ -8,7 +8,7 @@
 #include "noh/low_gl.h"
 #include "noh/pack.h"
 
-#define MAPS 9u
+#define MAPS 10u
 #define SPECULAR (NOH_MATERIAL_SPECULAR_WEIGHT | NOH_MATERIAL_SPECULAR_ROUGHNESS)
 
 typedef struct material_map {
@@ -16,7 +16,17 @@ typedef struct material_map {
     uint32_t texture;
 } material_map;
 
-static void list_maps(const noh_material *m, material_map maps[MAPS])
+/* The map of a material that targets colour, or NOH_NONE. */
+static uint32_t color_map_of(const noh_pack *pack, const noh_material *m)
+{
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_WRINKLES].count; i++) {
+        const noh_wrinkles_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_WRINKLES, i);
+        if (h->colors_offset && m == &pack->materials[h->color_material]) return h->color_texture;
+    }
+    return NOH_NONE;
+}
+
+static void list_maps(const noh_pack *pack, const noh_material *m, material_map maps[MAPS])
 {
     const material_map all[MAPS] = { { "base colour", "base_color", m->base_color_texture },
                                      { "normal", "normal", m->normal_texture },
@@ -28,7 +38,8 @@ static void list_maps(const noh_material *m, material_map maps[MAPS])
                                      { "wrinkles", "wrinkle", m->wrinkle_texture },
                                      { "wrinkle weights 1-4", "wrinkle_weights_0", m->more_textures[0] },
                                      { "wrinkle weights 5-8", "wrinkle_weights_1", m->more_textures[1] },
-                                     { "wrinkle weights 9-12", "wrinkle_weights_2", m->more_textures[2] } };
+                                     { "wrinkle weights 9-12", "wrinkle_weights_2", m->more_textures[2] },
+                                     { "colours by target", "colors", color_map_of(pack, m) } };
     const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->more_textures[0] };
     const material_map toon[] = { { "shade", "shade", m->more_textures[NOH_TOON_SHADE] },
                                   { "matcap", "matcap", m->more_textures[NOH_TOON_MATCAP] },
@@ -54,7 +65,7 @@ void info_print_materials(const noh_pack *pack)
     for (uint32_t i = 0; i < pack->material_count; i++) {
         const noh_material *m = &pack->materials[i];
         material_map maps[MAPS];
-        list_maps(m, maps);
+        list_maps(pack, m, maps);
         printf("material '%s': %s, %s%s%s", noh_pack_string(pack, m->name), surface_of(m), alpha_of(m),
                m->flags & NOH_MATERIAL_DOUBLE_SIDED ? ", two-sided" : "",
                m->flags & NOH_MATERIAL_UNLIT ? ", unlit" : "");
@@ -82,14 +93,14 @@ static material_cost cost_of(const noh_pack *pack, const noh_material *m)
     const uint32_t last = m->surface == NOH_SURFACE_TOON ? 7u : m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u : 5u;
     material_cost cost = { 0, 1, 0, 0 };
     material_map maps[MAPS];
-    list_maps(m, maps);
+    list_maps(pack, m, maps);
     for (uint32_t k = 0; k < MAPS; k++) {
         noh_texture t;
         if (maps[k].texture == NOH_NONE) continue;
         (void)noh_pack_texture_at(pack, maps[k].texture, &t, NULL);
         cost.bytes += noh_gl_picture_bytes(&t, 1);
         cost.textures++;
-        cost.fetches += k >= 1 && k <= last && !(m->flags & NOH_MATERIAL_UNLIT);
+        cost.fetches += ((k >= 1 && k <= last) || k == MAPS - 1u) && !(m->flags & NOH_MATERIAL_UNLIT);
     }
     cost.lit = cost.fetches + 5u < NOH_GL_FETCHES_MAX ? cost.fetches + 5u : NOH_GL_FETCHES_MAX;
     if (m->flags & NOH_MATERIAL_UNLIT) cost.lit = cost.fetches;
@@ -148,7 +159,7 @@ void info_print_textures(const noh_pack *pack)
 static void json_material(json *j, const noh_pack *pack, const noh_material *m)
 {
     material_map maps[MAPS];
-    list_maps(m, maps);
+    list_maps(pack, m, maps);
     json_open(j, NULL, '{');
     json_text(j, "name", noh_pack_string(pack, m->name));
     json_text(j, "surface", surface_of(m));
