@@ -71,7 +71,8 @@ vec4 noh_crowd_row(int i)
     return noh_skin_texel(noh_skin_instance() + i);
 }
 
-#define NOH_JOINT_ROW(i) (noh_skin_instance() + noh_skin.w + NOH_JOINT_ROWS * (i))
+int noh_rows_ahead = 0; /* to an instance's rows of the last frame, while they are read */
+#define NOH_JOINT_ROW(i) (noh_skin_instance() + noh_rows_ahead + noh_skin.w + NOH_JOINT_ROWS * (i))
 #define NOH_PALETTE_ROW(i) noh_skin_texel(i)
 #elif NOH_INFLUENCES > 0 /* else a std140 block would stay active, and WebGL needs active blocks bound */
 layout(std140) uniform noh_palette_block {

@@ -267,3 +267,37 @@ noh_vertex noh_fetch()
 #endif
     return v;
 }
+
+/* ---- the last frame ---- */
+
+/* Columns of its view projection; of a single instance, rows of its world matrix and its tile; x: rows from an
+ * instance's own rows to its rows of the last frame. */
+uniform highp vec4 noh_before[9];
+
+vec4 noh_before_row(int i)
+{
+#ifdef NOH_CROWD
+    return noh_crowd_row(int(noh_before[8].x) + i);
+#else
+    return noh_before[4 + i];
+#endif
+}
+
+/* Where the vertex was in the last frame, in clip space. */
+vec4 noh_clip_before()
+{
+    ivec4 row = ivec4(noh_before_row(3));
+    vec3 position = noh_a_position, normal = vec3(0.0, 0.0, 1.0);
+    vec4 tangent = vec4(1.0, 0.0, 0.0, 1.0);
+    noh_morph_fetch_tile(ivec4(row.xy & 0xffff, row.z & 0xff, row.w), noh_morph_vertex(), position, normal, tangent.xyz);
+#ifdef NOH_PALETTE_TEXTURE
+    noh_rows_ahead = int(noh_before[8].x);
+#endif
+    noh_skin_vertex(position, normal, tangent);
+#ifdef NOH_PALETTE_TEXTURE
+    noh_rows_ahead = 0;
+#endif
+    vec4 p = vec4(position, 1.0);
+    p = vec4(dot(noh_before_row(0), p), dot(noh_before_row(1), p), dot(noh_before_row(2), p), 1.0);
+    return mat4(noh_before[0], noh_before[1], noh_before[2], noh_before[3]) * p;
+}

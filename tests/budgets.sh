@@ -52,6 +52,8 @@ all() {
     cast 'inertia' 'inertia 1'
     cast 'root motion' 'root_axes ground'
     cast 'one layer of one track' 'layer body tracks=1'
+    printf 'motion 1\nsort_blended 1\nkind cast\nmesh %s\nactor_count 20\n' "$build/demo/puppet_levels.noh" >"$work/cast.txt"
+    rows demo/puppet_levels.noh 'twenty, motion, sorted' --desc "$work/cast.txt"
     rows demo/puppet_levels.noh 'a hundred' --actors 100
     rows demo/puppet_levels.noh 'twenty without GPU' --actors 20 --no-gpu
     rows demo/puppet_levels.noh 'twenty, four fall' --actors 20 --ragdolls 4

@@ -338,6 +338,7 @@ typedef struct noh_gl_skin_desc {
     const uint32_t *instance_counts; /* [mesh_count]; NULL: one of each. 1..NOH_MORPH_INSTANCES_MAX in all */
     noh_palette_mode mode;           /* 0: auto */
     int user_values;                 /* 1: room for noh_gl_skin_set_user: one more row per instance, in a texture */
+    int motion;                      /* 1: room for the rows of the last frame, which a stage writes; in a texture */
 } noh_gl_skin_desc;
 
 /* The resolved plan on a GPU with these capabilities. All bytes are exact. */
@@ -347,6 +348,7 @@ typedef struct noh_gl_skin_plan {
     uint32_t instance_count;
     uint32_t texel_count;   /* rows of four floats, including gaps between palettes */
     uint32_t width, height; /* of the texture; 0 for a uniform buffer */
+    uint32_t kept_count;    /* rows of the last frame that are kept on the CPU; 0: without motion */
     uint64_t cpu_bytes;     /* the block for noh_gl_skin_init */
     uint64_t gpu_bytes;
 } noh_gl_skin_plan;
@@ -445,10 +447,10 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
 #define NOH_FEATURE_PHONE 4096u /* the phone tier: approximations at pixels; set by the renderer, not by a material */
 
 #define NOH_FEATURE_TOON_SHADE 8192u /* with a toon: its shade has a texture */
-#define NOH_FEATURE_HAIR 8192u       /* without a toon */
 #define NOH_FEATURE_MATCAP 16384u    /* with a toon */
 #define NOH_FEATURE_OUTLINE 32768u   /* with a toon: the outline's hull in place of the surface */
 #define NOH_FEATURE_COLORS 65536u    /* a map of regions that targets colour (noh_wrinkles.colors) */
+#define NOH_FEATURE_HAIR 131072u     /* cards of hair */
 
 #define NOH_GL_DEFINES_BYTES 864u
 
@@ -458,7 +460,7 @@ typedef struct noh_gl_variant {
     unsigned program;
     int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_colors, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams;
+        u_wrinkle_models, u_colors, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams, u_before;
 } noh_gl_variant;
 
 /* The key of a mesh with given bindings; set `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features`
@@ -627,10 +629,11 @@ typedef struct noh_gl_renderer {
     float user[4];        /* of the next noh_gl_draw_mesh */
     int priority;         /* of the next draws, or NOH_PRIORITY_ANY */
     float
-        wrinkles[NOH_WRINKLE_REGIONS]; /* of the next noh_gl_draw_mesh: vectors of noh_wrinkle_regions, then colours */
-    uint8_t wrinkle_models, smoothed;  /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
-    uint8_t shading;                   /* noh_shading */
-    const noh_gl_triangles *triangles; /* of the next noh_gl_draw_mesh; NULL: all of the level */
+        wrinkles[NOH_WRINKLE_REGIONS];  /* of the next noh_gl_draw_mesh: vectors of noh_wrinkle_regions, then colours */
+    uint8_t wrinkle_models, smoothed;   /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
+    uint8_t shading;                    /* noh_shading */
+    const noh_gl_triangles *triangles;  /* of the next noh_gl_draw_mesh; NULL: all of the level */
+    const struct noh_gl_before *before; /* of the next draws, the last frame; NULL: as they are now */
     unsigned cover;       /* of the next draws: a buffer in place of the mesh's indices, as large; 0: none */
     noh_gl_raster raster; /* state restored by noh_gl_draw_end */
     uint32_t variant_count;

@@ -87,7 +87,7 @@ typedef struct noh_lod_settings {
  *   graphs   noh_actor_play_graph, noh_actor_set_parameter, noh_actor_parameter, noh_actor_state, noh_stage_find_value,
  *            noh_actor_graph
  *   query    noh_actor_floats, noh_actor_joint, noh_actor_root, noh_actor_sphere, noh_actor_mesh_at,
- *            noh_actor_detail_of, noh_stage_pick
+ *            noh_stage_list_draws, noh_actor_detail_of, noh_stage_pick
  *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
  *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
  *   levels   noh_stage_load_level, noh_stage_drop_level
@@ -241,6 +241,10 @@ typedef struct noh_stage_desc {
     int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
     int user_values; /* 1: your own shaders read noh_appearance.user: 16 bytes more on the CPU and the GPU for each mesh
                            * of a visible actor */
+    int motion; /* 1: your own shaders read where a vertex was in the last frame (noh_clip_before), for motion vectors:
+                           * palettes take twice the bytes on the GPU and three times on the CPU, accumulators twice */
+    int sort_blended; /* 1: blended meshes of all actors are drawn from far to near, one actor after another, at 8 bytes
+                           * for each actor; default (0) kind by kind, crowds in one draw */
     int without_shader;   /* 1: every noh_stage_draw names a shader, and the library's programs are not compiled */
     int without_transfer; /* 1: meshes with a transfer (light.h) are lit like those without one, and transfer records
                            * are not uploaded; without `light` they never are */
@@ -613,6 +617,35 @@ typedef struct noh_actor_mesh {
  * errors  NOT_FOUND the actor is gone, was not shown in the last frame, or has no such mesh (need: how many) */
 noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t index, noh_actor_mesh *out,
                              float *matrices, noh_error *error);
+
+/* One draw of a view: the triangles of a submesh, once for each of `actor_count` actors. */
+typedef struct noh_draw {
+    uint32_t kind;
+    uint32_t index;         /* of the mesh, as in noh_actor_mesh_at */
+    uint32_t mesh, level;   /* in the kind's mesh pack; a level that this lacks is in the loaded pack */
+    const uint32_t *actors; /* [actor_count] first_actor + each is an index for noh_stage_actor_at; until the next
+                               * frame */
+    uint32_t actor_count, first_actor;
+    uint32_t influence_count;     /* joints per vertex that the level of detail takes, the strongest ones; 0: all */
+    uint32_t texture_set;         /* of all of them (noh_appearance) */
+    const noh_submesh *submesh;   /* indices, palette */
+    const noh_material *material; /* never NULL */
+    float alpha_cutoff;           /* pixels of a lower alpha are not drawn; -1: all are */
+    float from, to; /* part of the pixels: all are 0 and 1. An actor that fades between two levels is drawn by two, the
+                     * new level with (0, f), the old one with (f, 1) */
+    int mirrored;   /* 1: its front faces are clockwise; actor_count is 1 */
+} noh_draw;
+
+/* List the draws of a view of the last frame, in the order in which noh_stage_draw makes them: for a renderer of your
+ * own on any API, also of a stage without `gpu`. Matrices, weights and places come from noh_actor_mesh_at, vertices and
+ * indices from the pack. A view without height_px has no actors with no_shadow.
+ * blended   0: opaque surfaces, and the nearly opaque core of blended ones with a texture (alpha_cutoff); 1: blended
+ *           ones, by priority, and within a priority each actor's meshes from far to near; with
+ *           noh_stage_desc.sort_blended actor by actor
+ * shapes    draws[capacity]
+ * returns   how many draws there are, those past `capacity` too, which are not written; 0: the last frame had no such
+ *           view, or a frame has begun and not ended. Outlines of toons and what garments cover are not listed */
+uint32_t noh_stage_list_draws(const noh_stage *stage, uint32_t view, int blended, noh_draw *draws, uint32_t capacity);
 
 /* The detail of an actor in the last frame. */
 typedef struct noh_actor_detail {

@@ -219,6 +219,7 @@ typedef struct noh_gl_skin_binding {
     uint32_t align;      /* palettes start at multiples of this many rows */
     uint32_t influences; /* use at most this many joints per vertex, the strongest ones; 0: all */
     uint32_t user_row;   /* the instance's row with its user values; 0: none */
+    uint32_t before_row; /* rows from its first row to its rows of the last frame, in the same order; 0: none */
 } noh_gl_skin_binding;
 
 /* ======== programs of the plain renderer ======== */
@@ -402,7 +403,10 @@ typedef struct noh_stage_drawn {
     const noh_gl_mesh *mesh; /* valid as long as the stage */
     noh_gl_morph_binding morph;
     noh_gl_skin_binding skin;
-    int is_morphed, is_skinned;     /* 0: do not use that binding */
+    int is_morphed, is_skinned; /* 0: do not use that binding */
+    /* Of the last frame, with noh_stage_desc.motion; else as they are now. Palettes: noh_gl_skin_binding.before_row */
+    noh_gl_morph_binding morph_before;
+    float world_before[12];         /* relative to noh_stage_origin of this frame */
     const noh_gl_texture *pictures; /* [textures of its mesh pack], from the texture set of the actor */
 } noh_stage_drawn;
 

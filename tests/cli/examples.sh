@@ -87,6 +87,13 @@ else
     expect 1 'clips without a table are refused'
     check 'and it says what to do' grep -q 'noh build --match' "$work/err"
 
+    run own_renderer "$build/demo/puppet_levels.noh" -o own.png
+    expect 0 'own_renderer draws a stage without a GPU from its list'
+    check 'six figures of some parts each' sh -c 'test "$(sed -n "s/ draws.*//p" "$1")" -ge 24' - "$work/out"
+    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 30000' - "$work/own.png"
+    run own_renderer "$build/mask.noh"
+    expect 0 'of a rigid head, too'
+
     run dressing "$build/demo/puppet_levels.noh" "$build/demo/coat.noh" mask -o room
     expect 0 'dressing puts a coat on and off, in the bytes that were planned'
     for i in 0 1 2; do

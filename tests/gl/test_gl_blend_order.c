@@ -1,5 +1,5 @@
 /* What blends of one figure: meshes from far to near, of each actor, alone and in a crowd, with levels that fade or not;
- * before that by the priority of their materials. */
+ * before that by the priority of their materials; and actors from far to near, where a stage sorts them. */
 #include "support/stage_fixture.h"
 #include "support/gl_fixture.h"
 
@@ -135,7 +135,54 @@ static void priorities_come_first(void **state)
     check_panes(all, 2, as_given);
 }
 
+/* Three actors of two kinds behind each other, seen from in front and from behind: each is drawn after those that it
+ * hides, and its panes from far to near. */
+static void actors_are_sorted_where_asked(void **state)
+{
+    static const float places[PANES] = { 0.0f, 4.0f, -4.0f }, middle[3] = { 0.0f, 0.0f, 0.0f };
+    static const int alike[PANES] = { 0, 0, 0 };
+    static const uint32_t panes[2][PANES] = { { 2, 0, 1 }, { 1, 0, 2 } };
+    size_t count;
+    uint8_t *bytes = panes_pack(alike, &count);
+    const noh_pack pack = test_open(bytes, count);
+    const noh_kind_desc kinds[2] = { { .mesh = &pack, .actor_count = 2 }, { .mesh = &pack, .actor_count = 1 } };
+    (void)state;
+    for (int sorts = 0; sorts < 2; sorts++) {
+        const noh_stage_desc desc = { .kinds = kinds, .kind_count = 2, .sort_blended = sorts };
+        noh_stage_plan plan;
+        noh_stage *stage;
+        void *memory;
+        assert_int_equal(noh_stage_plan_make(&desc, NULL, &plan, NULL), NOH_OK);
+        memory = test_aligned(NULL, (size_t)plan.cpu_bytes);
+        assert_int_equal(noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &desc, &plan, &stage, NULL), NOH_OK);
+        for (uint32_t i = 0; i < PANES; i++) {
+            const noh_place place = { .position = { 0.0f, 0.0f, places[i] } };
+            noh_actor actor;
+            assert_int_equal(noh_stage_spawn(stage, i == 1, &place, &actor, NULL), NOH_OK);
+        }
+        for (uint32_t side = 0; side < 2; side++) {
+            static const uint32_t by_kind[2][PANES] = { { 0, 1, 2 }, { 0, 1, 2 } };     /* actors 0 and 1 are a kind */
+            static const uint32_t by_distance[2][PANES] = { { 1, 0, 2 }, { 2, 0, 1 } }; /* z: -4, 0, 4 */
+            noh_draw draws[PANES * PANES];
+            noh_stage_view view;
+            noh_view_orbit(&view, middle, side ? 3.14159f : 0.0f, 0.0f, 12.0f, WIDTH, HEIGHT);
+            assert_int_equal(noh_stage_frame(stage, 0, &view, NULL, NULL, NULL), NOH_OK);
+            assert_int_equal(noh_stage_list_draws(stage, 0, 1, draws, PANES * PANES), PANES * PANES);
+            for (uint32_t i = 0; i < PANES * PANES; i++) {
+                const uint32_t actor = (sorts ? by_distance : by_kind)[side][i / PANES];
+                assert_int_equal(draws[i].actor_count, 1);
+                assert_int_equal(draws[i].first_actor + draws[i].actors[0], actor);
+                assert_int_equal(draws[i].index, panes[side][i % PANES]);
+            }
+        }
+        noh_stage_delete(stage);
+        free(memory);
+    }
+    free(bytes);
+}
+
 static const struct CMUnitTest tests[] = {
+    cmocka_unit_test(actors_are_sorted_where_asked),
     cmocka_unit_test(meshes_are_drawn_from_far_to_near),
     cmocka_unit_test(priorities_come_first),
 };

@@ -305,7 +305,7 @@ static void programs_have_what_materials_have(void **state)
 {
     static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture",
                                          "noh_surface_values", "noh_specular_texture" };
-    static const uint16_t features[] = { 0,
+    static const uint32_t features[] = { 0,
                                          NOH_FEATURE_NORMAL_MAP,
                                          NOH_FEATURE_SURFACE_MAP,
                                          NOH_FEATURE_EMISSIVE,

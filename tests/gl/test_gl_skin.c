@@ -872,7 +872,7 @@ static void renderers_make_what_they_were_told_of(void **state)
     noh_gl_ledger ledger;
     noh_gl_renderer_desc desc;
     noh_gl_renderer r;
-    noh_gl_skin_binding skin = { NOH_PALETTE_TEXTURE, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding skin = { .mode = NOH_PALETTE_TEXTURE };
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";
     (void)state;
@@ -913,7 +913,7 @@ static void rigid_variants_have_no_palettes(void **state)
     noh_gl_ledger ledger;
     noh_gl_renderer_desc desc;
     noh_gl_renderer r;
-    noh_gl_skin_binding skin = { NOH_PALETTE_UNIFORM, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding skin = { .mode = NOH_PALETTE_UNIFORM };
     const noh_gl_variant *rigid, *skinned;
     noh_error error = { NOH_OK, "", 0, 0 };
     char log[4096] = "";

@@ -69,7 +69,7 @@ static void the_plan_is_what_is_used(void **state)
                                          &baked, &reflection, NULL),
                      NOH_OK);
     for (uint32_t way = 0; way < FIXTURE_WAYS; way++) {
-        for (uint32_t bound = 0; bound < 4; bound++) {
+        for (uint32_t bound = 0; bound < 5; bound++) {
             noh_stage_bytes parts[128];
             uint64_t cpu = 0, gpu_bytes = 0;
             noh_error error;
@@ -82,6 +82,7 @@ static void the_plan_is_what_is_used(void **state)
             if (bound == 1) c.desc.bytes_max = 5u << 20;
             c.desc.tangents = bound == 2;
             c.desc.light = bound == 3 ? &light : NULL;
+            c.desc.motion = c.desc.sort_blended = bound == 4;
             if (noh_stage_plan_make(&c.desc, &g->caps, &c.plan, &error) != NOH_OK) {
                 assert_int_equal(error.result, NOH_ERR_UNSUPPORTED); /* of this driver */
                 cast_close(&c);

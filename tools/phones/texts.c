@@ -61,7 +61,7 @@ static void put_surfaces(void)
     enum { PHONE_SOFT = 128 };
     static const struct {
         const char *name;
-        uint16_t features;
+        uint32_t features;
         unsigned lights;
     } surfaces[] = {
         { "plain", 0, UNLIT | LIT | TRANSFER | PHONE_UNLIT | PHONE_LIT | SOFT | PHONE_SOFT },
@@ -80,7 +80,7 @@ static void put_surfaces(void)
     };
     static const struct {
         const char *name;
-        uint16_t features;
+        uint32_t features;
         uint8_t lit, transfer;
     } lights[] = { { "unlit", 0, 0, 0 },
                    { "lit", 0, 1, 0 },
@@ -92,7 +92,7 @@ static void put_surfaces(void)
                    { "soft-phone", NOH_FEATURE_PHONE, NOH_LIT_SOFT, 0 } };
     for (size_t s = 0; s < COUNT(surfaces); s++) {
         for (unsigned i = 0; i < COUNT(lights); i++) {
-            const uint16_t features = (uint16_t)(surfaces[s].features | lights[i].features);
+            const uint32_t features = (surfaces[s].features | lights[i].features);
             const noh_gl_variant_key key = { .features = features,
                                              .two_layers = !(features & NOH_FEATURE_NORMAL_MAP),
                                              .lit = lights[i].lit,
@@ -158,7 +158,7 @@ static void put_corners(void)
         const uint8_t crowd = corners[i].crowd;
         /* As many maps as a material may have. */
         const uint16_t more = crowd ? NOH_FEATURE_SPECULAR_MAP : NOH_FEATURE_WRINKLE_PIXEL;
-        const uint16_t features = (uint16_t)(corners[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_EMISSIVE |
+        const uint32_t features = (corners[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_EMISSIVE |
                                              NOH_FEATURE_ALPHA | NOH_FEATURE_WRINKLES | more);
         const noh_gl_variant_key key = { .influences = 8,
                                          .drawn = 8,

@@ -279,3 +279,35 @@ void noh_mesh_vertex(const noh_mesh *mesh, uint32_t index, noh_vertex *out)
         decode_color(record + color, out->color);
     }
 }
+
+/* ---- materials ---- */
+
+const noh_material *noh_mesh_material(const noh_mesh *mesh, const noh_submesh *submesh)
+{
+    static const noh_material plain = { .base_color_texture = NOH_NONE,
+                                        .base_color = { 1.0f, 1.0f, 1.0f, 1.0f },
+                                        .metallic = 1.0f,
+                                        .roughness = 1.0f,
+                                        .alpha_cutoff = 0.5f,
+                                        .normal_scale = 1.0f,
+                                        .occlusion_strength = 1.0f,
+                                        .f0 = { 0.04f, 0.04f, 0.04f },
+                                        .normal_texture = NOH_NONE,
+                                        .surface_texture = NOH_NONE,
+                                        .emissive_texture = NOH_NONE,
+                                        .wrinkle_texture = NOH_NONE,
+                                        .wrinkle_models = 0,
+                                        .more_textures = { NOH_NONE, NOH_NONE, NOH_NONE } };
+    return submesh->material == NOH_NONE ? &plain : &mesh->pack->materials[submesh->material];
+}
+
+int noh_mesh_next_priority(const noh_mesh *mesh, int above)
+{
+    int lowest = NOH_PRIORITY_NONE;
+    NOH_ASSERT(mesh && mesh->header);
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const noh_material *m = noh_mesh_material(mesh, &mesh->submeshes[i]);
+        if ((m->flags & NOH_MATERIAL_BLEND) && m->priority > above && m->priority < lowest) lowest = m->priority;
+    }
+    return lowest;
+}

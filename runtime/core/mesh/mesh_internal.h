@@ -3,6 +3,8 @@
 #define NOH_MESH_MESH_INTERNAL_H
 
 #include "core/base/compiler_internal.h"
+#include "noh/base.h"
+#include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/pack.h"
 
@@ -29,6 +31,22 @@ void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, 
 /* Decode a vertex's normal and tangent without normalising; their lengths are 0.57 to 1. Without tangents the tangent
  * is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);
+
+/* The material of a submesh; glTF's default for one without. */
+const noh_material *noh_mesh_material(const noh_mesh *mesh, const noh_submesh *submesh);
+
+#define NOH_PRIORITY_NONE 1000 /* above all priorities */
+
+/* The lowest priority above `above` of a mesh's blended materials; NOH_PRIORITY_NONE: there is none. */
+int noh_mesh_next_priority(const noh_mesh *mesh, int above);
+
+/* The core of a blended surface, where alpha is at least this, is drawn as opaque: it hides what is behind it. */
+#define NOH_CORE_ALPHA 0.9f
+
+NOH_UNUSED static inline int noh_material_has_core(const noh_material *m)
+{
+    return (m->flags & NOH_MATERIAL_BLEND) && m->base_color_texture != NOH_NONE;
+}
 
 /* The i-th index of a mesh with all its levels, the finest first. */
 NOH_UNUSED static inline uint32_t noh_mesh_index_of_all(const noh_mesh *mesh, uint64_t i)

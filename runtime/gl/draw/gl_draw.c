@@ -39,6 +39,7 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     noh_gl_draw_wrinkles(r, NULL);
     noh_gl_draw_triangles(r, NULL);
     noh_gl_draw_cover(r, 0);
+    noh_gl_draw_before(r, NULL);
     for (uint32_t i = 0; i < r->variant_count; i++) r->variants[i].has_camera = 0;
     noh_gl_draw_wrinkle_look(r, 0, 0);
 }
@@ -63,21 +64,16 @@ void noh_gl_draw_priority(noh_gl_renderer *r, int priority)
     r->priority = priority;
 }
 
-int noh_gl_next_priority(const noh_mesh *mesh, int above)
-{
-    int lowest = NOH_PRIORITY_ANY;
-    NOH_ASSERT(mesh && mesh->header);
-    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
-        const noh_material *m = noh_gl_material_of(mesh, &mesh->submeshes[i]);
-        if ((m->flags & NOH_MATERIAL_BLEND) && m->priority > above && m->priority < lowest) lowest = m->priority;
-    }
-    return lowest;
-}
-
 void noh_gl_draw_cover(noh_gl_renderer *r, unsigned indices)
 {
     NOH_ASSERT(r);
     r->cover = indices;
+}
+
+void noh_gl_draw_before(noh_gl_renderer *r, const noh_gl_before *before)
+{
+    NOH_ASSERT(r);
+    r->before = before;
 }
 
 void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles)
@@ -206,6 +202,23 @@ static void set_instance(noh_gl_renderer *r, const noh_gl_variant *v, const floa
     }
 }
 
+/* The last frame, for noh_clip_before; where it is not known, this one. world: NULL for a crowd */
+static void set_before(const noh_gl_renderer *r, const noh_gl_variant *v, const float *world,
+                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin)
+{
+    float rows[9][4] = { { 0.0f } };
+    memcpy(rows[0], r->before ? r->before->view_projection : r->camera.view_projection,
+           sizeof r->camera.view_projection);
+    if (world) memcpy(rows[4], r->before ? r->before->world : world, 12u * sizeof *world);
+    if (r->before) {
+        memcpy(rows[7], r->before->tile, sizeof rows[7]);
+    } else if (morph) {
+        noh_gl_tile_floats(morph, rows[7]);
+    }
+    rows[8][0] = r->before && skin ? (float)skin->before_row : 0.0f;
+    r->gl->Uniform4fv(v->u_before, 9, rows[0]);
+}
+
 static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t texture, const noh_gl_texture *pictures)
 {
     const GLuint name = texture == NOH_NONE ? r->white.name : pictures[texture].name;
@@ -219,7 +232,8 @@ static void bind_picture(const noh_gl_renderer *r, uint32_t unit, uint32_t textu
 static void set_base_color(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m, float cutoff,
                            const noh_gl_texture *pictures)
 {
-    const float strands = noh_gl_has_core(m) && cutoff < 0.0f ? -1.0f : 0.0f; /* the core has a cutoff of its own */
+    const float strands = noh_material_has_core(m) && cutoff < 0.0f ? -1.0f
+                                                                    : 0.0f; /* the core has a cutoff of its own */
     const float kind = m->flags & NOH_MATERIAL_UNLIT ? 1.0f : strands;
     const int premultiplied = m->base_color_texture != NOH_NONE && pictures[m->base_color_texture].premultiplied;
     bind_picture(r, NOH_UNIT_BASE_COLOR, m->base_color_texture, pictures);
@@ -341,6 +355,8 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
 
 /* ---- drawing ---- */
 
+NOH_STATIC_ASSERT(NOH_PRIORITY_ANY == NOH_PRIORITY_NONE, no_priority);
+
 static const noh_gl_lod whole = { 0, 0.0f, 1.0f };
 
 /* The arguments of one draw call. */
@@ -362,19 +378,19 @@ static int is_in_part(const noh_material *m, draw_part part)
 {
     const int blended = (m->flags & NOH_MATERIAL_BLEND) != 0, cut = (m->flags & NOH_MATERIAL_MASK) != 0;
     switch (part) {
-    case PART_OPAQUE: return !blended || noh_gl_has_core(m);
+    case PART_OPAQUE: return !blended || noh_material_has_core(m);
     case PART_OUTLINE: return noh_gl_outline_features(m) != 0;
     case PART_BLENDED: return blended;
     case PART_SOLID_DEPTH: return !blended && !cut;
-    default: return (!blended && cut) || noh_gl_has_core(m);
+    default: return (!blended && cut) || noh_material_has_core(m);
     }
 }
 
 /* Pixels with a lower alpha are not drawn; -1: all are drawn. */
 static float cutoff_of(const noh_material *m, draw_part part)
 {
-    if (part != PART_BLENDED && noh_gl_has_core(m)) {
-        return NOH_GL_CORE_ALPHA;
+    if (part != PART_BLENDED && noh_material_has_core(m)) {
+        return NOH_CORE_ALPHA;
     }
     return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff : -1.0f;
 }
@@ -459,6 +475,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
         set_front(j->r, is_outline(v));
         if (v->u_user >= 0) j->r->gl->Uniform4f(v->u_user, (float)j->skin->user_row, 0.0f, 0.0f, 0.0f);
     }
+    if (v->u_before >= 0) set_before(j->r, v, j->world, j->morph, j->skin);
     j->r->gl->Uniform3f(v->u_lod, j->lod->from, j->lod->to, (float)level);
 }
 
@@ -469,7 +486,7 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
 static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,
                           draw_part part)
 {
-    const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+    const noh_material *m = noh_mesh_material(&j->mesh->mesh, s);
     set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
     j->r->gl->Uniform1i(v->u_blends, ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
                                          ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));
@@ -488,7 +505,7 @@ static void draw_part_of(const draw_job *j, draw_part part, int priority)
     uint32_t palette = NOH_NONE;
     for (uint32_t i = 0; i < level.header->submesh_count; i++) {
         const noh_submesh *s = &level.submeshes[i];
-        const noh_material *m = noh_gl_material_of(&j->mesh->mesh, s);
+        const noh_material *m = noh_mesh_material(&j->mesh->mesh, s);
         const uint32_t features = is_in_depth(part)      ? 0
                                   : part == PART_OUTLINE ? noh_gl_outline_features(m)
                                                          : noh_gl_features_of(&j->mesh->mesh, m);
@@ -521,8 +538,8 @@ static void draw_blended(const draw_job *j)
         draw_part_of(j, PART_BLENDED, j->r->priority);
         return;
     }
-    for (int p = noh_gl_next_priority(mesh, -NOH_PRIORITY_ANY); p != NOH_PRIORITY_ANY;
-         p = noh_gl_next_priority(mesh, p)) {
+    for (int p = noh_mesh_next_priority(mesh, -NOH_PRIORITY_ANY); p != NOH_PRIORITY_ANY;
+         p = noh_mesh_next_priority(mesh, p)) {
         draw_part_of(j, PART_BLENDED, p);
     }
 }

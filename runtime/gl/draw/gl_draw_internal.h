@@ -24,6 +24,15 @@ void noh_gl_draw_triangles(noh_gl_renderer *renderer, const noh_gl_triangles *tr
  * noh_gl_draw_begin resets it to 0, the mesh's own. */
 void noh_gl_draw_cover(noh_gl_renderer *renderer, unsigned indices);
 
+/* What the next draws show as of the last frame; noh_gl_draw_begin resets it to NULL, as they are now. Borrowed until
+ * then. A crowd has world and tile in its rows. */
+typedef struct noh_gl_before {
+    float view_projection[16];
+    float world[12];
+    float tile[4]; /* noh_gl_tile_floats */
+} noh_gl_before;
+void noh_gl_draw_before(noh_gl_renderer *renderer, const noh_gl_before *before);
+
 /* Whether a context, or a plan for one, can hold a texture. ETC2 and EAC are decoded for those without.
  * errors  UNSUPPORTED the texture has ASTC blocks and `astc` is 0 */
 noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error);

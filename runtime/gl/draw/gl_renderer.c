@@ -98,31 +98,12 @@ static noh_result want_fades(const wish *w, noh_gl_variant_key key)
     return result;
 }
 
-const noh_material *noh_gl_material_of(const noh_mesh *mesh, const noh_submesh *submesh)
-{
-    static const noh_material plain = { .base_color_texture = NOH_NONE,
-                                        .base_color = { 1.0f, 1.0f, 1.0f, 1.0f },
-                                        .metallic = 1.0f,
-                                        .roughness = 1.0f,
-                                        .alpha_cutoff = 0.5f,
-                                        .normal_scale = 1.0f,
-                                        .occlusion_strength = 1.0f,
-                                        .f0 = { 0.04f, 0.04f, 0.04f },
-                                        .normal_texture = NOH_NONE,
-                                        .surface_texture = NOH_NONE,
-                                        .emissive_texture = NOH_NONE,
-                                        .wrinkle_texture = NOH_NONE,
-                                        .wrinkle_models = 0,
-                                        .more_textures = { NOH_NONE, NOH_NONE, NOH_NONE } };
-    return submesh->material == NOH_NONE ? &plain : &mesh->pack->materials[submesh->material];
-}
-
 static int has_cut_materials(const noh_mesh *mesh)
 {
     int cut = 0;
     for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
-        const noh_material *m = noh_gl_material_of(mesh, &mesh->submeshes[i]);
-        cut |= (m->flags & NOH_MATERIAL_MASK) || noh_gl_has_core(m);
+        const noh_material *m = noh_mesh_material(mesh, &mesh->submeshes[i]);
+        cut |= (m->flags & NOH_MATERIAL_MASK) || noh_material_has_core(m);
     }
     return cut;
 }
@@ -132,7 +113,7 @@ static noh_result want_features(const wish *w, noh_gl_variant_key key)
 {
     noh_result result = NOH_OK;
     for (uint32_t i = 0; i < w->mesh->header->submesh_count && !result; i++) {
-        const noh_material *m = noh_gl_material_of(w->mesh, &w->mesh->submeshes[i]);
+        const noh_material *m = noh_mesh_material(w->mesh, &w->mesh->submeshes[i]);
         key.features = noh_gl_features_of(w->mesh, m);
         result = want_fades(w, key);
         key.features = has_outlines(w->desc) ? noh_gl_outline_features(m) : 0;
@@ -163,7 +144,7 @@ noh_result noh_gl_list_variants(const noh_gl_renderer_desc *desc, const noh_mesh
                                 noh_error *error)
 {
     const wish w = { desc, mesh, list, error };
-    noh_gl_skin_binding skin = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding skin = { .mode = NOH_PALETTE_AUTO };
     const uint32_t least = desc->fewer_influences ? 1u : NOH_INFLUENCES_MAX;
     noh_result result = want(&w, NULL, 0);
     skin.mode = desc->palettes;

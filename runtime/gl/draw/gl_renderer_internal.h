@@ -24,9 +24,6 @@ void noh_gl_renderer_light(noh_gl_renderer *renderer, const noh_gl_light *light,
  * order of the pack. Opaque submeshes are always drawn. */
 void noh_gl_draw_priority(noh_gl_renderer *renderer, int priority);
 
-/* The lowest priority above `above` of a mesh's blended materials; NOH_PRIORITY_ANY: there is none. */
-int noh_gl_next_priority(const noh_mesh *mesh, int above);
-
 /* Set the wrinkle models for the next noh_gl_draw_mesh and noh_gl_draw_crowd calls.
  * models    NOH_WRINKLE_BY_*; 0, the state after noh_gl_draw_begin: the material's
  * smoothed  0..255: how far wrinkles are smoothed out; 255: completely */

@@ -136,6 +136,48 @@ int noh_gl_skin_write_matrices(noh_gl_skin *skin, uint32_t instance, const float
     return changed.first < changed.end;
 }
 
+/* The kept rows of an instance. */
+static float *kept_of(const noh_gl_skin *skin, const noh_gl_skin_mesh *m, uint32_t instance)
+{
+    const uint32_t row = m->first_kept + (instance - m->first_instance) * m->before_row;
+    NOH_ASSERT(row + m->before_row <= skin->plan.kept_count);
+    return skin->kept + 4u * (size_t)row;
+}
+
+void noh_gl_skin_keep(noh_gl_skin *skin)
+{
+    NOH_ASSERT(skin && skin->kept);
+    for (uint32_t i = 0; i < skin->plan.instance_count; i++) {
+        const noh_gl_skin_mesh *m = mesh_of(skin, i);
+        memcpy(kept_of(skin, m, i), skin->rows + 4u * (size_t)first_row(m, i), 16u * (size_t)m->before_row);
+    }
+}
+
+int noh_gl_skin_write_before(noh_gl_skin *skin, uint32_t instance, uint32_t was)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    const uint32_t palettes = noh_gl_crowd_rows(&m->mesh), to = first_row(m, instance) + palettes;
+    const float *from = was == NOH_NONE ? skin->rows + 4u * (size_t)to : kept_of(skin, m, was) + 4u * palettes;
+    span changed = { UINT32_MAX, 0 };
+    NOH_ASSERT(skin->kept && (was == NOH_NONE || mesh_of(skin, was) == m));
+    put_rows(skin, to + m->before_row, from, m->before_row - palettes, &changed);
+    return changed.first < changed.end;
+}
+
+void noh_gl_skin_put_before(noh_gl_skin *skin, uint32_t instance, const float world[12],
+                            const noh_gl_morph_binding *morph)
+{
+    const noh_gl_skin_mesh *m = mesh_of(skin, instance);
+    const uint32_t row = first_row(m, instance) + m->before_row;
+    float tile[4] = { 0.0f, 0.0f, 0.0f, 0.0f };
+    span changed = { UINT32_MAX, 0 };
+    NOH_ASSERT(m->before_row && world);
+    if (morph) noh_gl_tile_floats(morph, tile);
+    put_rows(skin, row, world, 3, &changed);
+    put_rows(skin, row + 3u, tile, 1, &changed);
+    send(skin, &changed);
+}
+
 void noh_gl_skin_touch(noh_gl_skin *skin, uint32_t instance)
 {
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
@@ -401,12 +443,13 @@ uint32_t noh_gl_skin_instance(const noh_gl_skin *skin, uint32_t mesh, uint32_t i
 noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t instance)
 {
     const noh_gl_skin_mesh *m = mesh_of(skin, instance);
-    noh_gl_skin_binding binding = { NOH_PALETTE_AUTO, 0, 0, 0, 0, 0, 0, 0 };
+    noh_gl_skin_binding binding = { .mode = NOH_PALETTE_AUTO };
     binding.mode = skin->plan.mode;
     binding.name = skin->plan.mode == NOH_PALETTE_TEXTURE ? skin->texture.name : skin->buffer.name;
     binding.first = first_row(m, instance);
     binding.stride = m->stride;
     binding.user_row = skin->user_rows ? m->stride - 1u : 0;
+    binding.before_row = m->before_row;
     binding.width_log2 = skin->width_log2;
     binding.align = skin->align;
     return binding;

@@ -21,6 +21,15 @@ void noh_gl_skin_forget(noh_gl_skin *skin);
 int noh_gl_skin_write_matrices(noh_gl_skin *skin, uint32_t instance, const float *matrices);
 void noh_gl_skin_touch(noh_gl_skin *skin, uint32_t instance);
 
+/* With noh_gl_skin_desc.motion: the rows of the last frame. Keep what is now, once all draws of a frame are sent; then
+ * copy for each instance the palettes of the instance that it was (NOH_NONE: as they are now), after its matrices were
+ * written, in the same thread; and write where it was, with its deltas (NULL: none).
+ * returns  1 if a row changed, as noh_gl_skin_write_matrices */
+void noh_gl_skin_keep(noh_gl_skin *skin);
+int noh_gl_skin_write_before(noh_gl_skin *skin, uint32_t instance, uint32_t was);
+void noh_gl_skin_put_before(noh_gl_skin *skin, uint32_t instance, const float world[12],
+                            const noh_gl_morph_binding *morph);
+
 /* The first row of a palette, counted from the instance's own first row. */
 uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *mesh, uint32_t palette);
 
@@ -48,6 +57,8 @@ typedef struct noh_gl_skin_mesh {
     noh_mesh mesh;
     uint32_t instance_count, first_instance;
     uint32_t first_row, stride; /* row of the first instance; rows from one instance to the next */
+    uint32_t first_kept;        /* in noh_gl_skin.kept, before_row rows for each instance */
+    uint32_t before_row;        /* from an instance's first row to its rows of the last frame; 0: none */
 } noh_gl_skin_mesh;
 
 struct noh_gl_skin {
@@ -57,8 +68,9 @@ struct noh_gl_skin {
     uint32_t align, width_log2;
     uint32_t user_rows; /* per instance, after its palettes: 0 or 1 */
     uint32_t mesh_count;
-    noh_gl_skin_mesh *meshes;        /* [mesh_count] */
-    float *rows;                     /* [texel_count, in a texture width * height][4] */
+    noh_gl_skin_mesh *meshes; /* [mesh_count] */
+    float *rows;              /* [texel_count, in a texture width * height][4] */
+    float *kept; /* [plan.kept_count][4] rows of the last frame, but for user values; NULL without motion */
     uint32_t dirty_first, dirty_end; /* the span that the next update sends; empty if first >= end */
     noh_gl_buffer buffer;            /* either this */
     noh_gl_texture texture;          /* or this */
@@ -73,6 +85,15 @@ static inline void noh_gl_tint_bits(const uint8_t tint[4], uint32_t bits[3])
 {
     for (int i = 0; i < 3; i++) bits[i] = tint ? (uint32_t)(255 - tint[i]) << (i < 2 ? 16 : 8) : 0;
     if (tint) bits[2] |= (uint32_t)(255 - tint[3]) << 16;
+}
+
+/* The numbers of a tile, which are below 2^24 and so exact. */
+static inline void noh_gl_tile_floats(const noh_gl_morph_binding *morph, float tile[4])
+{
+    tile[0] = (float)morph->tile_x;
+    tile[1] = (float)morph->tile_y;
+    tile[2] = (float)morph->width_log2;
+    tile[3] = (float)morph->touched;
 }
 
 /* Rows before the palettes of an instance of this mesh. */

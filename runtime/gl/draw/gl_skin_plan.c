@@ -2,7 +2,8 @@
  *
  * Palettes are stored mesh by mesh and instance by instance, each at a multiple of the alignment: one row in a texture,
  * the GPU's offset alignment in a uniform buffer, where each palette is bound as a range of its own. In a texture, an
- * instance of a crowd starts with four rows of its own, or five if its mesh has wrinkle regions. */
+ * instance of a crowd starts with four rows of its own, or five if its mesh has wrinkle regions. With motion the same
+ * rows of the last frame follow. The row of user values is the last. */
 #include <string.h>
 
 #include "gl/draw/gl_skin_internal.h"
@@ -127,21 +128,25 @@ uint32_t noh_gl_palette_row(const noh_gl_skin_binding *binding, const noh_mesh *
 uint64_t noh_gl_skin_layout(const noh_gl_skin_desc *desc, noh_palette_mode mode, uint32_t align,
                             noh_gl_skin_mesh *meshes)
 {
-    const noh_gl_skin_binding shape = { mode, 0, 0, 0, 0, align, 0, 0 };
+    const noh_gl_skin_binding shape = { .mode = mode, .align = align };
     const uint32_t user_rows = desc->user_values && mode == NOH_PALETTE_TEXTURE;
+    const uint32_t frames = desc->motion && mode == NOH_PALETTE_TEXTURE ? 2u : 1u;
     uint64_t row = 0;
-    uint32_t instance = 0;
+    uint32_t instance = 0, kept = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
-        uint32_t count = count_of(desc, i),
-                 stride = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count) +
-                          user_rows;
+        const uint32_t count = count_of(desc, i),
+                       own = noh_gl_palette_row(&shape, &desc->meshes[i], desc->meshes[i].header->palette_count),
+                       stride = frames * own + user_rows;
         if (meshes) {
             meshes[i].mesh = desc->meshes[i];
             meshes[i].instance_count = count;
             meshes[i].first_instance = instance;
             meshes[i].first_row = (uint32_t)row;
             meshes[i].stride = stride;
+            meshes[i].before_row = frames == 2u ? own : 0;
+            meshes[i].first_kept = kept;
         }
+        kept += count * own;
         row += (uint64_t)count * stride;
         instance += count;
     }
@@ -153,9 +158,11 @@ void noh_gl_skin_carve(noh_arena *arena, uint32_t mesh_count, const noh_gl_skin_
     size_t rows = plan->mode == NOH_PALETTE_TEXTURE ? (size_t)plan->width * plan->height : plan->texel_count;
     void *meshes = noh_arena_carve(arena, sizeof *skin->meshes * mesh_count, 16);
     void *staging = noh_arena_carve(arena, 16u * rows, 16);
+    void *kept = noh_arena_carve(arena, 16u * (size_t)plan->kept_count, 16);
     if (skin) {
         skin->meshes = (noh_gl_skin_mesh *)meshes;
         skin->rows = (float *)staging;
+        skin->kept = plan->kept_count ? (float *)kept : NULL;
     }
 }
 
@@ -201,6 +208,9 @@ noh_result noh_gl_skin_plan_make(const noh_gl_skin_desc *desc, const noh_gl_caps
     }
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         p.instance_count += count_of(desc, i);
+    }
+    if (desc->motion && p.mode == NOH_PALETTE_TEXTURE) {
+        p.kept_count = (uint32_t)(rows - (desc->user_values ? p.instance_count : 0)) / 2u;
     }
     p.texel_count = (uint32_t)rows;
     set_bytes(desc, &p);

@@ -98,7 +98,7 @@ uint32_t noh_gl_outline_features(const noh_material *m)
     const uint32_t cut = m->flags & (NOH_MATERIAL_MASK | NOH_MATERIAL_BLEND) ? NOH_FEATURE_ALPHA : 0u;
     const int has_outline = m->surface == NOH_SURFACE_TOON && m->surface_more[4] != 0.0f &&
                             !(m->flags & NOH_MATERIAL_UNLIT) &&
-                            (!(m->flags & NOH_MATERIAL_BLEND) || noh_gl_has_core(m));
+                            (!(m->flags & NOH_MATERIAL_BLEND) || noh_material_has_core(m));
     return has_outline ? NOH_FEATURE_TOON | NOH_FEATURE_OUTLINE | cut : 0u;
 }
 
@@ -150,7 +150,6 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 {
     NOH_ASSERT(text && key.influences <= 8u && key.drawn <= key.influences && key.view <= NOH_VIEW_WRINKLE);
     NOH_ASSERT(key.depth || !key.cut);
-    const unsigned is_toon = key.features & NOH_FEATURE_TOON;
     const struct {
         unsigned on;
         const char *line;
@@ -176,16 +175,16 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_SKIN, "#define NOH_SKIN\n" },
                   { key.features & NOH_FEATURE_EYE, "#define NOH_EYE\n" },
                   { key.features & NOH_FEATURE_TEETH, "#define NOH_TEETH\n" },
-                  { is_toon, "#define NOH_TOON\n" },
-                  { is_toon && key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
-                  { !is_toon && key.features & NOH_FEATURE_HAIR, "#define NOH_HAIR\n" },
+                  { key.features & NOH_FEATURE_HAIR, "#define NOH_HAIR\n" },
+                  { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
+                  { key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
                   { key.features & NOH_FEATURE_MATCAP, "#define NOH_MATCAP\n" },
                   { key.features & NOH_FEATURE_OUTLINE, "#define NOH_OUTLINE\n" },
                   { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },
                   { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },
                   { key.features & NOH_FEATURE_WRINKLE_PIXEL, "#define NOH_WRINKLE_PIXEL\n" },
                   { key.features & NOH_FEATURE_WRINKLES, "#define NOH_WRINKLES\n" },
-                  { (key.features & NOH_FEATURE_COLORS) != 0, "#define NOH_COLORS\n" },
+                  { key.features & NOH_FEATURE_COLORS, "#define NOH_COLORS\n" },
                   { key.features & NOH_FEATURE_PHONE, "#define NOH_PHONE\n" } };
     size_t at = put_digit(text, 0, "#define NOH_INFLUENCES ", key.influences);
     at = put_digit(text, at, "#define NOH_DRAWN ", key.drawn);
@@ -321,6 +320,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_surface_values", offsetof(noh_gl_variant, u_surface_values) },
                      { "noh_surface_more", offsetof(noh_gl_variant, u_surface_more) },
                      { "noh_user_values", offsetof(noh_gl_variant, u_user) },
+                     { "noh_before", offsetof(noh_gl_variant, u_before) },
                      { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
                      { "noh_rest", offsetof(noh_gl_variant, u_rest) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },

@@ -186,6 +186,12 @@ void noh_gl_morph_tile(const noh_gl_morph *m, uint32_t instance, uint32_t *x, ui
 /* Where an instance's weights begin. */
 uint32_t noh_gl_morph_first_weight(const noh_gl_morph *m, uint32_t instance);
 
+/* The weights that it was given last. */
+static inline const float *noh_gl_morph_weights_of(const noh_gl_morph *m, uint32_t instance)
+{
+    return m->weights + noh_gl_morph_first_weight(m, instance);
+}
+
 /* Write the record of a target: weight * scale for each layer, and a last word that the paths use differently. */
 void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float weight, uint32_t last);
 

@@ -205,8 +205,8 @@ static void unbind(const noh_stage_decals *d)
 }
 
 /* Draw the triangles that have decals, or all triangles. */
-static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh,
-                       const noh_gl_share *share, const noh_decals *ring)
+static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, noh_gl_alone *alone, uint32_t mesh,
+                       const noh_stage_part *share, const noh_decals *ring)
 {
     noh_gl_triangles triangles;
     decals->corners = 0;
@@ -220,10 +220,10 @@ static void draw_share(noh_stage_decals *decals, noh_stage_patches *patches, con
     decals->draws++;
 }
 
-static void draw_mesh(noh_stage_decals *decals, noh_stage_patches *patches, const noh_gl_alone *alone, uint32_t mesh,
+static void draw_mesh(noh_stage_decals *decals, noh_stage_patches *patches, noh_gl_alone *alone, uint32_t mesh,
                       const noh_decals *ring)
 {
-    noh_gl_share shares[2];
+    noh_stage_part shares[2];
     const uint32_t count = noh_gl_alone_shares(alone, mesh, shares);
     upload_rows(decals, ring, noh_gl_alone_mesh(alone, mesh));
     for (uint32_t i = 0; i < count && decals->count; i++) draw_share(decals, patches, alone, mesh, &shares[i], ring);

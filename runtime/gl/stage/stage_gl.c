@@ -90,6 +90,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     noh_result result = NOH_OK;
     size_t targets;
     void *memory;
+    uint8_t *sides;
     noh_mesh coarse;
     const int later = noh_gl_site_coarse(m->desc, m->plan, site, &coarse);
     void *room = noh_arena_carve(&m->arena, later ? noh_gl_room_size(&mesh) : 0, 16);
@@ -117,10 +118,12 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     m->morph_path = (uint32_t)plan.path;
     targets = m->arena.used;
     memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
+    sides = CARVE(m, m->desc->motion ? plan.instance_count / 2u : 0, uint8_t);
     add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes);
     add(m, plan.vertex_ring ? "morphed vertices" : "accumulators", site.kind, m->arena.used,
         plan.layer_bytes + plan.vertex_bytes);
     if (!model) return NOH_OK;
+    if (m->desc->motion) model->sides = memset(sides, 0, plan.instance_count / 2u);
     result = noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error);
     model->part_count = d.mesh_count;
     return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
@@ -131,7 +134,7 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
 {
     const uint32_t count = noh_stage_kind_desc(m->desc, site.kind).visible_max;
     noh_mesh mesh;
-    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE, m->desc->user_values };
+    const noh_gl_skin_desc d = { &mesh, 1, &count, NOH_PALETTE_TEXTURE, m->desc->user_values, m->desc->motion };
     const size_t from = m->arena.used;
     noh_gl_skin_plan plan;
     noh_result result;
@@ -158,7 +161,10 @@ static void carve_kinds(measure *m)
         const uint32_t cover_count = m->desc->kinds[i].cover_count, meshes = m->plan->kinds[i].mesh_count;
         noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
         noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
+        const uint32_t last_count = m->desc->motion ? m->desc->kinds[i].actor_count : 0;
+        noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
         if (!kinds) continue;
+        kinds[i].last = last_count ? memset(last, 0, last_count * sizeof *last) : NULL;
         kinds[i].covers = covers;
         memset(indices, 0, cover_count * meshes * sizeof *indices);
         for (uint32_t c = 0; c < cover_count; c++) covers[c] = (noh_gl_cover){ 0, 0, indices + c * meshes };
@@ -227,6 +233,7 @@ static void carve_head(measure *m)
     const size_t variants_bytes = variants_size(m);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
+    noh_gl_views *views = CARVE(m, m->desc->motion ? 2u : 0, noh_gl_views);
     if (m->gl) { /* a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
@@ -240,6 +247,7 @@ static void carve_head(measure *m)
         memset(renderer, 0, sizeof *renderer);
         gl->light = NULL;
         gl->lighting = NULL;
+        gl->views = m->desc->motion ? memset(views, 0, 2u * sizeof *views) : NULL;
     }
     carve_kinds(m);
     add(m, "renderer", NOH_NONE, 0, m->desc->without_shader ? 0 : NOH_GL_RENDERER_BYTES);
@@ -386,18 +394,6 @@ static void forget(noh_stage *stage)
     let_go_meshes(stage, &lost);
 }
 
-static void find_mirrored(noh_stage_gl *gl, const noh_stage *s)
-{
-    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        for (uint32_t m = 0; m < s->kinds[i].plan->mesh_count; m++) {
-            const noh_stage_mesh *mesh = &s->kinds[i].meshes[m];
-            float rows[12];
-            gl->kinds[i].items[m].mirrored = !mesh->skinned && mesh->node_world &&
-                                             noh_gl_normal_rows(mesh->node_world, rows) < 0.0f;
-        }
-    }
-}
-
 static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
 {
     measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
@@ -410,7 +406,6 @@ static noh_result init(void *memory, size_t bytes, const void *device, noh_stage
     result = visit(&m, error);
     stage->gpu = m.gl;
     if (result == NOH_OK) {
-        find_mirrored(m.gl, stage);
         if (!stage->desc.without_shader) {
             result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->variants, m.gl->variants_bytes,
                                    m.gl->renderer, error);
@@ -494,12 +489,14 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
     memcpy(world, shown->world, sizeof world);
     if (!mesh->skinned && mesh->node_world) noh_matrix_multiply(shown->world, mesh->node_world, world);
     if (noh_gl_has_tile(item, shown)) {
-        const uint32_t tile = noh_gl_item_tile(item, shown);
+        uint32_t tile;
+        if (item->model->sides) noh_gl_motion_turn(item, shown, weights, mesh->mesh.header->target_count);
+        tile = noh_gl_item_tile(item, shown);
         moved = noh_gl_any_weight(weights, mesh->mesh.header->target_count);
         (void)noh_gl_morph_set_weights(item->model->morph, tile, weights, NULL);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
-    if (!noh_gl_is_mirrored(item, actor, shown)) {
+    if (!noh_stage_is_mirrored(mesh, actor, shown)) {
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
         (void)noh_gl_skin_set_tint(item->skin, shown->place, noh_stage_tint_of(actor), NULL);
         if (has_user) (void)noh_gl_skin_set_user(item->skin, shown->place, actor->look.user, NULL);
@@ -520,6 +517,7 @@ static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrice
         ready = mesh->skin.header;
         if (noh_gl_skin_write_matrices(items[m].skin, shown->place, matrices)) shown->updates |= NOH_STAGE_MOVED;
     }
+    if (s->desc.motion && noh_gl_motion_pose(s, k, index)) shown->updates |= NOH_STAGE_MOVED;
 }
 
 static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_gl_item *items, uint32_t index)
@@ -530,6 +528,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
         const noh_stage_mesh *mesh = &k->meshes[m];
         if (k->actors[index].look.hidden_meshes >> m & 1u) continue;
         upload_place(mesh, &items[m], &k->actors[index], shown, s->desc.user_values, weights + mesh->first_weight);
+        if (s->desc.motion) noh_gl_motion_upload(s, k, index, m);
         if (mesh->skinned && (shown->updates & NOH_STAGE_MOVED)) noh_gl_skin_touch(items[m].skin, shown->place);
     }
 }
@@ -538,6 +537,7 @@ static void upload(noh_stage *s)
 {
     noh_stage_gl *gl = s->gpu;
     noh_gl_choose_covers(s);
+    if (s->desc.motion) noh_gl_motion_begin(s);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
         for (uint32_t p = 0; p < noh_stage_seen(k); p++) upload_actor(s, k, gl->kinds[i].items, k->order[p]);
@@ -546,6 +546,7 @@ static void upload(noh_stage *s)
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) noh_gl_morph_update(gl->models[i].morph, NULL);
     }
+    if (s->desc.motion) noh_gl_motion_end(s);
 }
 
 /* ---- access to GPU objects ---- */
@@ -571,6 +572,20 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
     return noh_gl_morph_plan_make(&morph, caps, out, error);
 }
 
+/* The last frame; without motion, this one. */
+static void take_before(const noh_stage *s, const noh_stage_kind *k, const noh_stage_actor *a, uint32_t mesh,
+                        noh_stage_drawn *out)
+{
+    const noh_stage_mesh *m = &k->meshes[mesh];
+    out->morph_before = out->morph;
+    if (s->desc.motion) {
+        (void)noh_gl_motion_of(s, k, noh_stage_index(k, a), mesh, out->world_before, &out->morph_before);
+        return;
+    }
+    memcpy(out->world_before, s->shown[a - s->actors].world, sizeof out->world_before);
+    if (!m->skinned && m->node_world) noh_matrix_multiply(out->world_before, m->node_world, out->world_before);
+}
+
 noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error)
 {
     NOH_ASSERT(stage->gpu && out);
@@ -593,6 +608,7 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
                     (size_t)a->look.texture_set * k->desc->mesh->runs[NOH_CHUNK_TEXTURE].count;
     out->is_morphed = noh_gl_has_tile(item, shown);
     if (out->is_morphed) out->morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
+    take_before(stage, k, a, index, out);
     out->is_skinned = k->meshes[index].skinned;
     if (out->is_skinned) out->skin = noh_gl_skin_binding_of(item->skin, shown->place);
     return NOH_OK;

@@ -37,17 +37,6 @@ static const noh_gl_texture *pictures_of(const drawing *d, uint32_t place)
            (size_t)actor_at(d, place)->look.texture_set * d->k->desc->mesh->runs[NOH_CHUNK_TEXTURE].count;
 }
 
-static int is_seen(const drawing *d, uint32_t place)
-{
-    return (int)(shown_at(d, place)->views >> d->view & 1u);
-}
-
-/* Whether the view sees an actor and the actor has the mesh on. */
-static int shows(const drawing *d, uint32_t mesh, uint32_t place)
-{
-    return is_seen(d, place) && !(actor_at(d, place)->look.hidden_meshes >> mesh & 1u);
-}
-
 /* Draw next what an actor's garments leave of a mesh. */
 static void set_cover(const drawing *d, uint32_t mesh, uint32_t place)
 {
@@ -60,11 +49,6 @@ static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint
     noh_gl_skin_binding binding = noh_gl_skin_binding_of(item->skin, place);
     binding.influences = influences;
     return binding;
-}
-
-static uint32_t mesh_level(const drawing *d, uint32_t mesh, uint32_t level)
-{
-    return d->k->plan->levels[level].mesh_levels[mesh];
 }
 
 /* Set the wrinkles of an actor's expression on a mesh, for the next draw. */
@@ -81,13 +65,23 @@ static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
     noh_gl_draw_wrinkle_look(d->renderer, look->wrinkle_models, look->smoothed);
 }
 
+/* Where an actor's mesh was in the last frame, for the next draw. */
+static void set_before(drawing *d, uint32_t mesh, uint32_t place)
+{
+    noh_gl_morph_binding morph;
+    memset(d->before.tile, 0, sizeof d->before.tile);
+    if (noh_gl_motion_of(d->s, d->k, d->k->order[place], mesh, d->before.world, &morph)) {
+        noh_gl_tile_floats(&morph, d->before.tile);
+    }
+}
+
 /* Draw one actor's mesh at one level, in a share of the pixels. */
-static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
+static void draw_alone(drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
 {
     const noh_gl_item *item = &d->on_gl->items[mesh];
     const noh_stage_mesh *m = &d->k->meshes[mesh];
     const noh_stage_shown *shown = shown_at(d, place);
-    const noh_gl_lod lod = { mesh_level(d, mesh, level), from, to };
+    const noh_gl_lod lod = { noh_stage_mesh_level(d->k, mesh, level), from, to };
     const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
     const noh_gl_skin_binding skin = skin_of(item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
     const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
@@ -102,28 +96,9 @@ static void draw_alone(const drawing *d, uint32_t mesh, uint32_t place, uint32_t
     noh_gl_draw_user(d->renderer, d->s->desc.user_values ? actor_at(d, place)->look.user : NULL);
     set_wrinkles(d, mesh, place);
     set_cover(d, mesh, place);
+    if (d->s->desc.motion) set_before(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,
                      &lod, pictures_of(d, place), d->pass);
-}
-
-/* Draw a fading actor: the new level and the old one, each in its share of the pixels. */
-static uint32_t shares_of(const drawing *d, uint32_t mesh, uint32_t place, noh_gl_share shares[2])
-{
-    const noh_stage_shown *shown = shown_at(d, place);
-    const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
-    const float part = noh_lod_fade(&ch->lod, ch->time.clock);
-    const int fades = d->renderer->fades &&
-                      mesh_level(d, mesh, shown->level) != mesh_level(d, mesh, shown->level_before);
-    shares[0] = (noh_gl_share){ shown->level, 0.0f, fades ? part : 1.0f };
-    shares[1] = (noh_gl_share){ shown->level_before, part, 1.0f };
-    return fades ? 2u : 1u;
-}
-
-static void draw_fading(const drawing *d, uint32_t mesh, uint32_t place)
-{
-    noh_gl_share shares[2];
-    const uint32_t count = shares_of(d, mesh, place, shares);
-    for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, place, shares[i].level, shares[i].from, shares[i].to);
 }
 
 /* Streams belong to one instance: it is drawn alone. */
@@ -132,197 +107,43 @@ static int has_streams(const noh_gl_item *item)
     return item->model->morph && noh_gl_morph_plan_of(item->model->morph)->path == NOH_MORPH_STREAMS;
 }
 
-/* Draw visible neighbours of a run with the same textures in one call. */
-static void draw_together(const drawing *d, uint32_t mesh, uint32_t run, uint32_t first, uint32_t count)
+/* Draw neighbours in one call. */
+static void draw_crowd(const drawing *d, const noh_stage_drawing *of)
 {
-    const uint32_t caps = noh_stage_influence_levels(d->k);
-    const noh_gl_item *item = &d->on_gl->items[mesh];
-    const uint32_t influences = d->k->table.influence_level_count ? d->k->table.influences[run % caps].influence_count
-                                                                  : 0;
-    const noh_gl_lod lod = { mesh_level(d, mesh, run / caps), 0.0f, 1.0f };
-    const noh_gl_skin_binding skin = skin_of(item, first, influences);
+    const noh_gl_item *item = &d->on_gl->items[of->mesh];
+    const noh_gl_lod lod = { noh_stage_mesh_level(d->k, of->mesh, of->level), of->from, of->to };
+    const noh_gl_skin_binding skin = skin_of(item, of->first, of->influence_count);
+    const noh_appearance *look = &actor_at(d, of->first)->look;
     noh_gl_morph_binding morph;
-    if (!noh_gl_is_crowd(d->k) || has_streams(item)) {
-        for (uint32_t i = 0; i < count; i++) draw_alone(d, mesh, first + i, run / caps, 0.0f, 1.0f);
-        return;
-    }
     if (item->model->morph) { /* of any tile: it names the texture */
         const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool, 0);
         morph = noh_gl_morph_binding_of(item->model->morph, tile);
     }
-    noh_gl_draw_wrinkle_look(d->renderer, actor_at(d, first)->look.wrinkle_models, actor_at(d, first)->look.smoothed);
-    set_cover(d, mesh, first);
-    noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, count, &lod,
-                      pictures_of(d, first), d->pass);
+    noh_gl_draw_wrinkle_look(d->renderer, look->wrinkle_models, look->smoothed);
+    set_cover(d, of->mesh, of->first);
+    noh_gl_draw_crowd(d->renderer, &item->model->mesh, item->model->morph ? &morph : NULL, &skin, of->count, &lod,
+                      pictures_of(d, of->first), d->pass);
 }
 
-/* Whether two actors can be drawn together. */
-static int wear_the_same(const drawing *d, uint32_t a, uint32_t b)
+static void draw_one(void *user, const noh_stage_drawing *of)
 {
-    const noh_appearance *of_a = &actor_at(d, a)->look, *of_b = &actor_at(d, b)->look;
-    return of_a->texture_set == of_b->texture_set && of_a->wrinkle_models == of_b->wrinkle_models &&
-           of_a->smoothed == of_b->smoothed && shown_at(d, a)->cover == shown_at(d, b)->cover;
-}
-
-static int is_mirrored(const drawing *d, uint32_t mesh, uint32_t place)
-{
-    return noh_gl_is_mirrored(&d->on_gl->items[mesh], actor_at(d, place), shown_at(d, place));
-}
-
-static void draw_run(const drawing *d, uint32_t mesh, uint32_t run)
-{
-    const uint32_t caps = noh_stage_influence_levels(d->k);
-    const uint32_t end = d->k->runs[run + 1u];
-    uint32_t at = d->k->runs[run];
-    while (at < end) {
-        uint32_t first;
-        while (at < end && !shows(d, mesh, at)) at++;
-        first = at;
-        while (at < end && shows(d, mesh, at) && wear_the_same(d, at, first) && !is_mirrored(d, mesh, at)) at++;
-        if (at > first) {
-            draw_together(d, mesh, run, first, at - first);
-        } else if (at < end) {
-            draw_alone(d, mesh, at++, run / caps, 0.0f, 1.0f);
-        }
+    drawing *d = user;
+    d->k = of->k;
+    d->on_gl = &d->gl->kinds[of->k - d->s->kinds];
+    if (d->pass == NOH_DRAW_BLENDED) noh_gl_draw_priority(d->renderer, of->priority);
+    if (noh_gl_is_crowd(of->k) && !of->alone && !has_streams(&d->on_gl->items[of->mesh])) {
+        draw_crowd(d, of);
+        return;
     }
-}
-
-/* ---- blended meshes, from far to near ---- */
-
-static void move_point(const float *matrix, const float *p, float out[3])
-{
-    for (int i = 0; i < 3; i++) {
-        const float *row = matrix + 4 * i;
-        out[i] = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
-    }
-}
-
-/* The centre of a mesh's bounds, moved by the mean of its joints. */
-static void move_skinned(const noh_character *ch, const noh_skin *skin, const float middle[3], float out[3])
-{
-    const float *palette = noh_character_pose_palette(ch, ch->time.to_pose);
-    const int multiplied = (int)(ch->multiplied >> ch->time.to_pose & 1u);
-    const uint32_t count = skin->header->joint_count;
-    float sum[3] = { 0.0f, 0.0f, 0.0f };
-    for (size_t k = 0; k < count; k++) {
-        float bound[3], p[3];
-        memcpy(bound, middle, sizeof bound);
-        if (!multiplied) move_point(skin->inverse_bind + 12u * k, middle, bound);
-        move_point(palette + 12u * skin->joints[k], bound, p);
-        for (int i = 0; i < 3; i++) sum[i] += p[i];
-    }
-    for (int i = 0; i < 3; i++) out[i] = sum[i] / (float)count;
-}
-
-/* The squared distance of a mesh from the eye. */
-static float distance_of(const drawing *d, uint32_t mesh, uint32_t place)
-{
-    const noh_stage_mesh *m = &d->k->meshes[mesh];
-    const noh_mesh_header *h = m->mesh.header;
-    const float *eye = d->s->views[d->view].eye, *world = shown_at(d, place)->world;
-    float p[3], at[3], square = 0.0f;
-    for (int i = 0; i < 3; i++) p[i] = 0.5f * (h->bounds_min[i] + h->bounds_max[i]);
-    if (m->skinned) {
-        move_skinned(noh_stage_character(d->k, d->k->order[place]), &m->skin, p, at);
-    } else if (m->node_world) {
-        move_point(m->node_world, p, at);
-    } else {
-        memcpy(at, p, sizeof at);
-    }
-    move_point(world, at, p);
-    for (int i = 0; i < 3; i++) square += (p[i] - eye[i]) * (p[i] - eye[i]);
-    return square;
-}
-
-/* Draw one actor's meshes of a priority. At equal distance the first in the pack is drawn first. */
-static void draw_sorted(const drawing *d, const uint8_t *meshes, uint32_t count, uint32_t place, uint32_t run)
-{
-    float distances[NOH_STAGE_MESHES_MAX];
-    uint8_t sorted[NOH_STAGE_MESHES_MAX];
-    for (uint32_t i = 0; i < count; i++) {
-        const float distance = distance_of(d, meshes[i], place);
-        uint32_t at = i;
-        for (; at && distances[at - 1u] < distance; at--) {
-            distances[at] = distances[at - 1u];
-            sorted[at] = sorted[at - 1u];
-        }
-        distances[at] = distance;
-        sorted[at] = meshes[i];
-    }
-    for (uint32_t i = 0; i < count; i++) {
-        if (!shows(d, sorted[i], place)) continue;
-        if (run == NOH_NONE) {
-            draw_fading(d, sorted[i], place);
-        } else {
-            draw_together(d, sorted[i], run, place, 1);
-        }
-    }
-}
-
-static void draw_meshes(const drawing *d, const uint8_t *meshes, uint32_t count)
-{
-    const uint32_t runs = noh_stage_run_count(d->k);
-    for (uint32_t run = 0; run < runs; run++) {
-        if (count == 1u) {
-            draw_run(d, meshes[0], run);
-            continue;
-        }
-        for (uint32_t p = d->k->runs[run]; p < d->k->runs[run + 1u]; p++) {
-            if (is_seen(d, p)) draw_sorted(d, meshes, count, p, run);
-        }
-    }
-    for (uint32_t p = d->k->runs[runs]; p < d->k->runs[runs + 1u]; p++) {
-        if (is_seen(d, p)) draw_sorted(d, meshes, count, p, NOH_NONE);
-    }
-}
-
-/* Draw by priority, and within a priority each actor's meshes from far to near. A priority with one mesh is drawn for
- * all actors of a run at once. */
-static void draw_blended(const drawing *d)
-{
-    int priority = -NOH_PRIORITY_ANY;
-    for (;;) {
-        uint8_t meshes[NOH_STAGE_MESHES_MAX];
-        uint32_t count = 0;
-        int next = NOH_PRIORITY_ANY;
-        for (uint32_t m = 0; m < d->k->plan->mesh_count; m++) {
-            const int p = noh_gl_next_priority(&d->on_gl->items[m].model->mesh.mesh, priority);
-            if (p > next || p == NOH_PRIORITY_ANY) continue;
-            if (p < next) count = 0;
-            next = p;
-            meshes[count++] = (uint8_t)m;
-        }
-        if (!count) break;
-        noh_gl_draw_priority(d->renderer, next);
-        draw_meshes(d, meshes, count);
-        priority = next;
-    }
-    noh_gl_draw_priority(d->renderer, NOH_PRIORITY_ANY);
-}
-
-static void draw_kind(const drawing *d)
-{
-    const uint32_t runs = noh_stage_run_count(d->k);
-    for (uint32_t m = 0; m < d->k->plan->mesh_count; m++) {
-        for (uint32_t run = 0; run < runs; run++) draw_run(d, m, run);
-        for (uint32_t p = d->k->runs[runs]; p < d->k->runs[runs + 1u]; p++) {
-            if (shows(d, m, p)) draw_fading(d, m, p);
-        }
-    }
+    for (uint32_t i = 0; i < of->count; i++) draw_alone(d, of->mesh, of->first + i, of->level, of->from, of->to);
 }
 
 static void draw_pass(drawing *d, int pass)
 {
+    const noh_stage_pass p = { d->s, d->view, pass == NOH_DRAW_BLENDED, d->renderer->fades, draw_one, d };
     d->pass = pass;
-    for (uint32_t i = 0; i < d->s->desc.kind_count; i++) {
-        d->k = &d->s->kinds[i];
-        d->on_gl = &d->gl->kinds[i];
-        if (pass == NOH_DRAW_BLENDED) {
-            draw_blended(d);
-        } else {
-            draw_kind(d);
-        }
-    }
+    noh_stage_draw_pass(&p);
+    noh_gl_draw_priority(d->renderer, NOH_PRIORITY_ANY);
 }
 
 /* Check that a view can be drawn. */
@@ -362,6 +183,9 @@ static void begin_draw(drawing *d, const noh_stage *stage, noh_gl_renderer *rend
         noh_gl_renderer_light(renderer, d->gl->light, near_by);
     }
     noh_gl_draw_begin(renderer, &camera);
+    if (!stage->desc.motion) return;
+    noh_gl_motion_view(stage, view, d->before.view_projection);
+    noh_gl_draw_before(renderer, &d->before);
 }
 
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error)
@@ -416,21 +240,22 @@ uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index)
     return alone->drawing.k->meshes[index].item.mesh;
 }
 
-uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_gl_share shares[2])
+uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_stage_part shares[2])
 {
-    return shares_of(&alone->drawing, index, alone->place, shares);
+    const drawing *d = &alone->drawing;
+    return noh_stage_parts_of(d->k, shown_at(d, alone->place), index, d->renderer->fades, shares);
 }
 
 noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t level)
 {
     const drawing *d = &alone->drawing;
     size_t first;
-    return noh_gl_mesh_lod(&d->on_gl->items[index].model->mesh, mesh_level(d, index, level), &first);
+    return noh_gl_mesh_lod(&d->on_gl->items[index].model->mesh, noh_stage_mesh_level(d->k, index, level), &first);
 }
 
-void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share)
+void noh_gl_draw_alone(noh_gl_alone *alone, uint32_t index, const noh_stage_part *share)
 {
-    if (!shows(&alone->drawing, index, alone->place)) return;
+    if (actor_at(&alone->drawing, alone->place)->look.hidden_meshes >> index & 1u) return;
     draw_alone(&alone->drawing, index, alone->place, share->level, share->from, share->to);
 }
 

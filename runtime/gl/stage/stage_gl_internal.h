@@ -2,7 +2,9 @@
 #ifndef NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 #define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 
+#include "stage/actors/stage_draws_internal.h"
 #include "stage/cast/stage_internal.h"
+#include "gl/draw/gl_draw_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
@@ -17,6 +19,7 @@
 typedef struct noh_gl_model {
     noh_gl_mesh mesh;
     noh_gl_morph *morph; /* NULL: no targets */
+    uint8_t *sides;      /* [tiles of morph / 2] with motion: NOH_SIDE_* of each pair of tiles; else NULL */
     uint32_t part_count; /* meshes of its desc */
     uint32_t load_kind;  /* noh_stage_kind.finer.kind where finer levels come later; else NOH_NONE, and the rest is 0 */
     uint32_t mesh_index; /* in the packs */
@@ -32,17 +35,7 @@ typedef struct noh_gl_item {
     noh_gl_model *model;
     uint32_t first_pool; /* of the kind's pools, among the meshes of model->morph */
     noh_gl_skin *skin;
-    int mirrored; /* its node mirrors: a crowd cannot be drawn */
 } noh_gl_item;
-
-/* Whether an actor's item is mirrored, by its node or by the joint that the actor is attached to. A mirrored item is
- * drawn alone, because one draw has one winding. Places of their own never mirror. */
-static inline int noh_gl_is_mirrored(const noh_gl_item *item, const noh_stage_actor *actor,
-                                     const noh_stage_shown *shown)
-{
-    float rows[12];
-    return item->mirrored || (actor->parent && noh_gl_normal_rows(shown->world, rows) < 0.0f);
-}
 
 /* Whether an actor has a slot, and the mesh targets: 0: it is drawn without them. */
 static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown *shown)
@@ -53,10 +46,24 @@ static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown
 /* 0: all weights are 0, so the mesh is not morphed and its vertices need not look up deltas. */
 int noh_gl_any_weight(const float *weights, uint32_t count);
 
-/* The instance of model->morph that an actor's slot is. */
+/* With motion a slot is a pair of tiles: one has the present sums, the other the sums before the last change. */
+#define NOH_SIDE_SECOND 1u  /* the second one has the present sums */
+#define NOH_SIDE_CHANGED 2u /* the last frame showed the sums of the other one */
+
+/* The instance of model->morph that an actor's slot is. before: of the last frame */
+static inline uint32_t noh_gl_tile_of(const noh_gl_item *item, const noh_stage_shown *shown, int before)
+{
+    const uint8_t *sides = item->model->sides;
+    const uint32_t tiles = sides ? 2u : 1u;
+    const uint32_t tile = noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool,
+                                                tiles * shown->slot.slot);
+    const unsigned side = sides ? sides[tile / 2u] : 0u;
+    return tile + ((side & NOH_SIDE_SECOND) ^ (before && side & NOH_SIDE_CHANGED ? 1u : 0u));
+}
+
 static inline uint32_t noh_gl_item_tile(const noh_gl_item *item, const noh_stage_shown *shown)
 {
-    return noh_gl_morph_instance(item->model->morph, item->first_pool + shown->slot.pool, shown->slot.slot);
+    return noh_gl_tile_of(item, shown, 0);
 }
 
 /* The triangles that a set of garments leaves of a kind's meshes (stage_cover.c). */
@@ -66,7 +73,26 @@ typedef struct noh_gl_cover {
     noh_gl_buffer *indices; /* [mesh_count] none where no garment hides anything */
 } noh_gl_cover;
 
+/* An actor in the last frame that it was seen in, with motion (stage_motion.c). */
+typedef struct noh_gl_last {
+    uint32_t frame, place, hidden_meshes;
+    noh_lod_slot slot;
+    float world[12];
+    /* of the frame that is shown: */
+    uint32_t known;         /* bit i: what mesh i showed in the frame before is known */
+    int same_slot;          /* its tiles are the same */
+    float world_before[12]; /* less this frame's origin */
+} noh_gl_last;
+
+/* Views of a frame. */
+typedef struct noh_gl_views {
+    double origin[3]; /* what they are relative to, and all shifts of it */
+    uint32_t count;
+    float view_projection[NOH_STAGE_VIEWS_MAX][16];
+} noh_gl_views;
+
 typedef struct noh_gl_kind {
+    noh_gl_last *last;        /* [actor_count] with motion; else NULL */
     noh_gl_cover *covers;     /* [cover_count] */
     noh_gl_item *items;       /* [mesh_count] */
     noh_gl_texture *pictures; /* [1 + texture_set_count][textures of the pack]: those that others own, too */
@@ -83,6 +109,7 @@ typedef struct noh_stage_gl {
     size_t variants_bytes; /* of any renderer of all meshes */
     noh_gl_light *light;   /* NULL: none */
     const noh_lighting *lighting;
+    noh_gl_views *views;        /* [2] with motion: of the frame that is shown, and of the one before; else NULL */
     noh_lighting lighting_less; /* `lighting`, its shadow's matrix less the origin of what is drawn */
 } noh_stage_gl;
 
@@ -99,7 +126,26 @@ typedef struct noh_gl_drawing {
     noh_gl_renderer *renderer;
     uint32_t view;
     int pass;
+    noh_gl_before before; /* with motion */
 } noh_gl_drawing;
+
+/* ---- the last frame (stage_motion.c), all of it only with motion ---- */
+
+/* In a job, once an actor's matrices of now are written: its palettes of the last frame. Returns whether a row changed.
+ */
+int noh_gl_motion_pose(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
+/* Before the uploads of a frame; for one mesh of an actor, after its weights were set; after all. */
+void noh_gl_motion_begin(const noh_stage *s);
+void noh_gl_motion_upload(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t mesh);
+void noh_gl_motion_end(const noh_stage *s);
+/* Choose the tile of a pair that new weights go to. */
+void noh_gl_motion_turn(const noh_gl_item *item, const noh_stage_shown *shown, const float *weights, uint32_t count);
+/* World matrix and deltas of an actor's mesh in the last frame; where it is not known, of now. Returns 0 without
+ * deltas: *morph is then not written. */
+int noh_gl_motion_of(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t mesh, float world[12],
+                     noh_gl_morph_binding *morph);
+/* The view projection of the last frame's view, for positions of now. */
+void noh_gl_motion_view(const noh_stage *s, uint32_t view, float view_projection[16]);
 
 /* A lighting whose shadow's matrix takes positions less `origin`. */
 void noh_gl_lighting_less(const noh_lighting *lighting, const float origin[3], noh_lighting *out);
@@ -112,18 +158,12 @@ typedef struct noh_gl_alone {
 } noh_gl_alone;
 noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer, uint32_t view, noh_actor actor,
                               noh_gl_alone *alone, noh_error *error);
-/* A level of an actor, and its share of the pixels (noh_gl_lod). */
-typedef struct noh_gl_share {
-    uint32_t level;
-    float from, to;
-} noh_gl_share;
-
 /* The index-th mesh: its number in the pack; the levels that it shows, 1, or 2 while it fades; the mesh at one of the
  * actor's levels, as it is drawn; drawn, with whatever render state was set since. */
 uint32_t noh_gl_alone_mesh(const noh_gl_alone *alone, uint32_t index);
-uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_gl_share shares[2]);
+uint32_t noh_gl_alone_shares(const noh_gl_alone *alone, uint32_t index, noh_stage_part shares[2]);
 noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t level);
-void noh_gl_draw_alone(const noh_gl_alone *alone, uint32_t index, const noh_gl_share *share);
+void noh_gl_draw_alone(noh_gl_alone *alone, uint32_t index, const noh_stage_part *share);
 
 /* Kinds of one actor are drawn by the programs of single instances. */
 static inline int noh_gl_is_crowd(const noh_stage_kind *kind)

@@ -111,7 +111,7 @@ static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, no
     for (uint32_t i = 0; i < count; i++) {
         NOH_ASSERT(out->count < NOH_MODEL_POOLS_MAX);
         out->meshes[out->count] = noh_mesh_at_lod(&mesh, k->levels[levels[i]].mesh_levels[site.item]);
-        out->counts[out->count++] = slots[i];
+        out->counts[out->count++] = desc->motion ? 2u * slots[i] : slots[i]; /* stage_motion.c */
     }
 }
 
@@ -119,7 +119,7 @@ static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, no
 static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
-    int takes = !desc->morph_sums && desc->halves <= 0;
+    int takes = !desc->morph_sums && !desc->motion && desc->halves <= 0;
     while (takes && noh_gl_next_site(plan, desc->kind_count, &site)) {
         const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
         noh_mesh coarse;

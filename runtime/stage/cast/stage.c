@@ -74,6 +74,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->actors = b->actors;
     s->shown = b->shown;
     s->todo = b->todo;
+    s->by_distance = b->by_distance;
     s->events = b->events;
     s->jobs = b->jobs;
     s->scratch_bytes = b->scratch_bytes;

@@ -290,6 +290,7 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     b->kind_descs = CARVE(arena, filled->kind_count, noh_kind_desc);
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
+    b->by_distance = CARVE(arena, filled->sort_blended ? most->actors : 0, noh_stage_far);
     b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);
     b->pick_bytes = most->pick_bytes;
     b->pick_scratch = noh_arena_carve(arena, most->pick_bytes, 16);

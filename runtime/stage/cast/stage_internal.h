@@ -258,6 +258,12 @@ typedef struct noh_stage_job_part {
     float error_pixels;
 } noh_stage_job_part;
 
+/* An actor of a blended pass. */
+typedef struct noh_stage_far {
+    float distance; /* squared */
+    uint32_t actor;
+} noh_stage_far;
+
 typedef enum noh_stage_phase {
     NOH_STAGE_IDLE = 0,
     NOH_STAGE_STEPPING,
@@ -304,6 +310,7 @@ struct noh_stage {
     int source_begun;                      /* by a callback of this step */
     noh_stage_event_fn on_key;
     void *on_key_user;
+    noh_stage_far *by_distance; /* [actor_count] with desc.sort_blended: while a pass is sorted */
     noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
     float origin[3];                           /* of the last frame: noh_view_origin */
     double shifted[3];                         /* by all noh_stage_shift_origin so far */
@@ -416,6 +423,7 @@ typedef struct noh_stage_blocks {
     noh_stage_actor *actors;
     noh_stage_shown *shown;
     uint32_t *todo;
+    noh_stage_far *by_distance;
     noh_stage_event *events;
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */

@@ -164,8 +164,8 @@ static void show(noh_stage *s, noh_stage_job_part *job, noh_stage_kind *k, uint3
     if (!a->parent && noh_stage_turns(k)) noh_stage_own_matrix(s, k, a, shown->world);
     if (!a->parent && shown->updates) noh_stage_measure_shown(s, k, i, job->matrices);
     take_weights(s, k, a, ch, k->floats + (size_t)i * k->float_count, k->weights + (size_t)i * k->weight_count);
+    if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes; sees when it was shown last */
     shown->frame = s->frame;
-    if (s->gpu && shown->views) s->desc.gpu->pose(s, k, i, job->matrices); /* palettes */
     error_pixels = a->parent ? 0.0f : noh_stage_error_pixels(s, k, i);
     if (error_pixels > job->error_pixels) job->error_pixels = error_pixels;
 }

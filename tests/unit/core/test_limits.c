@@ -435,7 +435,7 @@ static void plans_of_instances(void **state)
     (void)state;
     for (int path = 0; path < NOH_MORPH_PATH_COUNT; path++) {
         noh_gl_morph_desc morph = { .meshes = meshes, .mesh_count = 2, .path = (noh_morph_path)path };
-        noh_gl_skin_desc skin = { meshes, 2, NULL, path % 2 ? NOH_PALETTE_TEXTURE : NOH_PALETTE_AUTO, 0 };
+        noh_gl_skin_desc skin = { meshes, 2, NULL, path % 2 ? NOH_PALETTE_TEXTURE : NOH_PALETTE_AUTO, 0, 0 };
         noh_gl_morph_plan plan;
         noh_gl_skin_plan skin_plan;
         noh_error error = { NOH_OK, NULL, 0, 0 };

@@ -220,7 +220,7 @@ static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, 
             (void)noh_gl_morph_set_weights(morph, tile, weights, NULL);
             binding = noh_gl_morph_binding_of(morph, tile);
         }
-        if (!item->mirrored) {
+        if (!noh_stage_is_mirrored(mesh, &h->kind->actors[0], &h->of->stage->shown[0])) {
             (void)noh_gl_skin_set_place(item->skin, at->place, placed, moved ? &binding : NULL, NULL);
         }
         if (mesh->skinned) {

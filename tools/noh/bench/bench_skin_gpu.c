@@ -122,7 +122,7 @@ static int open_set(skin_bench *b, skin_set *s, noh_palette_mode mode)
     static const float world[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
     const uint32_t instances = INSTANCES;
     gpu *g = &b->job->g;
-    noh_gl_skin_desc desc = { &b->mesh, 1, &instances, NOH_PALETTE_AUTO, 0 };
+    noh_gl_skin_desc desc = { &b->mesh, 1, &instances, NOH_PALETTE_AUTO, 0, 0 };
     noh_gl_skin_plan plan;
     noh_error error = { NOH_OK, "", 0, 0 };
     desc.mode = mode;

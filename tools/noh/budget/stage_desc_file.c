@@ -312,6 +312,8 @@ static const setting settings[] = {
     { "height_px", SET_COUNT, 0, 0, offsetof(noh_stage_desc, height_px), 1, 65536 },
     { "jobs", SET_COUNT, 0, 0, offsetof(noh_stage_desc, job_count), 1, NOH_STAGE_JOBS_MAX },
     { "halves", SET_FLAG, 0, 0, offsetof(noh_stage_desc, halves), 0, 1 },
+    { "motion", SET_FLAG, 0, 0, offsetof(noh_stage_desc, motion), 0, 1 },
+    { "sort_blended", SET_FLAG, 0, 0, offsetof(noh_stage_desc, sort_blended), 0, 1 },
     { "mesh", SET_MESH, 1, 0, 0, 0, 0 },
     { "clips", SET_CLIPS, 1, 1, 0, 0, 0 },
     { "actor_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, actor_count), 1, NOH_STAGE_ACTORS_MAX },

@@ -228,6 +228,8 @@ const char *const help_formats_text[] = {
     "   height_px N                                 picture height, 1 to 65536 (1080)",
     "   jobs N                                      parallel jobs per frame, 1 to 64 (1)",
     "   halves 0|1                                  16-bit accumulation texels",
+    "   motion 0|1                                  shaders see the last frame: motion vectors (0)",
+    "   sort_blended 0|1                            blended meshes of all actors from far to near (0)",
     "   kind NAME                                   begins a kind of character; then:",
     "     mesh PATH                                   its pack",
     "     clips PATH                                  a pack of clips instead of mesh's own clips; may repeat",

@@ -292,7 +292,7 @@ static int check_meshes(job *j, const noh_gl_mesh *gl_meshes)
 int verify_skin_run(gpu *g, const pack_file *file, const noh_mesh *meshes, const noh_gl_mesh *gl_meshes,
                     noh_palette_mode mode, uint64_t *state, verify_skin *out)
 {
-    noh_gl_skin_desc desc = { meshes, file->pack.runs[NOH_CHUNK_MESH].count, NULL, NOH_PALETTE_AUTO, 0 };
+    noh_gl_skin_desc desc = { meshes, file->pack.runs[NOH_CHUNK_MESH].count, NULL, NOH_PALETTE_AUTO, 0, 0 };
     noh_gl_skin_plan plan;
     noh_error error = { NOH_OK, "", 0, 0 };
     uint64_t before = noh_gl_ledger_bytes(&g->ledger);
