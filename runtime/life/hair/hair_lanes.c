@@ -15,6 +15,9 @@
 #define SPEED_MAX 20.0f /* metres per second; exceeded only after a teleport without reset */
 #define PASSES 4        /* over spheres that overlap */
 #define GUST_STEPS 24u  /* between values of the noise: 0.4 s */
+#define BEND 0.1f       /* the least cosine of two consecutive segments is less than at rest by this */
+#define LEAN_ROOT 0.98f /* the least cosine of a segment and itself at rest, at the root */
+#define LEAN_TIP 2.3f   /* less by this at the tip, which may point anywhere */
 #define ROW 10u         /* floats per point */
 NOH_STATIC_ASSERT(sizeof(noh_hair_point) == ROW * sizeof(float), point_row);
 
@@ -179,6 +182,17 @@ NOH_ALWAYS_INLINE lane3 follow(const obstacles *o, lane3 head, lanes length, lan
     return lane3_madd(head, length, direction);
 }
 
+/* A point whose segment leans farther from an axis than this cosine is put on the cone about it. */
+NOH_ALWAYS_INLINE lane3 within_cone(lane3 head, lanes length, lane3 axis, lanes least, lane3 p)
+{
+    const lane3 direction = unit_or(lane3_sub(p, head), axis);
+    const lanes cosine = lane3_dot(direction, axis), outside = lanes_less(cosine, least);
+    if (!lanes_any(outside)) return p;
+    const lane3 side = unit_or(lane3_madd(direction, lanes_negate(cosine), axis), direction);
+    const lanes sine = lanes_sqrt(lanes_max(lanes_sub(lanes_set(1.0f), lanes_mul(least, least)), lanes_set(0.0f)));
+    return lane3_choose(outside, lane3_madd(head, length, lane3_madd(lane3_scale(axis, least), sine, side)), p);
+}
+
 /* ---- gusts ---- */
 
 static uint32_t scramble(uint32_t x)
@@ -240,6 +254,7 @@ static void step_group(const group *g, noh_hair *h, const noh_hair_desc *d, cons
     const lane3 push = lane3_scale(force_on(g, h, d, m), seconds), moved = lane3_set(m->moved);
     noh_hair_point *points = noh_hair_points_of(h);
     lanes row[ROW], last[ROW];
+    lane3 rest_before = load_roots(g, d->rest), shape_before = lane3_set(m->gravity), previous = shape_before;
     obstacles o;
     find_obstacles(g, d, &o);
     load_points(g, points, 0, last);
@@ -249,13 +264,24 @@ static void step_group(const group *g, noh_hair *h, const noh_hair_desc *d, cons
         const lane3 now = lane3_of(row), stood = lane3_add(moved, turned_by(m, now));
         const lane3 velocity = lane3_madd(push, lanes_set(m->keep), turned_by(m, lane3_of(row + 6)));
         const lane3 goal = lane3_madd(stood, seconds, velocity);
-        const lane3 free_at = lane3_madd(goal, lanes_set(pull), lane3_sub(load_rest(g, d->rest, i), goal));
-        const lane3 to = follow(&o, lane3_of(last), row[9], free_at);
+        const lane3 rest = load_rest(g, d->rest, i);
+        const lane3 free_at = lane3_madd(goal, lanes_set(pull), lane3_sub(rest, goal));
+        const lanes inverse = lanes_div(lanes_set(1.0f), row[9]);
+        const lane3 shape = lane3_scale(lane3_sub(rest, rest_before), inverse);
+        if (i == 1u) previous = shape_before = shape;
+        const lanes least = lanes_max(lanes_sub(lane3_dot(shape, shape_before), lanes_set(BEND)), lanes_set(-1.0f));
+        const lanes lean = lanes_set(LEAN_ROOT - t * t * LEAN_TIP);
+        const lane3 combed = within_cone(lane3_of(last), row[9], shape, lean, free_at);
+        const lane3 bent = within_cone(lane3_of(last), row[9], previous, least, combed);
+        const lane3 to = follow(&o, lane3_of(last), row[9], bent);
+        previous = lane3_scale(lane3_sub(to, lane3_of(last)), inverse);
+        shape_before = shape;
+        rest_before = rest;
         put3(row, to);
         put3(row + 3, now);
         put3(row + 6, lane3_scale(lane3_sub(to, stood), per_second));
         if (i > 1u) {
-            const lane3 correction = lane3_sub(to, free_at);
+            const lane3 correction = lane3_sub(to, bent);
             const lanes share = lanes_set(-FOLLOW / NOH_HAIR_STEP_SECONDS);
             put3(last + 6, limited(lane3_madd(lane3_of(last + 6), share, correction)));
             store_points(g, last, points, i - 1u);
