@@ -52,4 +52,16 @@ noh speak hello --face "$puppet" -o line.noh
         check "${verb%% *} of a clip that moves no joints shows the face" cmp said.png said_face.png
     done
 }
+
+# A body whose face is a square of 0.2 at a height of 1.5, with hair as high as 0.8 of it: of a drawn figure.
+quads='f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n'
+rest='v -.2 0 0\nv .2 0 0\nv .2 1.5 0\nv -.2 1.5 0\nv -.1 1.7 0\nv .1 1.7 0\nv .1 1.86 0\nv -.1 1.86 0\n'
+mkdir shapes
+printf "v -.1 1.5 0\nv .1 1.5 0\nv .1 1.7 0\nv -.1 1.7 0\n$rest$quads" >tall.obj
+printf "v -.1 1.5 .01\nv .1 1.5 .01\nv .1 1.7 .01\nv -.1 1.7 .01\n$rest$quads" >shapes/smile.obj
+noh build tall.obj --targets shapes -o tall.noh
+noh render tall.noh -o tall.png --size 64x64 --camera face,0,0 --json
+expect 0 'a face below high hair'
+height=$(sed -n '/"eye"/{n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between 1.476 and 1.86
+check 'its frame has all of the hair' awk "BEGIN { exit !($height > 1.667 && $height < 1.669) }"
 finish
