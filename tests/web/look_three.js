@@ -3,6 +3,7 @@
 // eyes, the brightest lamp of the panorama as a light with a soft shadow. look.js waits for window.look.
 import * as THREE from 'three';
 import { GLTFLoader } from 'three/loaders/GLTFLoader.js';
+import { MeshoptDecoder } from 'three/libs/meshopt_decoder.module.js';
 import { HDRLoader } from 'three/loaders/HDRLoader.js';
 
 const query = new URLSearchParams(window.location.search), side = Number(query.get('side'));
@@ -62,7 +63,7 @@ function setUp() {
     renderer.toneMapping = THREE.NeutralToneMapping;
     renderer.shadowMap.enabled = true;
     async function open(address) {
-        const { scene: model } = await new GLTFLoader().loadAsync(address);
+        const { scene: model } = await new GLTFLoader().setMeshoptDecoder(MeshoptDecoder).loadAsync(address);
         scene = new THREE.Scene().add(model);
         meshes = [];
         model.updateMatrixWorld(true);

@@ -16,6 +16,7 @@ function orbitOf({ eye, forward }, middle) {
 async function setUp() {
     const { ModelViewerElement } = await import('/viewer/dist/model-viewer.min.js');
     ModelViewerElement.minimumRenderScale = 1;
+    ModelViewerElement.meshoptDecoderLocation = 'data:text/javascript,'; // the bundle has the decoder
     const viewer = document.createElement('model-viewer');
     const set = (attributes) => Object.entries(attributes).forEach(([name, value]) => viewer.setAttribute(name, value));
     const once = (event) => new Promise((resolve, reject) => {
