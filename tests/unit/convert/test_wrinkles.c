@@ -301,6 +301,24 @@ static void targets_that_compress_nothing_are_tied_to_no_region(void **state)
     model_free(m);
 }
 
+static void eyes_teeth_and_toons_have_none(void **state)
+{
+    static const uint32_t surfaces[] = { NOH_SURFACE_PLAIN, NOH_SURFACE_SKIN, NOH_SURFACE_EYE, NOH_SURFACE_TEETH,
+                                         NOH_SURFACE_TOON };
+    const sheet_target squeezed = { "squeeze", squeeze_left };
+    const wrinkle_settings settings = { .automatic = 1, .size = 64 };
+    (void)state;
+    for (uint32_t i = 0; i < sizeof surfaces / sizeof surfaces[0]; ++i) {
+        model *m = wrinkle_sheet_make(&squeezed, 1);
+        model_error error = { "", "" };
+        m->materials[0].surface = surfaces[i];
+        assert_int_equal(wrinkles_make(m, &settings, &error), i > 1);
+        assert_int_equal(m->meshes[0].wrinkles != NULL, i < 2);
+        if (i > 1) assert_non_null(strstr(error.what, "no eye, teeth or toon"));
+        model_free(m);
+    }
+}
+
 /* ---- edges of textures ---- */
 
 /* A vertex at u = 1 reads the right edge of a mask and not the left one, in whichever tile the coordinates are; a part
@@ -730,6 +748,7 @@ int main(void)
         cmocka_unit_test(regions_follow_targets),
         cmocka_unit_test(a_painted_mask_gets_its_matrix),
         cmocka_unit_test(targets_that_compress_nothing_are_tied_to_no_region),
+        cmocka_unit_test(eyes_teeth_and_toons_have_none),
         cmocka_unit_test(masks_end_at_their_edges),
         cmocka_unit_test(masks_are_kept_for_pixels),
         cmocka_unit_test(mirrored_coordinates_take_painted_files),

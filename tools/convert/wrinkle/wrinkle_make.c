@@ -47,11 +47,12 @@ static int out_of_memory(model_error *error)
 
 /* ---- which surface ---- */
 
-/* Cards of hair and lashes, unlit materials and toons have no creases. */
+/* Cards of hair and lashes, unlit materials, toons, eyes and teeth have no creases. */
 static int can_wrinkle(const model *m, uint32_t material)
 {
-    return material != MODEL_NONE && m->materials[material].alpha == MODEL_ALPHA_OPAQUE &&
-           !m->materials[material].unlit && m->materials[material].surface != NOH_SURFACE_TOON;
+    const model_material *of = material != MODEL_NONE ? &m->materials[material] : NULL;
+    return of && of->alpha == MODEL_ALPHA_OPAQUE && !of->unlit &&
+           (of->surface == NOH_SURFACE_PLAIN || of->surface == NOH_SURFACE_SKIN);
 }
 
 static double area_of(const wrinkle_field *f)
@@ -101,7 +102,7 @@ static const char *objection(const model_mesh *mesh, const wrinkle_field *f)
     if (!mesh->target_count) return "it has no morph targets";
     if (!mesh->uv) return "it has no texture coordinates: unwrap it first";
     if (!mesh->tangent) return "it has no tangents";
-    if (!f->triangle_count) return "no target compresses one of its opaque, lit materials";
+    if (!f->triangle_count) return "no target compresses an opaque, lit material that is no eye, teeth or toon";
     return NULL;
 }
 
