@@ -1,4 +1,5 @@
-/* test_gl_mirror.c: an actor attached to a joint that mirrors is drawn alike among many of its kind and alone. */
+/* test_gl_mirror.c: an actor attached to a joint that mirrors is drawn alike among many of its kind and alone, opaque or
+ * with several blended meshes. */
 #include "support/clip_bank_fixture.h"
 #include "support/gl_fixture.h"
 #include "support/octahedra.h"
@@ -55,7 +56,15 @@ static void draw_pair(gpu *g, const noh_pack packs[2], uint32_t of_kind, uint32_
     free(memory);
 }
 
-static void what_hangs_on_a_mirror_is_drawn_in_a_crowd(void **state)
+static const char opaque_held[] = ",\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{\"primitives\":["
+                                  "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":5}]}]";
+static const char blended_held[] =
+    ",\"nodes\":[{\"mesh\":0},{\"mesh\":1,\"translation\":[0.0,0.7,0.4]}],\"scenes\":[{\"nodes\":[0,1]}],\"materials\":["
+    "{\"alphaMode\":\"BLEND\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[1,0.1,0.1,0.5]}}],\"meshes\":["
+    "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":5,\"material\":0}]},"
+    "{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":5,\"material\":0}]}]";
+
+static void check_held(const char *held_json)
 {
     static octahedra o;
     static uint32_t alone[SIDE * SIDE], in_crowd[SIDE * SIDE];
@@ -63,7 +72,6 @@ static void what_hangs_on_a_mirror_is_drawn_in_a_crowd(void **state)
     uint8_t *bytes[2];
     noh_pack packs[2];
     uint32_t drawn = 0;
-    (void)state;
     gpu *g = fixture_gpu();
     octahedra_make(&o, upright);
     packs[0] = pack_of(&o, "holder",
@@ -72,10 +80,7 @@ static void what_hangs_on_a_mirror_is_drawn_in_a_crowd(void **state)
                        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,\"NORMAL\":1,\"JOINTS_0\":3,"
                        "\"WEIGHTS_0\":4},\"indices\":5}]}]",
                        &bytes[0]);
-    packs[1] = pack_of(&o, "held",
-                       ",\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0]}],\"meshes\":[{\"primitives\":["
-                       "{\"attributes\":{\"POSITION\":0,\"NORMAL\":1},\"indices\":5}]}]",
-                       &bytes[1]);
+    packs[1] = pack_of(&o, "held", held_json, &bytes[1]);
     draw_pair(g, packs, 1, alone);
     draw_pair(g, packs, 3, in_crowd);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) drawn += alone[i] != alone[0];
@@ -86,8 +91,21 @@ static void what_hangs_on_a_mirror_is_drawn_in_a_crowd(void **state)
     fixture_expect_no_errors();
 }
 
+static void what_hangs_on_a_mirror_is_drawn_in_a_crowd(void **state)
+{
+    (void)state;
+    check_held(opaque_held);
+}
+
+static void so_is_what_blends(void **state)
+{
+    (void)state;
+    check_held(blended_held);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_hangs_on_a_mirror_is_drawn_in_a_crowd),
+    cmocka_unit_test(so_is_what_blends),
 };
 
 TEST_MAIN(tests, NULL, fixture_tear_down)
