@@ -222,6 +222,8 @@ static noh_result call_end(game *g, noh_error *error)
 static noh_result call_draw(game *g, noh_error *error)
 {
     const noh_pass pass = (noh_pass)below(g, 4);
+    noh_draw draws[8];
+    (void)noh_stage_list_draws(g->c.stage, below(g, 4), pass == NOH_PASS_BLENDED, draws, 8);
     return noh_stage_draw(g->c.stage, pass, below(g, 4), NULL, error);
 }
 
@@ -345,6 +347,7 @@ static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int lose
     g->c.desc.slot_moves = 3;
     g->c.desc.job_count = 3;
     g->c.desc.morph_path = path;
+    g->c.desc.motion = g->c.desc.sort_blended = seed % 2u == 0;
     g->c.desc.gpu = &noh_stage_on_gl;
     device = (noh_gl_device){ &g->g.gl, &g->g.caps, &g->g.ledger, NULL, 0 };
     cast_make(&g->c, &device);
