@@ -47,11 +47,14 @@ async function first(browser) {
     await page.waitForFunction(() => /^loading: [1-9]\d? %$/.test(document.getElementById('progress-text').textContent));
     check('first: the share of what has come is a bar, too', await page.evaluate(() => { const { value, max } = document.getElementById('progress-bar'); return value > 0 && value < max; }));
     check('first: what does not work yet is disabled', await page.isDisabled('#greet') && await page.isDisabled('#more') && await page.evaluate(() => document.getElementById('controls').inert));
+    const place = () => page.locator('#greet').boundingBox(), before = await place();
     await page.screenshot({ path: path.join(out, 'greet_poster.png') });
     holds = false;
     release();
     await page.waitForFunction(() => window.noh.ready);
     check('first: then the character is there', await page.evaluate(() => document.getElementById('poster').classList.contains('gone')) && await page.isEnabled('#greet') && await page.isEnabled('#more'));
+    const after = await place();
+    check('first: the buttons stay where they were', before.x === after.x && before.y === after.y, JSON.stringify([before, after]));
     check('first: and no workbench', !await page.isVisible('#controls'));
     await whole(page);
     await page.screenshot({ path: path.join(out, 'greet_first.png') });
