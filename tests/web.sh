@@ -181,6 +181,6 @@ if [ "${NOH_LONG:-0}" = 1 ] && [ -f "$build/web/mask/index.html" ]; then # the c
     NOH_WEB_RATES=1 timeout -k 5 1500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
     count $? "$out/log.txt"
 fi
-[ "${NOH_LONG:-0}" != 1 ] || [ ! -f "$build/web/mask/index.html" ] || add tests/web_firefox.sh "$build/web/mask"
+[ "${NOH_LONG:-0}" != 1 ] || [ ! -f "$build/web/mask/index.html" ] || add tests/web_stock.sh "$build/web/mask"
 echo "$passed passed, $failed failed, 0 skipped"
 [ "$failed" = 0 ] && [ "$passed" != 0 ]

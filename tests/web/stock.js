@@ -1,16 +1,21 @@
-// firefox.js FOLDER FIREFOX OUT: the page and the element in a stock Firefox, which puppeteer drives by WebDriver BiDi: a
-// face is drawn, a weight changes the picture, a lost context comes back with the same picture, and nothing is complained
-// about. Needs a display: without one Firefox has no WebGL on a software rasteriser. Prints its checks as TAP.
+// stock.js FOLDER BROWSER OUT: the page and the element in a stock browser: Firefox, which puppeteer drives by WebDriver
+// BiDi, or MiniBrowser of WebKitGTK, by WebDriver (webdriver.js): a face is drawn, a weight changes the picture, a lost context
+// comes back with the same picture, and nothing is complained about (which WebDriver does not tell). Needs a display: without
+// one Firefox has no WebGL on a software rasteriser. Prints its checks as TAP.
 'use strict';
 const path = require('path');
 const { out, check, keep, same, run, address } = require('./harness.js');
 
 const patienceMs = 300000;
 
-const launch = (executablePath) => require('puppeteer-core').launch({
-    browser: 'firefox', executablePath, headless: false, protocolTimeout: patienceMs, timeout: patienceMs,
-    extraPrefsFirefox: { 'webgl.disabled': false, 'webgl.force-enabled': true },
-});
+const isWebKit = path.basename(process.argv[3]) === 'MiniBrowser', is = isWebKit ? 'webkit' : 'firefox';
+
+const launch = (executablePath) => (isWebKit
+    ? require('./webdriver.js').launch('WebKitWebDriver', { 'webkitgtk:browserOptions': { binary: executablePath, args: ['--automation'] }, timeouts: { script: patienceMs, pageLoad: patienceMs } })
+    : require('puppeteer-core').launch({
+        browser: 'firefox', executablePath, headless: false, protocolTimeout: patienceMs, timeout: patienceMs,
+        extraPrefsFirefox: { 'webgl.disabled': false, 'webgl.force-enabled': true },
+    }));
 
 async function open(browser, name) {
     const page = await browser.newPage();
@@ -24,7 +29,7 @@ async function open(browser, name) {
 }
 
 async function close(page, name) {
-    check(`${name}: Firefox reports no problem`, page.problems.length === 0, page.problems.join(' | '));
+    if (!isWebKit) check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
     await page.close();
 }
 
@@ -56,10 +61,10 @@ async function page(browser) {
     check('page: it loads', state.error === '', state.error);
     const share = await filled(shown, 'canvas');
     check('page: a face is drawn', share > 0.2 && share < 0.9, share);
-    await keep(shown, 'firefox_rest.png');
+    await keep(shown, `${is}_rest.png`);
     await drawn(shown, () => character.setWeight('smile', 1));
-    await keep(shown, 'firefox_smile.png');
-    check('page: a weight changes the picture', !same('firefox_rest.png', 'firefox_smile.png'));
+    await keep(shown, `${is}_smile.png`);
+    check('page: a weight changes the picture', !same(`${is}_rest.png`, `${is}_smile.png`));
     await shown.evaluate(() => {
         window.taken = canvas.getContext('webgl2').getExtension('WEBGL_lose_context');
         window.taken.loseContext();
@@ -68,14 +73,14 @@ async function page(browser) {
     await shown.evaluate(() => window.taken.restoreContext());
     await until(shown, () => window.noh.restored === 1);
     await drawn(shown, () => character.redraw());
-    await keep(shown, 'firefox_restored.png');
-    check('page: after a lost context it is the same picture', same('firefox_smile.png', 'firefox_restored.png'));
+    await keep(shown, `${is}_restored.png`);
+    check('page: after a lost context it is the same picture', same(`${is}_smile.png`, `${is}_restored.png`));
     await drawn(shown, () => character.releaseWeights());
-    await keep(shown, 'firefox_back.png');
-    check('page: and a weight that is let go goes back', same('firefox_rest.png', 'firefox_back.png'));
+    await keep(shown, `${is}_back.png`);
+    check('page: and a weight that is let go goes back', same(`${is}_rest.png`, `${is}_back.png`));
     check('page: no GL error', await shown.evaluate(() => Module._web_check()) === 0);
     check('page: its memory cannot grow', await shown.evaluate(() => { try { Module.memory.grow(1); return false; } catch { return true; } }));
-    await shown.screenshot({ path: path.join(out, 'firefox_page.png') });
+    await shown.screenshot({ path: path.join(out, `${is}_page.png`) });
     await close(shown, 'page');
 }
 
@@ -91,7 +96,7 @@ async function element(browser) {
     check('element: a face is drawn', share > 0.1 && share < 0.9, share);
     const blinks = await until(shown, () => document.getElementById('face').weight('eyeBlinkLeft') > 0.5).then(() => true, () => false);
     check('element: it blinks', blinks);
-    await shown.screenshot({ path: path.join(out, 'firefox_element.png') });
+    await shown.screenshot({ path: path.join(out, `${is}_element.png`) });
     await shown.evaluate(() => document.getElementById('face').remove());
     await until(shown, () => !document.querySelector('noh-character'));
     await close(shown, 'element');
