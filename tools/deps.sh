@@ -82,6 +82,7 @@ packages_long='?valgrind:memcheck
 ?libdrm-dev:their shims
 ?frama-c-base:proofs of the checkers
 ?firefox-esr:the page in a second browser
+?webkit2gtk-driver:the page in a third browser
 ?debhelper:Debian packages
 ?lintian:the check of Debian packages'
 packages_ear='libespeak-ng-dev:formants in every language

@@ -7,7 +7,7 @@ out=$1
 name=noh-character-$VERSION
 rm -rf "$out/package"
 mkdir -p "$out/package"
-cp "$2"/* "$3/noh.wasm" "$3/face.wasm" "$3/ear.bin" "$4" "$out/package"
+cp "$2"/* "$3/noh.wasm" "$3/body.wasm" "$3/face.wasm" "$3/ear.bin" "$4" "$out/package"
 sed "s/\"version\": \"[^\"]*\"/\"version\": \"$VERSION\", \"license\": \"MIT\"/" "$2/package.json" >"$out/package/package.json"
 if [ -f "$5/convert.wasm" ]; then
     mkdir "$out/package/convert"

@@ -137,6 +137,7 @@ static void describe(web_cast *cast)
     cast->desc.encode_srgb = 1; /* a canvas does not encode */
     cast->desc.without_depth = !cast->wants.lit;
     cast->desc.without_shader = cast->wants.elsewhere;
+    cast->desc.shading = cast->wants.shading;
     cast->desc.without_transfer = cast->wants.without_transfer;
     cast->desc.morph_path = (uint32_t)cast->wants.path;
 }

@@ -24,6 +24,7 @@ typedef struct web_wants {
     int without_transfer; /* 1: ignore precomputed light of vertices */
     int elsewhere;        /* 1: another renderer draws: no shaders, light or hair of noh */
     int64_t held_ticks;   /* for which figures that stand were held still */
+    noh_shading shading;
 } web_wants;
 
 /* A kind that stands without a clip. */
@@ -66,7 +67,7 @@ noh_result web_cast_plan(web_cast *cast, const noh_pack *pack, const web_wants *
                          size_t scratch_bytes, const noh_gl_caps *caps, noh_error *error);
 size_t web_cast_scratch(const noh_pack *pack);
 
-/* Parts of a plan; the program of faces has none of them (face_only.c).
+/* Parts of a plan; body.wasm and face.wasm have not all of them (without_falls.c, face_only.c).
  * springs  of a kind that is alive
  * stand    to each humanoid of a pack whose clips move no joint
  * hair     to the first kind with the joint that carries it

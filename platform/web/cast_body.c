@@ -1,4 +1,4 @@
-/* cast_body.c: the parts of a stage that bodies and hair need. The program of faces has face_only.c instead. */
+/* cast_body.c: the parts of a stage that bodies and hair need. face.wasm has face_only.c instead. */
 #include "cast.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
@@ -64,14 +64,4 @@ noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *er
     cast->heads_bytes = (noh_actor_hair_size(hair) + 15u) / 16u * 16u;
     cast->has_hair = 1;
     return NOH_OK;
-}
-
-void web_cast_add_fall(web_cast *cast)
-{
-    static const noh_plane floor_plane = { { 0.0f, 1.0f, 0.0f }, 0.0f };
-    static const noh_world ground = { .planes = &floor_plane, .plane_count = 1, .friction = 0.6f };
-    static const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
-    static noh_ragdoll_rig rig;
-    (void)noh_kind_can_fall(&cast->kinds[0], &rig, &cast->cannot_fall);
-    if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
 }

@@ -1,5 +1,5 @@
-/* face_only.c: stands in for cast_body.c, push.c, hair.c and vertices.c in the program of faces, face.wasm, which is
- * smaller: figures do not fall, bodies keep the bind pose, and hair and springs of a pack stay still. */
+/* face_only.c: stands in for cast_body.c and hair.c in face.wasm: bodies keep the bind pose, and hair and springs of a
+ * pack stay still. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -20,41 +20,6 @@ noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *er
     (void)cast;
     (void)pack;
     (void)error;
-    return NOH_OK;
-}
-
-void web_cast_add_fall(web_cast *cast)
-{
-    (void)noh_fail(&cast->cannot_fall, NOH_ERR_UNSUPPORTED, "face.wasm has no falls: use noh.wasm", 0, 0);
-}
-
-/* ---- push.c ---- */
-
-EMSCRIPTEN_KEEPALIVE const char *web_cannot_fall(void)
-{
-    return web.cast.cannot_fall.what;
-}
-
-EMSCRIPTEN_KEEPALIVE int web_push(float strength)
-{
-    (void)strength;
-    web.error = web.cast.cannot_fall;
-    return (int)web.error.result;
-}
-
-EMSCRIPTEN_KEEPALIVE int web_push_at(float x, float y, float strength)
-{
-    return web_pick(x, y) ? web_push(strength) : 0;
-}
-
-EMSCRIPTEN_KEEPALIVE uint32_t web_fallen(void)
-{
-    return 0;
-}
-
-noh_result web_rise(uint32_t ticks)
-{
-    (void)ticks;
     return NOH_OK;
 }
 

@@ -137,7 +137,7 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_plan_grows(void)
 }
 
 /* The bytes of a block that is enough for the loaded pack in any light; 0: see web_error. Arguments as for web_open. */
-EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive)
+EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive, int shading)
 {
     size_t most = 0;
     if (characters < 1u || characters > WEB_CHARACTERS_MAX) {
@@ -147,7 +147,8 @@ EMSCRIPTEN_KEEPALIVE uint32_t web_plan(int path, uint32_t characters, int alive)
     if (web_open_context()) return 0;
     web.block_bytes = memory_bytes() - (size_t)web.block;
     for (int lit = 0; lit < (web.elsewhere ? 1 : 2); lit++) {
-        const web_wants wants = { characters, (noh_morph_path)path, lit, alive, 0, web.elsewhere, 0 };
+        const web_wants wants = { characters, (noh_morph_path)path, lit, alive,
+                                  0,          web.elsewhere,        0,   (noh_shading)shading };
         if (web_cast_plan(&web.cast, &web.pack, &wants, web.block, web.block_bytes, &web.caps, &web.error)) return 0;
         most = web.cast.bytes > most ? web.cast.bytes : most;
     }

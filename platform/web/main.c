@@ -153,12 +153,13 @@ EMSCRIPTEN_KEEPALIVE void web_set_elsewhere(int on)
     web.elsewhere = on;
 }
 
-/* Open the loaded pack. path: a noh_morph_path; characters: their number; alive 0: without faces. All as in
+/* Open the loaded pack. path: a noh_morph_path; characters: their number; alive 0: without faces; shading: a noh_shading. All as in
  * web_plan. */
-EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive)
+EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive, int shading)
 {
     const web_wants wants = {
-        characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0, web.elsewhere, 0
+        characters, (noh_morph_path)path, web.light.environment != WEB_PLAIN, alive, 0, web.elsewhere,
+        0,          (noh_shading)shading
     };
     noh_result result = web_load(&web.pack);
     web.character_count = characters;

@@ -1,7 +1,7 @@
 // page.js: panels around a character (package/character.js): clips, sliders, the table of memory. The query:
 // ?path=gather forces a path; ?clip=NAME starts with this clip, or with none; ?face=NAME plays this clip on the face;
 // ?detail=0 starts with this LOD level; ?camera=fixed keeps the camera in place; ?actors=3 shows three characters;
-// ?size=512 draws a canvas 512 pixels wide; ?pixels=all always draws at full resolution. load.js, light.js, hair.js,
+// ?size=512 draws a canvas 512 pixels wide; ?pixels=all always draws at full resolution; ?tier=phone or full shades as on phones or not. load.js, light.js, hair.js,
 // faces.js, speech.js and tabs.js read other parts of the query.
 'use strict';
 
@@ -224,7 +224,7 @@ async function start() {
     const { Character, addPointers, addGaze, isSoftware } = await arriving.catch(() => { throw new Error('the page cannot load its program: is this device online?'); });
     Object.defineProperty(window.noh, 'software', { get: () => isSoftware(window.noh.renderer) });
     character = new Character(canvas, {
-        program: query.has('pack') ? undefined : byId('program').href, path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
+        program: query.has('pack') ? undefined : byId('program').href, tier: query.get('tier') || 'auto', path: query.get('path') || 'auto', characters: Number(query.get('actors') || 1), alive: query.get('alive') !== 'off', size: Number(query.get('size')), pixels: query.get('pixels') || 'auto',
         view: viewAsked(), follows: query.get('camera') !== 'fixed', level: Number(query.get('detail') || -1), ...lightAsked(), ...hairAsked(),
     });
     byId('follow').checked = character.camera.follows;

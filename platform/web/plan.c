@@ -72,7 +72,7 @@ static int plan_all(const noh_pack *pack, uint32_t actors, noh_error *error)
                                             NOH_MORPH_DIRECT };
     size_t most = 0;
     for (uint32_t i = 0; i < 4u * sizeof paths / sizeof *paths; i++) {
-        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0, 0, 0 };
+        const web_wants wants = { actors, paths[i / 4u], i & 1u, (i & 2u) != 0, 0, 0, 0, NOH_SHADING_FULL };
         if (plan(pack, &wants, &most, error)) return 1;
     }
     printf("block %llu\n", (unsigned long long)most);

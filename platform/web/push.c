@@ -1,4 +1,4 @@
-/* push.c: a push makes a figure fall, and it gets up. The program of faces has face_only.c instead. */
+/* push.c: a push makes a figure fall, and it gets up. face.wasm and body.wasm have without_falls.c instead. */
 #include <emscripten.h>
 
 #include "web.h"

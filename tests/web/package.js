@@ -167,6 +167,20 @@ async function used(browser) {
     await close(page, 'used', 1);
 }
 
+// A page loads the program that it names, and no other.
+async function programs(browser) {
+    const page = await show(browser, ['face', 'body', 'all'].map((name) => `<noh-character id="${name}" src="face.nohz" program="${name}" light="plain"></noh-character>`).join(''));
+    await whole(page, 'face', 'body', 'all');
+    const told = await page.evaluate(async () => ({ errors: [...document.querySelectorAll('noh-character')].map(({ error }) => error).join(''),
+        loaded: performance.getEntriesByType('resource').map(({ name }) => name.split('/').pop()).filter((name) => name.endsWith('.wasm')).sort().join(' '),
+        pushed: [await document.getElementById('face').push(), await document.getElementById('body').push(), await document.getElementById('all').push()] }));
+    check('programs: each element loads its own', told.loaded === 'body.wasm face.wasm noh.wasm' && told.errors === '', JSON.stringify(told));
+    check('programs: what one lacks, it says', told.pushed.map((words) => /has no falls: use noh\.wasm/.test(words)).join() === 'true,true,false', told.pushed.join(' | '));
+    const sizes = await page.evaluate(() => ['face', 'body', 'all'].map((id) => document.getElementById(id).memory.pack));
+    check('programs: all show the same pack', sizes[0] > 0 && sizes.every((size) => size === sizes[0]), sizes.join(' '));
+    await close(page, 'programs');
+}
+
 // What a change of light takes is made beforehand: it links no program, and bakes no light.
 async function lights(browser) {
     const page = await show(browser, '<noh-character id="it" src="face.nohz" light="studio"></noh-character>');
@@ -552,4 +566,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, lights, early, model, lazy, stands, behind, hotspots, voice, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, programs, lights, early, model, lazy, stands, behind, hotspots, voice, keys, dropped, still, long }, ['--js-flags=--expose-gc', '--enable-precise-memory-info'], { '/project/': project });

@@ -261,6 +261,37 @@ async function lightControls(page, back) {
 }
 
 // A frown creases the brow, as far as the slider says.
+// A page on a GPU by this name.
+const named = (browser, renderer) => ({ newPage: async (options) => {
+    const page = await browser.newPage(options);
+    await page.addInitScript((name) => {
+        const { getParameter } = WebGL2RenderingContext.prototype;
+        WebGL2RenderingContext.prototype.getParameter = function named(what) { return what === 0x9246 ? name : getParameter.call(this, what); };
+    }, renderer);
+    return page;
+} });
+
+// How much is computed at each pixel, by the GPU. Its name may be hidden: then by its medium precision.
+const gpus = [['ANGLE (ARM, Mali-G52 MC2, OpenGL ES 3.2)', 10, 'phone'], ['Mali-G57 MC2', 10, 'full'], ['Adreno (TM) 610', 10, 'phone'], ['Adreno (TM) 740', 10, 'full'],
+    ['Apple GPU', 10, 'full'], ['WebKit WebGL', 10, 'phone'], ['WebKit WebGL', 23, 'full'], ['ANGLE (Intel, Mesa Intel(R) UHD Graphics 620)', 10, 'full']];
+async function tiers(browser) {
+    const page = await open(named(browser, gpus[0][0]), { viewport: { width: 1000, height: 700 } }, 'clip=none&light=room');
+    check('tier: a slow phone gets its own', await page.evaluate(() => character.tier) === 'phone');
+    await keepLarge(page, 'tier.png');
+    await keep(page, 'small_tier.png');
+    const found = await page.evaluate(async (all) => {
+        const { tierOf } = await import('./package/gl.js');
+        return all.map(([name, precision]) => tierOf({ getExtension: () => ({}), getParameter: () => name, getShaderPrecisionFormat: () => ({ precision }) }, 'auto'));
+    }, gpus);
+    gpus.forEach(([name, precision, tier], i) => check(`tier: ${name}, medium precision ${precision}: ${tier}`, found[i] === tier, found[i]));
+    await close(page, 'tier');
+    const full = await open(named(browser, gpus[0][0]), { viewport: { width: 1000, height: 700 } }, 'clip=none&light=room&tier=full');
+    check('tier: it can be pinned', await full.evaluate(() => character.tier) === 'full');
+    await keep(full, 'small_full.png');
+    check('tier: and computes more', !same('small_tier.png', 'small_full.png'));
+    await close(full, 'tier full');
+}
+
 async function wrinkles(browser) {
     const page = await open(browser, { viewport: { width: 1000, height: 700 } }, `clip=none&light=studio`);
     if (await page.isVisible('#wrinkles')) {
@@ -410,5 +441,5 @@ async function byPixels(browser) {
 run({
     async paths(browser) { for (const forced of forcedPaths) await onePath(browser, forced); },
     async lights(browser) { for (const forced of forcedPaths) if (forced !== 'mrt') await lights(browser, forced); },
-    bodies, living, ...(owns ? { levels, held, wrinkles, turns, panels, phone } : {}),
+    bodies, living, ...(owns ? { tiers, levels, held, wrinkles, turns, panels, phone } : {}),
 });

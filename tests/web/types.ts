@@ -14,6 +14,10 @@ if (element) {
     known.ready.then((shown: NohCharacter) => shown.play('walk'));
     known.degrees = 40;
     known.autoLife = true;
+    Object.assign(known, { program: 'face' } satisfies Partial<NohCharacter>);
+    known.tier = known.character?.tier ?? 'auto';
+    // @ts-expect-error there is no such tier
+    known.tier = 'tablet';
     known.background = 'rgb(0 0 0 / 50%)';
     known.voice = async (text) => ({ sound: new AudioBuffer({ length: 800 * text.length, sampleRate: 16000 }), visemes: [{ viseme: 10, ms: 0 }] });
     // @ts-expect-error a background is a text

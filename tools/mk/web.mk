@@ -6,7 +6,7 @@
 WEB_PACK    ?= $(BUILD)/page/nell.noh
 WEB_WIRE    ?= --error-um 10# of `noh pack`; empty: nothing is rounded
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
-WEB_FLAGS   := -std=c99 -Os -msimd128 $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
+WEB_FLAGS   := -std=c99 -Oz -msimd128 -mnontrapping-fptoint -mbulk-memory $(WARN) $(FP) -Wno-sign-conversion $(INCLUDES) -Iplatform/web
 WEB_STACK   := 65536
 WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
@@ -15,10 +15,11 @@ WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/packa
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
 WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js greet.js)
 WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js reach.js program.js pointer.js speech.js character.js)
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm face.wasm ear.bin page.js $(filter %.js,$(WEB_PACKAGE))))
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm body.wasm face.wasm ear.bin page.js $(filter %.js,$(WEB_PACKAGE))))
 WEB_WORKER    := $(addprefix tools/web_convert/,worker.js webp.js)
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm $(notdir $(WEB_WORKER)))
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
+WEB_PROGRAMS := $(addprefix $(WEB_OBJECTS)/,noh.wasm body.wasm face.wasm)
 
 web: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_PACK)
@@ -62,7 +63,7 @@ $(WEB)/page.noh: $(WEB)/page.nohz
 	$(Q)$(BUILD)/noh strip $< -o $@ --from-level 0 --quiet
 # The page has to know which program shows its pack, its size, for the share that has come, and how many bytes of the pack
 # the first picture needs.
-$(WEB)/index.html: platform/web/index.html tools/web_index.sh $(WEB)/page.nohz $(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm
+$(WEB)/index.html: platform/web/index.html tools/web_index.sh $(WEB)/page.nohz $(WEB_PROGRAMS)
 	$(Q)sh tools/web_index.sh $< $(WEB_OBJECTS) $(BUILD)/noh $(WEB)/page.nohz $(WEB)/page.json >$@.new
 	@mv $@.new $@
 # The face as the page draws it, shown until it does: pictures of 3 kB.
@@ -83,19 +84,19 @@ $(WEB)/page.js: $(WEB_SCRIPTS)
 $(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
 	@mkdir -p $(@D)
 	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
-$(addprefix $(WEB)/package/,noh.wasm face.wasm ear.bin): $(WEB)/package/%: $(WEB_OBJECTS)/%
+$(addprefix $(WEB)/package/,noh.wasm body.wasm face.wasm ear.bin): $(WEB)/package/%: $(WEB_OBJECTS)/%
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/%: platform/web/%
 	@mkdir -p $(@D)
 	@cp $< $@
 
-# The program, the one of faces, and the planner that the tests run under node.
-WEB_BODY_C := $(addprefix platform/web/,cast_body.c push.c hair.c vertices.c)
-WEB_C := $(filter-out %/plan.c %/face_only.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
+# The program with everything, the ones of bodies and of faces, and the planner that the tests run under node.
+WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
-WEB_FACE_O := $(filter-out $(WEB_BODY_C:%.c=$(WEB_OBJECTS)/%.o),$(WEB_O)) $(WEB_OBJECTS)/platform/web/face_only.o
-WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o) $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
+WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
+WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
+WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o cast_fall.o) $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
 $(BUILD)/web-cc: tools/web_cc.sh
 	@mkdir -p $(@D)
@@ -116,6 +117,7 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 # The ear's tables come apart (platform/web/ear_apart.c).
 WEB_EAR_O := $(WEB_OBJECTS)/runtime/life/face/ear_tables.o
 $(WEB_OBJECTS)/noh.wasm: $(filter-out $(WEB_EAR_O),$(WEB_O))
+$(WEB_OBJECTS)/body.wasm: $(filter-out $(WEB_EAR_O),$(WEB_BODY_O))
 $(WEB_OBJECTS)/face.wasm: $(filter-out $(WEB_EAR_O),$(WEB_FACE_O))
 $(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c runtime/life/face/ear_internal.h
 	@mkdir -p $(@D)
@@ -123,7 +125,7 @@ $(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c r
 	$(Q)$(CC) -std=c99 -O1 $(WARN) $(INCLUDES) $(filter %.c,$^) -o $(BUILD)/web_ear
 	$(Q)$(BUILD)/web_ear >$@.new
 	@mv $@.new $@
-$(WEB_OBJECTS)/noh.wasm $(WEB_OBJECTS)/face.wasm:
+$(WEB_PROGRAMS):
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
@@ -218,6 +220,6 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(addprefix $(WEB_OBJECTS)/,noh.wasm face.wasm ear.bin) LICENSE tools/npm.sh runtime/noh/base.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_PROGRAMS) $(WEB_OBJECTS)/ear.bin LICENSE tools/npm.sh runtime/noh/base.h \
     $(WEB_WORKER) $(wildcard $(WEB_CONVERT)/convert.wasm)
 	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS) LICENSE $(WEB_CONVERT) $(WEB_WORKER)

@@ -37,12 +37,12 @@ const asMade = { light: 'studio', degrees: 0, shadow: 'on', floor: true, tonemap
     emotion: null, amount: 1, hair: true, wind: 0, speed: 1, paused: false };
 
 export class Character extends EventTarget {
-    // options: { program: where noh.wasm is, path, characters, alive, size: pixels across instead of the canvas's own,
+    // options: { program: 'all', 'body', 'face' or an address, tier, path, characters, alive, size: pixels across instead of the canvas's own,
     // pixels: 'auto': fewer while it moves and frames take long, or 'all', follows: whether the camera does, view: what it frames, voice: says sentences in place of the browser's voices (speech.js), elsewhere: another renderer draws (three.js) }, and what `asMade` has.
     constructor(canvas, options = {}) {
         super();
-        const { program, path = 'auto', characters = 1, alive = true, size = 0, pixels = 'auto', follows = true, view = 'full', elsewhere = false, voice = null, ...chosen } = options;
-        this.wants = { path, characters, alive, elsewhere };
+        const { program, tier = 'auto', path = 'auto', characters = 1, alive = true, size = 0, pixels = 'auto', follows = true, view = 'full', elsewhere = false, voice = null, ...chosen } = options;
+        this.wants = { tier, path, characters, alive, elsewhere };
         Object.assign(this, { canvas, size, view, voice, pixels: new Pixels(), spares: pixels !== 'all', sharp: false, goesOn: false, address: program, program: null, camera: new Camera(), chosen: { ...asMade, ...chosen } });
         Object.assign(this, { weights: new Map(), playing: [{ clip: null }, { clip: null }], clips: [], targets: [], lights: [], emotions: [] });
         Object.assign(this, { loaded: false, whole: false, lost: false, wanted: false, drawn: 0, busy: 0, frames: 0, due: 0, fallen: 0, stopped: false });
@@ -57,6 +57,9 @@ export class Character extends EventTarget {
         }
         this.watch();
     }
+
+    // 'full' or 'phone': how much is computed at each pixel.
+    get tier() { return this.program && this.program.given[3] ? 'phone' : 'full'; }
 
     // Runs GL calls of the library together, for users of a shared context.
     around(call) { return call(); }

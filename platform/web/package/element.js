@@ -44,7 +44,7 @@ const ofLight = ['light', 'degrees', 'shadow', 'floor', 'tonemap', 'background']
 
 // Properties and their values without an attribute.
 const properties = { src: '', clip: '', face: '', light: 'studio', degrees: 0, shadow: 'on', floor: 'on', tonemap: 'on', background: 'light', level: -1, speed: 1, emotion: '',
-    alt: '', poster: '', loading: 'auto', path: 'auto', pixels: 'auto', characters: 1, view: 'full', cameraOrbit: false, minCameraOrbit: '', maxCameraOrbit: '', autoLife: false, captions: false, gaze: false, drop: false, paused: false };
+    alt: '', poster: '', loading: 'auto', program: 'all', tier: 'auto', path: 'auto', pixels: 'auto', characters: 1, view: 'full', cameraOrbit: false, minCameraOrbit: '', maxCameraOrbit: '', autoLife: false, captions: false, gaze: false, drop: false, paused: false };
 
 const reduced = () => globalThis.matchMedia('(prefers-reduced-motion: reduce)');
 
@@ -160,8 +160,8 @@ export class NohCharacter extends (globalThis.HTMLElement || Object) {
 
     // The attributes as options.
     wishes() {
-        const { path, pixels, characters, view, light, degrees, shadow, background, level, speed } = this;
-        return { program: this.program || undefined, voice: this.voice, path, pixels, characters, view, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
+        const { program, tier, path, pixels, characters, view, light, degrees, shadow, background, level, speed } = this;
+        return { program, tier, voice: this.voice, path, pixels, characters, view, light, degrees, shadow, floor: this.floor !== 'off', tonemap: this.tonemap !== 'none', background, level, speed,
             paused: this.rests(), calm: !this.lives() };
     }
 

@@ -263,15 +263,32 @@ function addData(out, gl, heap, kinds) {
 
 export const baked = new Map(); // texels by environment, for all characters: they take half a second to compute
 
+// The driver's name, if the browser reveals it.
+function rendererOf(gl) {
+    const info = gl.getExtension('WEBGL_debug_renderer_info');
+    return (info && gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) || gl.getParameter(gl.RENDERER);
+}
+
+// GPUs of phones for which the full tier is much at the resolution of their screens: no faster than a Mali-G52, as far as
+// `noh budget --gpu` and the number of their cores tell; and others that are known.
+const slow = /Mali-(T|G31|G51|G52|G71|G72)|Adreno \(TM\) ([345]|6[01])\d|PowerVR|VideoCore|V3D/;
+const fast = /Mali|Immortalis|Adreno|Apple|Xclipse|Intel|NVIDIA|GeForce|AMD|Radeon|Mesa|SwiftShader|llvmpipe|Basic Render/;
+
+// How much shaders compute at each pixel (noh_shading): 'full' or 'phone', as asked for, otherwise by the GPU. An unknown
+// GPU whose medium precision is less than its high one is a phone's: others compute both alike.
+export function tierOf(gl, asked) {
+    if (asked === 'full' || asked === 'phone') return asked;
+    const name = rendererOf(gl);
+    if (slow.test(name) || fast.test(name)) return slow.test(name) ? 'phone' : 'full';
+    const medium = gl.getShaderPrecisionFormat(gl.FRAGMENT_SHADER, gl.MEDIUM_FLOAT);
+    return medium && medium.precision < 23 ? 'phone' : 'full';
+}
+
 // Functions beyond GL (context.c, light.c).
 function addOthers(gl, heap) {
-    const renderer = () => {
-        const info = gl.getExtension('WEBGL_debug_renderer_info');
-        return (info && gl.getParameter(info.UNMASKED_RENDERER_WEBGL)) || gl.getParameter(gl.RENDERER);
-    };
     return {
         string(what, at, room) {
-            const text = what === gl.RENDERER ? renderer() : gl.getParameter(what) || '';
+            const text = what === gl.RENDERER ? rendererOf(gl) : gl.getParameter(what) || '';
             writeText(heap, what === gl.VERSION ? `OpenGL ES 3.0 (${text})` : text, at, room);
         },
         extension: (index, at, room) => { writeText(heap, gl.getSupportedExtensions()[index] || '', at, room); },

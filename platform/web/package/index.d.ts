@@ -98,10 +98,15 @@ export type Voice = (text: string) => VoiceSound | VoiceSpeech | Promise<VoiceSo
 export type VoiceSound = Exclude<SpeechSource, string | MediaStream | HTMLMediaElement>;
 export interface VoiceSpeech extends Pick<SpeechOptions, 'visemes' | 'words' | 'rate'> { sound: VoiceSound }
 
+/** `all`, the default: noh.wasm; `body`, without falls and three.js: body.wasm; `face`, also without springs, hair and bodies
+ * that stand: face.wasm; or an address. */
+export type Program = 'all' | 'body' | 'face' | (string & {});
+/** How much is computed at each pixel: `auto`, the default: `phone`, which approximates, on slow GPUs of phones, else `full`. */
+export type Tier = 'auto' | 'full' | 'phone';
+
 export interface CharacterOptions extends Partial<Light> {
-    /** Address of the program; default: noh.wasm in the folder of this module. face.wasm, which lies next to it, is smaller:
-     * it has no falls, springs, hair or three.js. */
-    program?: string | URL;
+    program?: Program | URL;
+    tier?: Tier;
     path?: MorphPath;
     /** Number of characters side by side, 1 to 16. */
     characters?: number;
@@ -143,6 +148,8 @@ export class Character extends EventTarget {
     readonly emotions: readonly string[];
     readonly lights: readonly string[];
     readonly memory: Memory;
+    /** What `tier` comes to on this GPU. */
+    readonly tier: 'full' | 'phone';
     time: number;
     speed: number;
     paused: boolean;
@@ -228,6 +235,10 @@ export interface NohCharacterProperties {
     poster: string;
     /** `lazy`: loads when the visitor scrolls to it. */
     loading: 'auto' | 'lazy' | 'eager';
+    /** Set it before the element is added to the page. */
+    program: Program;
+    /** Set it before the element is added to the page. */
+    tier: Tier;
     path: MorphPath;
     pixels: 'auto' | 'all';
     characters: number;
@@ -248,8 +259,6 @@ export interface NohCharacter extends NohCharacterProperties {}
 /** `<noh-character src="x.noh" clip="walk" light="room" camera-orbit auto-life>`. Methods that return a promise may be
  * called at any time: they wait for the pack that is asked for, and reject if it lacks a name. */
 export class NohCharacter extends HTMLElement {
-    /** Address of noh.wasm, if not in the folder of this module; set it before the element is added to the page. */
-    program?: string | URL;
     /** Says sentences in place of the browser's voices; null: none. */
     voice: Voice | null;
     /** Resolves to the element when the pack is shown, if only by its coarsest levels; rejects if it cannot be. The next

@@ -1,5 +1,5 @@
 // program.js: the WebAssembly program in its own memory, which is sized for one pack and cannot grow.
-import { importsOf, textAt } from './gl.js';
+import { importsOf, textAt, tierOf } from './gl.js';
 import { compileFrom, reach } from './reach.js';
 
 const PAGE = 65536;
@@ -9,9 +9,12 @@ export const paths = ['auto', 'layered', 'mrt', 'per-layer', 'gather', 'cpu', 'b
 
 const compiled = new Map(); // by address
 
-// The program, compiled once for all characters. address: of noh.wasm; tell(taken): its bytes, while they arrive.
-export function compile(address = new URL('./noh.wasm', import.meta.url), tell) {
-    const key = String(address);
+// What a page needs, in the form that bundlers follow: everything, no falls and no three.js, or faces alone.
+const programs = { all: () => new URL('./noh.wasm', import.meta.url), body: () => new URL('./body.wasm', import.meta.url), face: () => new URL('./face.wasm', import.meta.url) };
+
+// A program, compiled once for all characters: one of these, or an address; tell(taken): its bytes, while they arrive.
+export function compile(program = 'all', tell) {
+    const key = String(Object.hasOwn(programs, program) ? programs[program]() : program);
     if (!compiled.has(key)) {
         const module = compileFrom(key, 'program', tell);
         module.catch(() => compiled.delete(key)); // the next call tries again
@@ -124,21 +127,21 @@ export class Arrival {
     }
 
     // Create a program for the most complete pack so far, with exactly the memory it needs: { path, characters, alive,
-    // elsewhere }.
+    // tier, elsewhere }.
     async open(wants) {
         const planner = this.program, path = Math.max(0, paths.indexOf(wants.path || 'auto'));
         planner.check(planner._web_loaded());
         const bytes = planner._web_loaded_bytes();
         planner.reserve(planner.memory.buffer.byteLength + planner._web_plan_grows());
         planner._web_set_elsewhere(wants.elsewhere ? 1 : 0);
-        const block = this.around(() => planner._web_plan(path, wants.characters, wants.alive ? 1 : 0));
+        const given = [path, wants.characters, wants.alive ? 1 : 0, tierOf(this.gl, wants.tier) === 'phone' ? 1 : 0];
+        const block = this.around(() => planner._web_plan(...given));
         if (!block) throw new Error(planner.words());
         const pages = Math.max(LEAST, Math.ceil(planner._web_memory_for(bytes, block) / PAGE));
         const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
         const program = await Program.start(this.module, this.gl, memory, this.caps());
         program._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         program.HEAPU8.set(planner.HEAPU8.subarray(planner._web_loaded_at(), planner._web_loaded_at() + bytes), program._web_pack(bytes));
-        const given = [path, wants.characters, wants.alive ? 1 : 0];
         return Object.assign(program, { module: this.module, packBytes: bytes, given, open: () => program.check(program._web_open(...given)) });
     }
 
