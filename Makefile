@@ -40,7 +40,7 @@ SECTIONS := -ffunction-sections -fdata-sections
 # and object-size take a quarter of the compiler's time and find little that ASan does not.
 SANFLAGS := $(if $(SAN),-fsanitize=$(SAN) $(if $(NOH_LONG),,-fno-sanitize=null$(comma)object-size) -fno-sanitize-recover=all -fno-omit-frame-pointer -Wno-error)
 OPT      ?= $(if $(SAN),-O1,-O2) -g1
-ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CPPFLAGS) $(CFLAGS)
+ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CALLS) $(CPPFLAGS) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
 # Two hundred test programs are linked: lld takes a third of the time.
@@ -98,6 +98,11 @@ CONVERT_LIB := $(if $(shell command -v $(OBJCOPY)),$(BUILD)/libnohconvert.a)
 
 ASSERT_O   := $(RUNTIME_C:%.c=$(BUILD)/assert/%.o) $(BUILD)/gen/shaders.gen.o
 RUNTIME_O  := $(if $(SAN),$(ASSERT_O),$(RUNTIME_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/shaders.gen.o)
+# The library's call graph comes with its objects (tests/check_stack.sh), unless a compiler cache gives back objects alone.
+CALLS       =
+ifeq ($(SAN)$(CC)$(filter -O2,$(OPT))$(findstring ccache,$(realpath $(shell command -v gcc))),gcc-O2)
+$(RUNTIME_O): CALLS = -fcallgraph-info=su
+endif
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
 CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o

@@ -17,11 +17,18 @@ fi
 
 rm -rf "$work"
 mkdir -p "$work"
-export CCACHE_DISABLE=1 # a compiler cache gives back objects alone, without the call graph
-for source in $(find runtime -name "*.c"); do
-    object=$work/$(echo "$source" | tr / _).o
-    gcc -std=c99 -O2 -ffp-contract=off -fno-math-errno -Iruntime "-I$build/gen" -fcallgraph-info=su -c "$source" -o "$object" || exit 1
-done
+# The graphs of the library's objects (Makefile), if none is older than the sources; else they are made here.
+find runtime -name '*.c' | sed "s|.*|$build/&|; s|c\$|ci|" >"$work/graphs"
+oldest=$(xargs ls -t <"$work/graphs" 2>/dev/null | tail -n 1)
+case $(readlink -f "$(command -v gcc)") in *ccache*) oldest= ;; esac # a compiler cache gives back objects alone
+if [ -z "$oldest" ] || ! xargs ls <"$work/graphs" >/dev/null 2>&1 || find runtime -newer "$oldest" -name '*.[ch]' | grep -q .; then
+    export CCACHE_DISABLE=1
+    for source in $(find runtime -name "*.c"); do
+        object=$work/$(echo "$source" | tr / _).o
+        gcc -std=c99 -O2 -ffp-contract=off -fno-math-errno -Iruntime "-I$build/gen" -fcallgraph-info=su -c "$source" -o "$object" || exit 1
+    done
+    ls "$work"/*.ci >"$work/graphs"
+fi
 
 # The functions of the stage's modules (module_internal.h), as "FIELD FILE:FUNCTION": a call of one of the fields is as
 # deep as the deepest of its functions.
@@ -29,7 +36,7 @@ awk '/^ +\.[a-z_]+ = [a-z_]+,$/ { sub(/,/, ""); print substr($1, 2), FILENAME ":
     runtime/stage/modules/*.c >"$work/fields"
 
 # Node lines hold "NAME\nFILE:LINE\nN bytes (static)", edge lines two names and "FILE:LINE:COLUMN" of the call.
-cat "$work"/*.ci | awk -v limit="$limit" -v fields="$work/fields" '
+xargs cat <"$work/graphs" | awk -v limit="$limit" -v fields="$work/fields" '
     BEGIN {
         while ((getline line < fields) > 0) {
             split(line, word, " ")
