@@ -32,7 +32,9 @@ typedef struct maker {
 static void cluster(const maker *m, const noh_submesh *s, float cell, uint32_t *representative)
 {
     const uint32_t count = m->mesh->header->vertex_count;
-    uint32_t *cells = test_zeros(4u * (size_t)count);
+    uint32_t *cells = test_zeros(4u * (size_t)count), mask = 1, *firsts;
+    while (mask < 2u * count) mask = 2u * mask + 1u;
+    firsts = test_zeros(4u * ((size_t)mask + 1u)); /* the first vertex of each cell, plus 1 */
     for (uint32_t v = 0; v < count; v++) {
         const float *p = m->mesh->positions + 3u * (size_t)v;
         uint32_t number = 0;
@@ -47,12 +49,16 @@ static void cluster(const maker *m, const noh_submesh *s, float cell, uint32_t *
         representative[v] = v;
     }
     for (uint32_t v = 0; v < count; v++) {
-        for (uint32_t first = 0; representative[v] == v && first < v; first++) {
-            if (representative[first] == first && cells[first] == cells[v]) {
-                representative[v] = first;
-            }
+        uint32_t slot = cells[v] * 2654435761u & mask;
+        if (representative[v] != v) continue;
+        while (firsts[slot] && cells[firsts[slot] - 1u] != cells[v]) slot = (slot + 1u) & mask;
+        if (firsts[slot]) {
+            representative[v] = firsts[slot] - 1u;
+        } else {
+            firsts[slot] = v + 1u;
         }
     }
+    free(firsts);
     free(cells);
 }
 
