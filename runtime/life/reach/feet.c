@@ -22,8 +22,9 @@
 #define LEAVE_LIFT 0.09f /* a foot higher, faster or farther off than this is released */
 #define LEAVE_SPEED 1.2f
 #define LEAVE_DRIFT 0.23f
-#define PART_MARGIN 0.006f /* lower than the lowest part by this much: becomes the lowest */
-#define LEVEL_MIN 0.643f   /* the cosine of 50 degrees: steeper ground is no place to stand on */
+#define LEAVE_DRIFT_STANDING 0.31f /* of a foot that stands in its clip */
+#define PART_MARGIN 0.006f         /* lower than the lowest part by this much: becomes the lowest */
+#define LEVEL_MIN 0.643f           /* the cosine of 50 degrees: steeper ground is no place to stand on */
 #define LAND_HALF_LIFE 0.015f
 #define LEAN_HALF_LIFE 0.04f
 #define DRIFT_HALF_LIFE 0.05f
@@ -261,7 +262,7 @@ static void move_held(noh_foot *f, const leg_now *n)
     f->moved[1] = f->held[1] - n->parts[f->part][2];
 }
 
-typedef enum keeping { AS_ITS_CLIP = 0, IS_KEPT, SWINGS } keeping;
+typedef enum keeping { AS_ITS_CLIP = 0, STANDS_THERE, IS_KEPT, SWINGS } keeping;
 
 /* A foot that the caller's placement keeps still is where its clip has it. */
 static void let_go(noh_foot *f)
@@ -275,17 +276,19 @@ static void stand(const step *s, noh_foot *f, const leg_now *n, keeping keeps)
     float speed[2];
     if (f->is_held) move_held(f, n);
     find_part(s, f, n);
-    if (keeps) let_go(f);
+    if (keeps >= IS_KEPT) let_go(f);
     speed_of(s, f, n, speed);
     const float fast = length2(speed[0], speed[1]) / s->leg, lift = (n->parts[f->part][1] - s->floor) / s->leg;
     if (f->is_held) {
         const float drift = length2(f->moved[0], f->moved[1]) / s->leg;
-        f->is_held = f->has_ground && lift < LEAVE_LIFT && fast < LEAVE_SPEED && drift < LEAVE_DRIFT;
+        f->is_held = f->has_ground && lift < LEAVE_LIFT && (fast < LEAVE_SPEED || keeps == STANDS_THERE) &&
+                     drift < (keeps == STANDS_THERE ? LEAVE_DRIFT_STANDING : LEAVE_DRIFT);
     } else {
         const float keep = decay(s->seconds, DRIFT_HALF_LIFE);
         f->moved[0] *= keep;
         f->moved[1] *= keep;
-        f->is_held = f->has_ground && lift < STAND_LIFT && fast < STAND_SPEED && keeps != SWINGS;
+        f->is_held = f->has_ground && lift < STAND_LIFT && (fast < STAND_SPEED || keeps == STANDS_THERE) &&
+                     keeps != SWINGS;
         f->held[0] = n->parts[f->part][0] + f->moved[0];
         f->held[1] = n->parts[f->part][2] + f->moved[1];
     }
@@ -508,7 +511,8 @@ void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *
     feet->begun = 1;
     for (uint32_t i = 0; i < rig->leg_count; i++) {
         read_leg(&s, &rig->legs[i], &now[i]);
-        step_foot(&s, &feet->feet[i], &now[i], !feet->kept ? AS_ITS_CLIP : feet->kept == i + 1u ? IS_KEPT : SWINGS);
+        const keeping alone = place->stands >> i & 1u ? STANDS_THERE : AS_ITS_CLIP;
+        step_foot(&s, &feet->feet[i], &now[i], !feet->kept ? alone : feet->kept == i + 1u ? IS_KEPT : SWINGS);
     }
     const float by = move_pelvis(&s, feet, now);
     move_top(&s, by);

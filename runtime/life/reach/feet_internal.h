@@ -38,6 +38,8 @@ void noh_feet_init(noh_feet *feet);
 typedef struct noh_feet_place {
     float position[3], rotation[4]; /* its up must be the world's, +Y */
     float scale;                    /* world units per unit of the skeleton, above 0 */
+    uint32_t
+        stands; /* bits: leg i stands in the clip that a blend goes to: it is planted even while the blend moves it */
 } noh_feet_place;
 
 /* Advance time, and put a pose on the ground.

@@ -102,6 +102,9 @@ typedef struct noh_module_type {
     /* Of an actor, once its clips have moved on and moved it. */
     void (*steer)(noh_stage *s, struct noh_stage_kind *k, uint32_t index, uint32_t ticks);
     void (*step)(struct noh_stage_kind *k, uint32_t ticks);
+    /* Which of its feet the clip that plays has standing: slower than `slow`, model units a second. Bit 0: the foot with
+     * the larger x */
+    uint32_t (*stands)(const noh_stage *s, const struct noh_stage_kind *k, uint32_t index, float slow);
     int (*carries)(const struct noh_stage_kind *k, uint32_t index); /* 1: it moves the actor's place, clips do not */
     /* With noh_stage_module.turns: how it turns the model within its place. Points rotate, then move by `at`. */
     void (*turn)(const struct noh_stage_kind *k, uint32_t index, float rotation[4], float at[3]);

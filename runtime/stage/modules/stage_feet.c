@@ -1,5 +1,6 @@
 /* stage_feet.c: feet on the ground as a modifier of a kind. */
 #include "life/reach/feet_internal.h"
+#include "life/reach/rig_internal.h"
 #include "noh/body.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
@@ -10,6 +11,7 @@
 #include "core/base/assert_internal.h"
 #include "stage/cast/stage_internal.h"
 
+#define STANDS_SPEED 0.5f /* in leg lengths a second: an ankle of a standing foot is slower */
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */
 
 /* The ground as it is seen from an actor's home. */
@@ -26,6 +28,24 @@ static float below_home(const void *user, const float from[3], float depth, floa
     return noh_ground_below(g->ground, at, depth, normal);
 }
 
+static float side_of(const noh_modifier_work *w, uint32_t joint)
+{
+    float at[3], unused[4];
+    noh_rig_joint(w->skeleton, w->skeleton->bind_pose, joint, at, unused);
+    return at[0];
+}
+
+/* The legs that stand in the clip that plays, where the kind knows: with motion matching. */
+static uint32_t standing_legs(const noh_modifier_work *w, const noh_feet_rig *rig)
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(w->stage, w->actor, &k);
+    const noh_module_type *match = a ? k->modules[NOH_SLOT_MATCH].type : NULL;
+    if (!match || rig->leg_count != 2u) return 0;
+    const uint32_t bits = match->stands(w->stage, k, noh_stage_index(k, a), STANDS_SPEED * rig->length);
+    return side_of(w, rig->legs[0].foot) > side_of(w, rig->legs[1].foot) ? bits : bits >> 1 | (bits & 1u) << 1;
+}
+
 void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet *f, float seconds, int cut)
 {
     const home_ground from = { &f->ground, w->home };
@@ -36,6 +56,7 @@ void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet
     memcpy(place.position, w->near_place, sizeof place.position);
     memcpy(place.rotation, w->place.rotation, sizeof place.rotation);
     place.scale = w->place.scale;
+    place.stands = standing_legs(w, &f->rig);
     noh_feet_step(feet, &f->rig, w->skeleton, w->local, &place, is_home ? &f->ground : &near_ground, seconds, cut);
 }
 

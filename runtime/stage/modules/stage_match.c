@@ -212,6 +212,47 @@ static float heading_of(const float rotation[4])
 
 /* ---- which moment ---- */
 
+/* The row that plays, by its number; NOH_NONE: what plays is not in the table. track: NULL: nothing plays on the layer.
+ * *ends: 1 past the clip's last row. */
+static uint32_t playing_row(const noh_stage_kind *k, const match_kind *m, const noh_track *track, int *ends)
+{
+    const noh_pack_match_clip *c;
+    uint32_t n;
+    *ends = 0;
+    if (!track || track->clip >= k->bank->clips.clip_count || !m->table_clip[track->clip]) return NOH_NONE;
+    c = &m->table.clips[m->table_clip[track->clip] - 1u];
+    n = (noh_track_clip_tick(track, &k->set.clips[track->clip], 0) + m->table.header->row_ticks / 2u) /
+        m->table.header->row_ticks;
+    if (n < c->row_count) return c->first_row + n;
+    if (track->loop == NOH_LOOP_REPEAT) return c->first_row;
+    *ends = 1;
+    return c->first_row + c->row_count - 1u;
+}
+
+/* Features 0 to 11 are the feet's positions and velocities; standing still on the ground is a velocity of 0. */
+static uint32_t stands(const noh_stage *s, const noh_stage_kind *k, uint32_t index, float slow)
+{
+    const match_kind *m = k->modules[NOH_SLOT_MATCH].shared;
+    const noh_match_table *t = &m->table;
+    const noh_track *track = noh_actor_track(s, noh_stage_actor_at(s, k->first_actor + index), m->desc.layer);
+    const uint32_t second_is_first = t->means[0] < t->means[3];
+    int16_t row[NOH_MATCH_FEATURES];
+    uint32_t bits = 0;
+    int ends;
+    const uint32_t playing = state_of(k, index)->has_goal ? playing_row(k, m, track, &ends) : NOH_NONE;
+    if (playing == NOH_NONE) return 0;
+    noh_match_row(t, m->places[playing], row);
+    for (uint32_t foot = 0; foot < 2; foot++) {
+        float square = 0.0f;
+        for (uint32_t f = 6u + 3u * foot; f < 9u + 3u * foot; f++) {
+            const float v = t->scales[f] > 0.0f ? t->means[f] + (float)row[f] / t->scales[f] : t->means[f];
+            square += v * v;
+        }
+        if (square < slow * slow) bits |= 1u << (foot ^ second_is_first);
+    }
+    return bits;
+}
+
 /* An actor in a step. */
 typedef struct matcher {
     noh_stage_player player;
@@ -220,25 +261,6 @@ typedef struct matcher {
     const noh_track *track; /* NULL: nothing plays on the layer */
     float heading;          /* of the actor */
 } matcher;
-
-/* The row that plays, by its number; NOH_NONE: what plays is not in the table. *ends: 1 past the clip's last row. */
-static uint32_t playing_row(const matcher *w, int *ends)
-{
-    const noh_clip_set *set = &w->player.k->set;
-    const noh_pack_match_clip *c;
-    uint32_t n;
-    *ends = 0;
-    if (!w->track || w->track->clip >= w->player.k->bank->clips.clip_count || !w->m->table_clip[w->track->clip]) {
-        return NOH_NONE;
-    }
-    c = &w->m->table.clips[w->m->table_clip[w->track->clip] - 1u];
-    n = (noh_track_clip_tick(w->track, &set->clips[w->track->clip], 0) + w->m->table.header->row_ticks / 2u) /
-        w->m->table.header->row_ticks;
-    if (n < c->row_count) return c->first_row + n;
-    if (w->track->loop == NOH_LOOP_REPEAT) return c->first_row;
-    *ends = 1;
-    return c->first_row + c->row_count - 1u;
-}
 
 static void make_query(const matcher *w, uint32_t row, int16_t query[NOH_MATCH_FEATURES])
 {
@@ -279,7 +301,7 @@ static void choose(matcher *w)
     noh_play play;
     int ends;
     uint32_t clip;
-    const uint32_t playing = playing_row(w, &ends);
+    const uint32_t playing = playing_row(w->player.k, w->m, w->track, &ends);
     make_query(w, playing, query);
     if (playing != NOH_NONE && !ends &&
         (t->clips[noh_match_clip_of(t, playing)].tags & w->state->tags) == w->state->tags) {
@@ -452,6 +474,7 @@ noh_module noh_match_module(const noh_kind_match *match)
         .init = init,
         .check = check,
         .steer = steer,
+        .stands = stands,
     };
     return (noh_module){ &matching, match };
 }

@@ -163,9 +163,9 @@ static int open_feet(feet_work *w, const noh_pack *pack)
 static void stand(void *self, uint32_t frame)
 {
     feet_work *w = self;
-    const noh_feet_place place = { { 0.0f, 0.0f, 0.01f * w->metre * (float)(frame % 100u) },
-                                   { 0.0f, 0.0f, 0.0f, 1.0f },
-                                   1.0f };
+    const noh_feet_place place = {
+        { 0.0f, 0.0f, 0.01f * w->metre * (float)(frame % 100u) }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f, 0
+    };
     memcpy(w->pose, w->skeleton.bind_pose, w->skeleton.joint_count * sizeof *w->pose);
     noh_feet_step(&w->feet, &w->rig, &w->skeleton, w->pose, &place, &w->ground, 1.0f / 60.0f, 0);
 }
