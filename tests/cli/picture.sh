@@ -64,4 +64,14 @@ noh render tall.noh -o tall.png --size 64x64 --camera face,0,0 --json
 expect 0 'a face below high hair'
 height=$(sed -n '/"eye"/{n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between 1.476 and 1.86
 check 'its frame has all of the hair' awk "BEGIN { exit !($height > 1.667 && $height < 1.669) }"
+if command -v node >/dev/null 2>&1; then
+    # shellcheck disable=SC2016
+    check 'and so has the page' node -e '
+        const text = require("fs").readFileSync(process.argv[1], "utf8"), all = [-0.2, 0, 0, 0.2, 1.86, 0.01];
+        import(`data:text/javascript,${encodeURIComponent(text)}`).then(({ framed }) =>
+            process.exit(framed(all, [-0.1, 1.5, 0, 0.1, 1.7, 0.01], "face")[4] === 1.86 ? 0 : 1));' \
+        "$OLDPWD/platform/web/package/camera.js"
+else
+    skip 'and so has the page' 'no node here'
+fi
 finish
