@@ -48,7 +48,7 @@ static void film_make(film *f)
 {
     const noh_gl_device device = { &f->g->gl, &f->g->caps, &f->g->ledger, NULL, 0 };
     cast_make(&f->c, &device);
-    cast_enter(&f->c, f->actors);
+    if (f->c.desc.kind_count == CAST_KINDS) cast_enter(&f->c, f->actors);
     for (int i = 0; i < 2; i++) {
         const noh_gl_shader_desc desc = {
             .name = "motion", .vertex = vertex, .fragment = fragment, .defines = i ? "#define BEFORE\n" : NULL
@@ -123,6 +123,46 @@ static void the_last_frame_is_drawn_again(void **state)
         }
         film_close(&f);
     }
+}
+
+/* Masks that speak, near a camera that stands still: targets alone move, and in some frames none does. */
+static void faces_move_by_targets_alone(void **state)
+{
+    static const uint32_t paths[] = { NOH_MORPH_CPU, NOH_MORPH_PER_LAYER, NOH_MORPH_GATHER, NOH_MORPH_DIRECT };
+    static uint32_t shown[2][PIXELS], was[PIXELS];
+    static const float middle[3] = { 0.0f, 0.0f, 0.0f };
+    uint32_t films = 0;
+    (void)state;
+    for (uint32_t i = 0; i < 2u * TEST_COUNT(paths); i++) {
+        noh_stage_view view;
+        uint32_t moved = 0;
+        film f;
+        film_open(&f, paths[i / 2u], 0);
+        f.c.kinds[0] = f.c.kinds[MASKS];
+        f.c.kinds[0].actor_count = 1u + i % 2u;
+        f.c.desc.kind_count = 1;
+        if (noh_stage_plan_make(&f.c.desc, &f.g->caps, &f.c.plan, NULL) == NOH_OK) {
+            film_make(&f);
+            for (uint32_t a = 0; a < f.c.kinds[0].actor_count; a++) {
+                const noh_place place = { { 0.12f * (float)a, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
+                const noh_play play = { .start_ticks = 9000 * (int64_t)a };
+                assert_int_equal(noh_stage_spawn(f.c.stage, 0, &place, &f.actors[a], NULL), NOH_OK);
+                assert_int_equal(noh_actor_play(f.c.stage, f.actors[a], 1, "speak", &play, NULL), NOH_OK);
+            }
+            noh_view_orbit(&view, middle, 0.2f, 0.0f, 0.5f, WIDTH, HEIGHT);
+            for (uint32_t n = 0; n < 10; n++) {
+                step(&f, n % 3u == 2u ? 0 : 4u * CAST_STEP, &view);
+                picture(&f, 0, shown[n % 2u]);
+                picture(&f, 1, was);
+                assert_int_equal(difference(was, shown[n ? (n + 1u) % 2u : 0]), 0);
+                if (n) moved += difference(shown[0], shown[1]);
+            }
+            assert_true(moved > 200u);
+            films++;
+        }
+        film_close(&f);
+    }
+    assert_true(films >= 4u);
 }
 
 /* Actors come into view and leave it, and change their places in the draws; meshes are taken off and put on. */
@@ -240,11 +280,9 @@ static void a_stage_without_it_has_no_velocity(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(the_last_frame_is_drawn_again),
-    cmocka_unit_test(whoever_is_drawn_where),
-    cmocka_unit_test(cuts_have_no_velocity),
-    cmocka_unit_test(the_origin_may_move),
-    cmocka_unit_test(a_stage_without_it_has_no_velocity),
+    cmocka_unit_test(the_last_frame_is_drawn_again), cmocka_unit_test(faces_move_by_targets_alone),
+    cmocka_unit_test(whoever_is_drawn_where),        cmocka_unit_test(cuts_have_no_velocity),
+    cmocka_unit_test(the_origin_may_move),           cmocka_unit_test(a_stage_without_it_has_no_velocity),
 };
 
 TEST_MAIN(tests, NULL, fixture_tear_down)
