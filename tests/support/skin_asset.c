@@ -133,8 +133,10 @@ static void build(skin_asset *a, const char *path, const skin_options *options)
     orders = test_zeros(sizeof *orders * (m->mesh_count + m->node_count + 1u));
     a->bytes = skin_pack_of(m, options, 0.1f, &a->byte_count, orders);
     a->sources = test_zeros(sizeof *a->sources * (m->mesh_count + 1u));
+    a->source_count = test_zeros(sizeof *a->source_count * (m->mesh_count + 1u));
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         skin_source *from = sources_of(a->o, before, m, i);
+        a->source_count[i] = m->meshes[i].vertex_count;
         a->sources[i] = test_zeros(sizeof **a->sources * m->meshes[i].vertex_count);
         for (uint32_t v = 0; v < m->meshes[i].vertex_count; v++) {
             a->sources[i][v] = from[orders[i][v]];
@@ -172,23 +174,57 @@ static void measure(skin_asset *a)
     free(worlds);
 }
 
+/* A copy of an asset's pack and sources, which the caller may change. */
+static void copy_built(skin_asset *to, const skin_asset *from)
+{
+    const uint32_t meshes = from->pack.runs[NOH_CHUNK_MESH].count;
+    to->byte_count = from->byte_count;
+    to->bytes = test_aligned(from->bytes, from->byte_count);
+    to->sources = test_zeros(sizeof *to->sources * (meshes + 1u));
+    to->source_count = test_zeros(sizeof *to->source_count * (meshes + 1u));
+    for (uint32_t i = 0; i < meshes; i++) {
+        const size_t bytes = sizeof **to->sources * from->source_count[i];
+        to->source_count[i] = from->source_count[i];
+        to->sources[i] = test_zeros(bytes);
+        memcpy(to->sources[i], from->sources[i], bytes);
+    }
+}
+
+static void free_built(skin_asset *a)
+{
+    for (uint32_t i = 0; a->bytes && i < a->pack.runs[NOH_CHUNK_MESH].count; i++) free(a->sources[i]);
+    free(a->sources);
+    free(a->source_count);
+    free(a->bytes);
+}
+
+/* Functions of one test open the same asset: the last one without options is built once. */
 void skin_asset_open(skin_asset *a, const char *name, const skin_options *options)
 {
+    static skin_asset last;
+    static char last_name[128];
     const char *path = test_asset(name);
     memset(a, 0, sizeof *a);
     a->o = oracle_read(path);
-    build(a, path, options);
+    if (!options && strcmp(name, last_name) == 0) {
+        copy_built(a, &last);
+    } else {
+        build(a, path, options);
+    }
     a->pack = test_open(a->bytes, a->byte_count);
     measure(a);
+    if (!options && strcmp(name, last_name) != 0) {
+        free_built(&last);
+        memset(&last, 0, sizeof last);
+        copy_built(&last, a);
+        last.pack = test_open(last.bytes, last.byte_count);
+        snprintf(last_name, sizeof last_name, "%s", name);
+    }
 }
 
 void skin_asset_close(skin_asset *a)
 {
-    for (uint32_t i = 0; i < a->pack.runs[NOH_CHUNK_MESH].count; i++) {
-        free(a->sources[i]);
-    }
-    free(a->sources);
-    free(a->bytes);
+    free_built(a);
     oracle_free(a->o);
 }
 

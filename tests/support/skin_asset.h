@@ -17,7 +17,8 @@ typedef struct skin_asset {
     uint8_t *bytes;
     size_t byte_count;
     noh_pack pack;
-    skin_source **sources; /* [mesh_count][vertex_count] */
+    skin_source **sources;  /* [mesh_count][source_count] */
+    uint32_t *source_count; /* [mesh_count] */
     double size;           /* of the drawn rest pose's bounding box: its diagonal */
 } skin_asset;
 
