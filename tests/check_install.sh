@@ -236,7 +236,8 @@ fi
 echo '#include <stdio.h>
 int main(void) { return 0; }' >"$work/alone.c"
 if gcc -m32 "$work/alone.c" -o "$work/alone32" >/dev/null 2>&1; then
-    check '-m32: the amalgam builds' gcc -m32 -msse2 -mfpmath=sse -std=c99 -O0 -ffp-contract=off -fno-math-errno -Wall -Wextra -c "$build/amalgam/noh.c" -o "$work/noh32.o"
+    check '-m32: the amalgam builds' gcc -m32 -msse2 -mfpmath=sse -std=c99 -O0 -ffp-contract=off -fno-math-errno -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wvla -Werror \
+        -c "$build/amalgam/noh.c" -o "$work/noh32.o"
     check '-m32: the program links, without libm' gcc -m32 -std=gnu99 -O2 "-I$build/amalgam" "$work/smile.c" "$work/noh32.o" -o "$work/smile32"
     if "$work/alone32" 2>/dev/null; then runs '-m32' smile "$work/smile32"; else skip '-m32: the program runs' 'no 32-bit programs run here'; fi
 else
@@ -272,16 +273,4 @@ check 'and OPT is replaced' sh -c '! grep -e "-O2" "$1"' - "$work/commands"
 env -u WERROR -u MAKEFLAGS make --no-print-directory -B -n BUILD="$work/flags" DEPS=0 V=1 lib CFLAGS= CPPFLAGS= 2>/dev/null | grep ' -c runtime/' >"$work/commands"
 check 'warnings are no errors in a user'"'"'s build' sh -c 'test -s "$1" && ! grep -e "-Werror" "$1"' - "$work/commands"
 check 'a BUILD with a space is refused' sh -c '! make -n BUILD="a b" DEPS=0 lib 2>"$1" && grep -q "without spaces" "$1"' - "$work/refused"
-
-# ---- another processor ----
-
-if has arm-linux-gnueabihf-gcc && has arm-linux-gnueabihf-ar; then
-    check 'a cross target builds and installs' make --no-print-directory BUILD="$work/arm" DEPS=0 OPT=-O0 CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
-        CXX=false PREFIX=/usr DESTDIR="$work/armhf" install-lib
-    [ -z "${NOH_LONG:-}" ] || check 'and with -Os' make --no-print-directory BUILD="$work/arm-os" DEPS=0 OPT=-Os WERROR=-Werror CC=arm-linux-gnueabihf-gcc AR=arm-linux-gnueabihf-ar \
-        CXX=false PREFIX=/usr DESTDIR="$work/armhf-os" install-lib
-    check 'for that processor' sh -c 'readelf -h "$1" | grep -q "Machine:.*ARM"' - "$work/armhf/usr/lib/libnoh.a"
-else
-    skip 'a cross target builds and installs' 'no arm-linux-gnueabihf-gcc here'
-fi
 finish
