@@ -44,6 +44,7 @@ all() {
     rows demo/nell.noh 'alone, mrt, f16' --path mrt --accumulate f16
     rows wig.noh 'with hair' --path cpu --accumulate f32
     rows demo/puppet.noh 'with springs' --path cpu --accumulate f32
+    rows mask_far.noh 'a hundred far heads' --actors 100
     rows demo/puppet_levels.noh 'twenty actors' --actors 20
     rows demo/puppet_levels.noh 'twenty in 2 MiB' --actors 20 --bytes 2097152
     rows demo/puppet_levels.noh 'twenty, four jobs' --actors 20 --jobs 4

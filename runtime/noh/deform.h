@@ -266,6 +266,15 @@ noh_result noh_pick(const noh_pick_surface *surface, const float origin[3], cons
  * shapes  model[the skeleton's joint_count][12] (noh_local_to_model), matrices[skin's joint_count][12] */
 void noh_skin_matrices(const noh_skin *skin, const float *model, float *matrices);
 
+/* Move the virtual joints of a mesh by its targets: after noh_skin_matrices, before the matrices are used. They stand for
+ * the targets in the coarse levels of packs built with --lod-faces joints (noh_far_joints_header, format.h); such levels
+ * have no accumulation texels. Does nothing for other levels and other meshes. Other entries are not read.
+ *   M' = M (I + [w], b - cross(w, c)),  b and w the sums of weight * motion over the targets, in index order
+ * shapes  weights[target_count]; matrices[skin's joint_count][12]
+ * ranges  weights: any finite value
+ * source  Le and Deng, Smooth Skinning Decomposition with Rigid Bones, 2012; here motions are linear, like targets */
+void noh_mesh_move_far_joints(const noh_mesh *mesh, const float *weights, float *matrices);
+
 /* Compute a vertex as drawn, in model space. layers NULL: no morph targets.
  * ranges  index below vertex_count, of a skinned mesh */
 void noh_skin_vertex(const noh_mesh *mesh, const float *matrices, const noh_morph_layers *layers, uint32_t index,

@@ -39,6 +39,7 @@ extern "C" {
     X(TRANSFER, transfer, NOH_FOURCC('T', 'R', 'N', 'S'), 1)     \
     X(INFLUENCES, influences, NOH_FOURCC('I', 'N', 'F', 'L'), 1) \
     X(WRINKLES, wrinkles, NOH_FOURCC('W', 'R', 'N', 'K'), 1)     \
+    X(FAR_JOINTS, far_joints, NOH_FOURCC('F', 'A', 'R', 'J'), 1) \
     X(NODES, nodes, NOH_FOURCC('N', 'O', 'D', 'E'), 0)           \
     X(CLIP, clip, NOH_FOURCC('M', 'O', 'T', 'N'), 1)             \
     X(GRAPH, graph, NOH_FOURCC('G', 'R', 'P', 'H'), 1)           \
@@ -290,6 +291,31 @@ typedef struct noh_wrinkles_header {
     uint32_t color_texture;  /* LINEAR; 0 without colours */
     uint32_t reserved[2];
 } noh_wrinkles_header;
+
+/* ---- CHUNK_FAR_JOINTS, none or one for a mesh, in the order of meshes: header, then three arrays. Virtual joints, which
+ * stand for the targets in coarse levels of the mesh: further joints of its skin, each a copy of another entry of the
+ * skin, that targets move on top (noh_mesh_move_far_joints, deform.h). The vertices of these levels have weights for
+ * them, and no accumulation texels. Libraries older than this chunk refuse a pack with it (unknown type). ---- */
+
+#define NOH_FAR_JOINTS_MAX 32u /* of a mesh */
+
+typedef struct noh_far_joints_header {
+    uint32_t mesh;         /* the n-th mesh chunk, a skinned one without dual quaternions */
+    uint32_t level;        /* the finest level whose vertices they move, above 0 */
+    uint32_t joint_count;  /* 1..NOH_FAR_JOINTS_MAX */
+    uint32_t target_count; /* of the mesh */
+    uint32_t first_joint;  /* of them, among the skin's joints */
+    uint32_t centres_offset; /* float[joint_count][3], mesh space */
+    uint32_t scales_offset;  /* float[joint_count][2], 0 or above: of moves, model units, and of turns, radians */
+    uint32_t motions_offset; /* uint32_t[target_count][joint_count][2]: the move b and the turn w about the centre at
+                              * weight 1, each x, y and z in 10 bits of two's complement from the lowest bit up, and two
+                              * bits 0; value = integer * scale. A point p is moved by b + cross(w, p - centre) */
+    float normal_error;      /* certified: the farthest that a vertex normal is off with each target alone at weight 1,
+                              * radians */
+    float normal_error_p99;  /* for 99 % of the pairs of vertices and targets */
+    uint32_t reserved[6];
+} noh_far_joints_header;
+NOH_STATIC_ASSERT(sizeof(noh_far_joints_header) == 64, far_joints_header);
 
 /* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
 

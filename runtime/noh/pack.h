@@ -103,8 +103,9 @@ typedef struct noh_mesh {
     const uint32_t *influences; /* [vertex_count][NOH_INFLUENCE_WORDS(influence_count)] */
     const noh_palette *palettes;
     const uint16_t *palette_joints;
-    const float *joint_boxes;            /* [joint_count of the skin][6] */
-    const noh_transfer_header *transfer; /* followed by its arrays; NULL: none (light.h) */
+    const float *joint_boxes;                /* [joint_count of the skin][6] */
+    const noh_transfer_header *transfer;     /* followed by its arrays; NULL: none (light.h) */
+    const noh_far_joints_header *far_joints; /* likewise (deform.h) */
 } noh_mesh;
 
 /* The joints that move a mesh. A view: valid as long as the pack and its bytes are. */

@@ -80,6 +80,11 @@ for value in -0.1 1.5 x; do
 done
 noh build "$arm" -o "$work/refused.noh" --lod-own 0.1
 expect 2 'build --lod-own without levels'
+for value in on joints: joints:0 joints:8 joints:22; do
+    noh build "$arm" -o "$work/refused.noh" --lod 4 --lod-faces "$value"
+    expect 2 "build --lod-faces $value"
+done
+says '--lod-faces must be targets, joints or joints:K'
 noh build "$arm" -o "$work/refused.noh" --lod
 expect 2 'build --lod without a value'
 check 'no pack was written by any of these' test ! -e "$work/refused.noh"
@@ -119,6 +124,19 @@ elif [ -f "$head" ]; then
     check 'reports three levels' test "$(levels)" = 3
     noh verify "$work/head.noh"
     expect 0 'verify of it'
+    noh build "$head" -o "$work/joints.noh" --lod 4 --lod-fast --lod-faces joints
+    expect 0 'build of it with --lod-faces joints'
+    check 'in one level' test "$(grep -c '^  level .* virtual joints' "$work/out")" = 1
+    noh verify "$work/joints.noh" --lod 3
+    expect 0 'verify of the level with virtual joints'
+    for weight in 0 1; do
+        noh dump "$work/joints.noh" -o "$work/jaw$weight.obj" --lod 3 --weight "jawOpen=$weight"
+        expect 0 "dump of it with the jaw at $weight"
+    done
+    check 'targets move its vertices' sh -c '! cmp -s "$1" "$2"' - "$work/jaw0.obj" "$work/jaw1.obj"
+    noh build "$head" -o "$work/joints.noh" --lod 4 --lod-fast --lod-faces joints:2 --quiet
+    noh info "$work/joints.noh"
+    check 'from level 2 on' test "$(grep -c '^  level .* 0 texels' "$work/out")" = 2
 else
     skip 'head.glb with levels' 'no hero/head.glb in NOH_ASSETS'
 fi

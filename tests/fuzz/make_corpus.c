@@ -139,12 +139,29 @@ static void write_skin(const char *folder, const char *name, uint32_t palette)
 /* Three LOD levels; the model is freed. */
 static void write_levels(const char *folder, const char *name, model *m, uint32_t palette)
 {
-    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     char path[4096];
     lod_pack p;
     lod_pack_make(m, &three, palette, &p);
     assert_int_equal(p.mesh.header->level_count, 3);
     snprintf(path, sizeof path, "%s/%s.noh", folder, name);
+    test_write_file(path, p.bytes, p.byte_count);
+    lod_pack_free(&p);
+    model_free(m);
+}
+
+/* A face whose coarsest level has virtual joints. */
+static void write_far_joints(const char *in)
+{
+    const lod_settings settings = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 2 };
+    const skin_options skin = { .rigid_faces = 1 };
+    const lod_face face = { 22, 16, 7, 0, 0 };
+    model *m = lod_drawn_face_model(&face);
+    char path[4096];
+    lod_pack p;
+    lod_pack_make_skinned(m, &settings, &skin, &p);
+    assert_non_null(p.mesh.far_joints);
+    snprintf(path, sizeof path, "%s/far_joints.noh", in);
     test_write_file(path, p.bytes, p.byte_count);
     lod_pack_free(&p);
     model_free(m);
@@ -164,7 +181,7 @@ static void write_graph(const char *folder)
 static void write_transfer(const char *folder)
 {
     const lod_face face = { 12, 10, 2, 0, 0 };
-    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const transfer_settings settings = { 4, 0, NULL, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
     model *m = lod_face_model(&face);
@@ -378,6 +395,7 @@ static void corpus(void **state)
     write_levels(folder, "levels_all_touched", lod_face_model(&all_touched), 0);
     write_levels(folder, "levels_skin", lod_tube_model(&tube), 0);
     write_levels(folder, "levels_split", lod_tube_model(&tube), 6);
+    write_far_joints(folder);
     write_cover(folder, "levels_skin");
 }
 

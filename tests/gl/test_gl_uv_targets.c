@@ -29,7 +29,7 @@ static void add_deltas(model_mesh *mesh)
 
 static void make(model *m, uint32_t levels, lod_pack *p)
 {
-    const lod_settings settings = { levels, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings settings = { levels, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     lod_pack_make(m, &settings, 0, p);
     assert_true(p->mesh.header->flags & NOH_MESH_UV_TARGETS);
 }

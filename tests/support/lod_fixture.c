@@ -169,6 +169,19 @@ model *lod_face_model(const lod_face *face)
     return m;
 }
 
+model *lod_drawn_face_model(const lod_face *face)
+{
+    model *m = lod_face_model(face);
+    m->node_count = 1;
+    m->nodes = test_zeros(sizeof *m->nodes);
+    m->nodes[0].name = model_string("head");
+    m->nodes[0].parent = m->nodes[0].skin = MODEL_NONE;
+    m->nodes[0].rotation[3] = 1.0f;
+    for (uint32_t i = 0; i < 3u; i++) m->nodes[0].scale[i] = 1.0f;
+    for (uint32_t i = 0; i < 4u; i++) m->nodes[0].world[5u * i] = 1.0;
+    return m;
+}
+
 /* ---- a tube ---- */
 
 double lod_tube_half_angle(uint32_t joint, uint32_t frame)
@@ -241,8 +254,8 @@ void lod_pack_make_skinned(model *m, const lod_settings *settings, const skin_op
     memset(p, 0, sizeof *p);
     memset(&clip_of, 0, sizeof clip_of);
     clip_of.skeletons_only = 1;
-    if (clips_from_model(m, &rate, &made, &error) || skins_bind(m, made, skin, &error) ||
-        clips_encode(made->sets, made->set_count, &clip_of, &encoded, &error)) {
+    if ((skin->rigid_faces && skins_of_faces(m)) || clips_from_model(m, &rate, &made, &error) ||
+        skins_bind(m, made, skin, &error) || clips_encode(made->sets, made->set_count, &clip_of, &encoded, &error)) {
         fail_msg("%s (%s)", error.what, error.where);
     }
     p->mesh_count = m->mesh_count;

@@ -30,6 +30,8 @@ extern const uint32_t lod_face_pairs[LOD_FACE_PAIRS][2];
 
 /* Free with model_free. A face has room for one more submesh. */
 model *lod_face_model(const lod_face *face);
+/* A face that a node draws, for levels with virtual joints (lod_settings.face_joints, skin_options.rigid_faces). */
+model *lod_drawn_face_model(const lod_face *face);
 model *lod_tube_model(const skin_cylinder *tube);
 
 /* Half the angle in radians about x by which joint j is turned in the clip's frame. */

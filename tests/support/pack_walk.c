@@ -214,6 +214,18 @@ static void walk_influences(walk *w, const noh_mesh *mesh)
     }
 }
 
+static void walk_far_joints(walk *w, const noh_mesh *mesh, const noh_skin *skin)
+{
+    const size_t bytes = 48u * (size_t)skin->header->joint_count;
+    float *matrices = memory(bytes), *weights = memory(4u * (size_t)mesh->header->target_count);
+    memcpy(matrices, skin->inverse_bind, bytes);
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) weights[t] = (float)(t % 3u) - 0.5f;
+    noh_mesh_move_far_joints(mesh, weights, matrices);
+    eat(w, matrices, bytes);
+    free(matrices);
+    free(weights);
+}
+
 /* Skinned by the inverse bind matrices: any matrices will do, and these are at hand. */
 static void walk_skinned(walk *w, const noh_mesh *mesh)
 {
@@ -223,6 +235,7 @@ static void walk_skinned(walk *w, const noh_mesh *mesh)
     if (noh_pack_skin_at(mesh->pack, mesh->header->skin, &skin, NULL) != NOH_OK) {
         return;
     }
+    if (mesh->far_joints) walk_far_joints(w, mesh, &skin);
     positions = memory(12u * (size_t)count);
     normals = memory(12u * (size_t)count);
     tangents = memory(16u * (size_t)count);

@@ -91,7 +91,15 @@ void convert_report_lods(FILE *out, const model_mesh *mesh, const mesh_levels *l
         if (e->clip > 0.0f) {
             fprintf(out, ", %.2f in motion", 1e3 * (double)(scale * e->clip));
         }
+        if (levels->joints.level && k >= levels->joints.level) {
+            fprintf(out, ", by %u virtual joints", levels->joints.fit.joint_count);
+        }
         fputc('\n', out);
+    }
+    if (levels->joints.level) {
+        fprintf(out, "  virtual joints: normals off by at most %.1f degrees (99 %%: %.1f) with one target, %u bytes\n",
+                57.29578 * (double)levels->joints.normal_most, 57.29578 * (double)levels->joints.normal_p99,
+                levels->joints.fit.joint_count * (20u + 8u * levels->joints.fit.target_count));
     }
     if (levels->count == 1 && levels->built) {
         fprintf(out, "  no coarser levels: %u of %u points may not move (seams without a partner, borders that touch, ",

@@ -149,6 +149,7 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (seams_close(s->m, options->seam, options->skin.report, error)) {
         return 1;
     }
+    if (options->skin.rigid_faces && skins_of_faces(s->m)) return out_of_memory(error);
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;
     }

@@ -70,7 +70,7 @@ golden-update:
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh update
 
 # What characters take, to the byte, as in tests/golden/budgets.txt.
-BUDGET_PACKS := $(BUILD)/mask.noh $(BUILD)/demo/nell.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh
+BUDGET_PACKS := $(BUILD)/mask.noh $(BUILD)/mask_far.noh $(BUILD)/demo/nell.noh $(BUILD)/wig.noh $(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh
 budgets: deps-build
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUDGET_PACKS)
 	@NOH_BUILD="$(BUILD)" sh tests/budgets.sh

@@ -192,6 +192,9 @@ $(BUILD)/page/nell.noh: $(BUILD)/demo/nell.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-color 1.2 --quiet
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --quiet
+# Far heads without targets.
+$(BUILD)/mask_far.noh: $(BUILD)/mask.glb $(BUILD)/noh
+	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --lod-faces joints --lod-from 3 --quiet
 MASK_HAIR := tools/demo_assets/mask/mask.hair
 $(BUILD)/wig.noh: $(BUILD)/mask.glb $(MASK_HAIR) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --hair $(MASK_HAIR) --quiet

@@ -46,6 +46,15 @@ static const noh_transfer_header *transfer_of(const noh_pack *pack, uint32_t mes
     return NULL;
 }
 
+static const noh_far_joints_header *far_joints_of(const noh_pack *pack, uint32_t mesh)
+{
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_FAR_JOINTS].count; i++) {
+        const noh_far_joints_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_FAR_JOINTS, i);
+        if (h->mesh == mesh) return h;
+    }
+    return NULL;
+}
+
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(pack && mesh);
@@ -58,6 +67,7 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
     mesh->pack = pack;
     mesh->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_MESH].first + index);
     mesh->transfer = transfer_of(pack, index);
+    mesh->far_joints = far_joints_of(pack, index);
     view_of(noh_pack_chunk_at(pack, NOH_CHUNK_MESH, index), mesh);
     return NOH_OK;
 }

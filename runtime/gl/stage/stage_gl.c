@@ -515,6 +515,8 @@ static void pose(noh_stage *s, noh_stage_kind *k, uint32_t index, float *matrice
         if (!mesh->skinned || k->actors[index].look.hidden_meshes >> m & 1u) continue;
         if (mesh->skin.header != ready) noh_character_skin(noh_stage_character(k, index), &mesh->skin, matrices);
         ready = mesh->skin.header;
+        noh_stage_move_far_joints(k, index, m, shown->level > shown->level_before ? shown->level : shown->level_before,
+                                  matrices);
         if (noh_gl_skin_write_matrices(items[m].skin, shown->place, matrices)) shown->updates |= NOH_STAGE_MOVED;
     }
     if (s->desc.motion && noh_gl_motion_pose(s, k, index)) shown->updates |= NOH_STAGE_MOVED;

@@ -75,15 +75,15 @@ static void set_before(drawing *d, uint32_t mesh, uint32_t place)
     }
 }
 
-/* Draw one actor's mesh at one level, in a share of the pixels. */
-static void draw_alone(drawing *d, uint32_t mesh, uint32_t place, uint32_t level, float from, float to)
+/* Draw the mesh of one of the actors. */
+static void draw_alone(drawing *d, const noh_stage_drawing *of, uint32_t place)
 {
+    const uint32_t mesh = of->mesh;
     const noh_gl_item *item = &d->on_gl->items[mesh];
     const noh_stage_mesh *m = &d->k->meshes[mesh];
     const noh_stage_shown *shown = shown_at(d, place);
-    const noh_gl_lod lod = { noh_stage_mesh_level(d->k, mesh, level), from, to };
-    const noh_character *ch = noh_stage_character(d->k, d->k->order[place]);
-    const noh_gl_skin_binding skin = skin_of(item, place, noh_lod_influence_count(&ch->lod, &d->k->table));
+    const noh_gl_lod lod = { noh_stage_mesh_level(d->k, mesh, of->level), of->from, of->to };
+    const noh_gl_skin_binding skin = skin_of(item, place, of->influence_count);
     const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
     const int is_morphed = noh_gl_has_tile(item, shown);
     noh_gl_morph_binding morph;
@@ -135,7 +135,7 @@ static void draw_one(void *user, const noh_stage_drawing *of)
         draw_crowd(d, of);
         return;
     }
-    for (uint32_t i = 0; i < of->count; i++) draw_alone(d, of->mesh, of->first + i, of->level, of->from, of->to);
+    for (uint32_t i = 0; i < of->count; i++) draw_alone(d, of, of->first + i);
 }
 
 static void draw_pass(drawing *d, int pass)

@@ -172,6 +172,8 @@ noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t i
     to_world(stage, out->world);
     if (matrices && mesh->skinned) {
         noh_character_skin(noh_stage_character(k, noh_stage_index(k, a)), &mesh->skin, matrices);
+        noh_stage_move_far_joints(k, noh_stage_index(k, a), index,
+                                  noh_stage_character(k, noh_stage_index(k, a))->lod.mesh, matrices);
     }
     return NOH_OK;
 }

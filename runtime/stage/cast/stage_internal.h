@@ -606,6 +606,9 @@ float noh_stage_error_pixels(const noh_stage *s, const noh_stage_kind *k, uint32
 float noh_stage_size(const noh_stage *s, const noh_stage_actor *a);
 /* An actor's floats as its last pose, the game, the pack's rules and correctives have them. */
 void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index);
+/* After noh_character_skin for the n-th mesh of an actor, whose weights are taken: noh_mesh_move_far_joints at one of the
+ * actor's levels. */
+void noh_stage_move_far_joints(const noh_stage_kind *k, uint32_t index, uint32_t mesh, uint32_t level, float *matrices);
 
 void noh_stage_look_at(noh_stage *s, uint32_t job, uint32_t first, uint32_t end);
 void noh_stage_share(noh_stage *s);

@@ -71,10 +71,12 @@ size_t noh_stage_pick_bytes(const noh_mesh *mesh, size_t *behind)
 }
 
 /* A skinned mesh's matrices, and dual quaternions where they draw it. */
-static void set_joints(noh_stage *s, const noh_character *ch, const noh_stage_mesh *mesh, noh_pick_surface *surface)
+static void set_joints(noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t m, noh_pick_surface *surface)
 {
+    const noh_stage_mesh *mesh = &k->meshes[m];
     size_t behind;
-    noh_character_skin(ch, &mesh->skin, s->jobs[0].matrices);
+    noh_character_skin(noh_stage_character(k, index), &mesh->skin, s->jobs[0].matrices);
+    noh_stage_move_far_joints(k, index, m, s->shown[k->first_actor + index].level, s->jobs[0].matrices);
     surface->matrices = s->jobs[0].matrices;
     if (mesh->mesh.header->flags & NOH_MESH_DUAL_QUATERNION) {
         noh_dual_quaternion *joints;
@@ -105,7 +107,7 @@ static void pick_actor(noh_stage *s, noh_stage_kind *k, uint32_t index, ray *r, 
         surface.tint = noh_stage_tint_of(&s->actors[index]);
         surface.world = mesh->skinned ? NULL : mesh->node_world;
         if (shown->slot.pool != NOH_NONE) surface.weights = weights + mesh->first_weight;
-        if (mesh->skinned) set_joints(s, ch, mesh, &surface);
+        if (mesh->skinned) set_joints(s, k, index - k->first_actor, m, &surface);
         if (noh_pick(&surface, origin, direction, r->distance, s->pick_scratch, s->pick_bytes, &own, NULL) == NOH_OK) {
             r->distance = own.distance;
             tell(s, index, mesh, &own, hit);

@@ -10,6 +10,7 @@
 #include "motion/clip/clip_view_internal.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
+#include "noh/deform.h"
 #include "noh/noh.h"
 #include "noh/modules.h"
 #include "noh/low_stage.h"
@@ -63,6 +64,13 @@ void noh_stage_take_floats(const noh_stage_kind *k, uint32_t index)
     hold(k, index, floats); /* held floats override clips and modules */
     noh_weight_rules_apply(k->targets.weight_rules, k->targets.weight_rule_count, floats);
     if (k->targets.corrective_count) noh_stage_correct(k, index, floats);
+}
+
+void noh_stage_move_far_joints(const noh_stage_kind *k, uint32_t index, uint32_t mesh, uint32_t level, float *matrices)
+{
+    const noh_stage_mesh *m = &k->meshes[mesh];
+    const noh_mesh at = noh_mesh_at_lod(&m->mesh, k->plan->levels[level].mesh_levels[mesh]);
+    noh_mesh_move_far_joints(&at, k->weights + (size_t)index * k->weight_count + m->first_weight, matrices);
 }
 
 /* The weights of all meshes, one after another, without targets whose effect is too small to see. */

@@ -18,11 +18,13 @@ void noh_pose_skin(const noh_skeleton *skeleton, const noh_skin *skin, const noh
     noh_skin_matrices(skin, model, matrices);
 }
 
+/* With two matrices. */
 static int has_joint_twice(const noh_skin *skin)
 {
     for (uint32_t i = 0; i < skin->header->joint_count; i++) {
         for (uint32_t k = 0; k < i; k++) {
-            if (skin->joints[i] == skin->joints[k]) {
+            if (skin->joints[i] == skin->joints[k] &&
+                memcmp(skin->inverse_bind + 12u * i, skin->inverse_bind + 12u * k, 12u * sizeof(float))) {
                 return 1;
             }
         }

@@ -237,7 +237,7 @@ static float level_error(const mesh_levels *levels, uint32_t triangles_over)
 static void meshes_get_like_errors(void **state)
 {
     (void)state;
-    const lod_settings settings = { 3, 0, LOD_QUALITY, 0.0f, 0.0f, NULL };
+    const lod_settings settings = { 3, 0, LOD_QUALITY, 0.0f, 0.0f, NULL, 0 };
     model *m = model_new();
     mesh_levels levels[2];
     model_error error = { "", "" };

@@ -12,7 +12,7 @@
 #include "deform/morph/morph_internal.h"
 #include "noh/low_core.h"
 
-static const lod_settings four_levels = { 4, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+static const lod_settings four_levels = { 4, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
 static const float shares[NOH_LOD_LEVELS_MAX] = LOD_SHARES;
 
 /* ---- the meshes ---- */
@@ -546,7 +546,7 @@ static void same_bytes_twice(void **state)
 /* The pack has the full mesh alone, and the bytes that it has without levels asked for. */
 static void check_has_no_levels(model *m, const lod_settings *settings)
 {
-    const lod_settings none = { 0, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings none = { 0, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     lod_pack with, without;
     lod_pack_make(m, settings, 0, &with);
     lod_pack_make(m, &none, 0, &without);
@@ -560,7 +560,7 @@ static void check_has_no_levels(model *m, const lod_settings *settings)
 
 static void one_level_is_none(void **state)
 {
-    const lod_settings one = { 1, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings one = { 1, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const lod_face face = { 12, 8, 3, 1, 0 };
     (void)state;
     check_has_no_levels(lod_face_model(&face), &one);
@@ -568,7 +568,7 @@ static void one_level_is_none(void **state)
 
 static void what_cannot_be_simplified_has_no_levels(void **state)
 {
-    const lod_settings by_error = { 0, 1, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings by_error = { 0, 1, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const lod_face octahedron = { 4, 2, 0, 0, 0 };
     model *m = lod_face_model(&octahedron);
     (void)state;
@@ -608,7 +608,7 @@ static void clip_has_no_levels(void **state)
  * made. */
 static void levels_by_error(void **state)
 {
-    const lod_settings by_error = { 0, 1, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings by_error = { 0, 1, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const lod_face face = { 24, 16, 6, 1, 0 };
     model *m = lod_face_model(&face);
     lod_pack p;
@@ -647,7 +647,7 @@ static void every_mesh_has_its_levels(void **state)
 /* Above 65,536 vertices indices are words, in every level: also in those that have fewer. */
 static void large_meshes_have_word_indices(void **state)
 {
-    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const lod_face face = { 360, 182, 0, 0, 0 };
     model *m = lod_face_model(&face);
     lod_pack p;

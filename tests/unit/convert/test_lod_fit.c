@@ -13,7 +13,7 @@ static const lod_face head = { 60, 40, LOD_FACE_TARGETS, 0, 0 };
 
 static mesh_levels levels_of(model *m, float own_share)
 {
-    const lod_settings settings = { 4, 0, LOD_QUALITY, 0.0f, own_share, NULL };
+    const lod_settings settings = { 4, 0, LOD_QUALITY, 0.0f, own_share, NULL, 0 };
     model_error error = { "", "" };
     mesh_levels levels;
     if (mesh_levels_make(m, 0, &settings, &levels, &error)) {
@@ -146,7 +146,7 @@ static void points_that_a_target_tears_stay(void **state)
 static void levels_have_none_beyond_their_share(void **state)
 {
     (void)state;
-    const lod_settings few = { 4, 0, LOD_QUALITY, 0.0f, 0.02f, NULL }, fast = { 4, 0, LOD_FAST, 0.0f, 1.0f, NULL };
+    const lod_settings few = { 4, 0, LOD_QUALITY, 0.0f, 0.02f, NULL, 0 }, fast = { 4, 0, LOD_FAST, 0.0f, 1.0f, NULL, 0 };
     model *m = lod_face_model(&head);
     const uint32_t before = m->meshes[0].vertex_count;
     model_error error = { "", "" };
@@ -164,7 +164,7 @@ static void levels_have_none_beyond_their_share(void **state)
 static void light_reaches_the_surface_beside_them(void **state)
 {
     (void)state;
-    const lod_settings settings = { 4, 0, LOD_QUALITY, 0.0f, 0.0f, NULL };
+    const lod_settings settings = { 4, 0, LOD_QUALITY, 0.0f, 0.0f, NULL, 0 };
     model *m = lod_face_model(&head);
     model_error error = { "", "" };
     light_surface s;

@@ -42,7 +42,7 @@ static kept keep(const uint8_t *bytes, size_t count)
 
 static kept build(model *m, uint32_t palette)
 {
-    const lod_settings settings = { LEVELS, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings settings = { LEVELS, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     lod_pack p;
     kept k;
     lod_pack_make(m, &settings, palette, &p);

@@ -67,7 +67,7 @@ static model *tube_model(void)
 
 static void make(model *m, uint32_t levels, uint32_t palette, lod_pack *p)
 {
-    const lod_settings settings = { levels, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings settings = { levels, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     lod_pack_make(m, &settings, palette, p);
     assert_int_equal(p->mesh.header->level_count, levels);
 }

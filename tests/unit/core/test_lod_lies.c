@@ -19,7 +19,7 @@ static small_pack rigid, split; /* texel references in both; the second is skinn
 
 static small_pack keep(model *m, uint32_t palette)
 {
-    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     small_pack kept;
     lod_pack p;
     lod_pack_make(m, &three, palette, &p);
@@ -358,7 +358,7 @@ static void errors_name_the_field(void **state)
 /* A mesh whose targets move every vertex needs no references: vertex and texel have the same number. */
 static void texels_without_references_are_counted(void **state)
 {
-    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const lod_face face = { 12, 10, 2, 0, 1 };
     model *m = lod_face_model(&face);
     noh_error error = { NOH_OK, "nothing", 0, 0 };

@@ -157,7 +157,7 @@ static void eight_is_what_was_not_asked_for(void **state)
 /* Of a pack that lost its finest levels, and of one made ready for the wire, every vertex has its own joints. */
 static void lists_follow_their_vertices(void **state)
 {
-    static const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    static const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     const skin_options skin = { .influences = 32 };
     model *m = skin_cylinder_model(&tube);
     lod_pack p;

@@ -510,7 +510,7 @@ static float *shaded(const noh_mesh *mesh, uint32_t *count)
 static void levels_are_prefixes_of_transfers(void **state)
 {
     const lod_face face = { 24, 20, LOD_FACE_TARGETS, 1, 0 };
-    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     model *m = lod_face_model(&face);
     lod_pack from;
     lit_pack p;
@@ -562,7 +562,7 @@ static uint8_t *strip(const noh_pack *from, uint32_t level, noh_pack *pack)
 static void finer_packs_have_the_same_transfer(void **state)
 {
     const lod_face face = { 12, 10, 2, 0, 0 };
-    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL };
+    const lod_settings two = { 2, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
     model *m = lod_face_model(&face);
     lit_pack fours, sixes;
     noh_pack plain, coarse[3];

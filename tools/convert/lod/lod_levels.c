@@ -320,6 +320,29 @@ static int own_vertices(model *m, uint32_t index, const lod_settings *settings, 
     return failed;
 }
 
+/* ---- virtual joints ---- */
+
+/* Bake the targets of coarse levels, and measure these again. */
+static int bake_targets(model *m, uint32_t index, const lod_settings *settings, uint32_t full_count, lod_frames *frames,
+                        mesh_levels *out, model_error *error)
+{
+    const uint32_t node = lod_skinned_node(m, index);
+    const uint32_t first = settings->face_joints < out->count ? settings->face_joints : out->count - 1u;
+    lod_level *levels[NOH_LOD_LEVELS_MAX];
+    pose_list poses = { 0, 0, NULL };
+    int failed;
+    if (!settings->face_joints || out->count < 2u || !lod_joints_allowed(&m->meshes[index])) return 0;
+    for (uint32_t k = first; k < out->count; k++) levels[k - first] = &out->built->levels[out->which[k]];
+    failed = lod_joints_make(m, index, full_count, levels, out->count - first, &out->joints, error);
+    if (failed || !out->joints.vertex_count) return failed;
+    out->joints.level = first;
+    failed = lod_frames_again(m, node, frames) || poses_make(&m->meshes[index], frames, &poses)
+                 ? model_fail(error, m->meshes[index].name, "out of memory")
+                 : certify(&m->meshes[index], &poses, first, out->count, out, error);
+    poses_free(&poses);
+    return failed || lod_joints_bake(&m->meshes[index], &out->joints, error);
+}
+
 int mesh_levels_build(const model *m, uint32_t index, const lod_settings *settings, lod_part part, lod_frames *frames,
                       mesh_levels *out, model_error *error)
 {
@@ -341,13 +364,15 @@ int mesh_levels_finish(model *m, uint32_t index, const lod_settings *settings, l
                        model_error *error)
 {
     const model_mesh *mesh = &m->meshes[index];
+    const uint32_t full_count = mesh->vertex_count;
     pose_list poses = { 0, 0, NULL };
     int failed = 0;
     if (out->built) {
         choose_levels(mesh, out);
         failed = (poses_make(mesh, frames, &poses) && model_fail(error, "", "out of memory")) ||
                  certify(mesh, &poses, 1, out->count, out, error) ||
-                 own_vertices(m, index, settings, frames, out, error) || rank_vertices(mesh, out, error);
+                 own_vertices(m, index, settings, frames, out, error) ||
+                 bake_targets(m, index, settings, full_count, frames, out, error) || rank_vertices(mesh, out, error);
     }
     poses_free(&poses);
     lod_frames_free(frames);
@@ -368,6 +393,7 @@ int mesh_levels_make(model *m, uint32_t mesh, const lod_settings *settings, mesh
 void mesh_levels_free(mesh_levels *levels)
 {
     lod_free(levels->built);
+    lod_joints_free(&levels->joints);
     free(levels->rank);
     memset(levels, 0, sizeof *levels);
 }

@@ -7,6 +7,7 @@
 #include "noh/base.h"
 #include "lod.h"
 #include "lod_frames.h"
+#include "lod_joints.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,6 +24,9 @@ typedef struct lod_settings {
     float own_share;   /* the coarsest levels that together use no more than this share of the mesh's vertices have
                           vertices of their own (lod_fit.h); 0: LOD_OWN_SHARE; below 0, or with LOD_FAST: none has */
     FILE *progress;    /* a terminal, for progress; NULL: none */
+    uint32_t
+        face_joints; /* where lod_joints_allowed, levels from this one on, or else the coarsest, have virtual joints
+                             instead of targets; 0: none has */
 } lod_settings;
 
 #define LOD_SHARES                                            \
@@ -51,6 +55,7 @@ typedef struct mesh_levels {
     uint8_t *rank; /* [vertex_count] the coarsest level that a vertex is in */
     lod_errors errors[NOH_LOD_LEVELS_MAX];
     float cap_error[LOD_CAPS]; /* lod_frames.h */
+    lod_joints joints;
 } mesh_levels;
 
 /* Build and certify the levels of all meshes; out [mesh_count]. By shares, the meshes of an asset have levels of like

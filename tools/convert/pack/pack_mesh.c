@@ -208,15 +208,21 @@ static void append_targets(const model_mesh *m, const morph_encoding *e, string_
 }
 
 /* From the source's deltas; decoded ones differ by at most the certified error. */
-static void append_target_boxes(const model_mesh *m, const morph_encoding *e, noh_mesh_header *h, size_t base,
-                                byte_buffer *out)
+static void append_target_boxes(const mesh_input *from, noh_mesh_header *h, size_t base, byte_buffer *out)
 {
+    const model_mesh *m = from->mesh;
+    const morph_encoding *e = from->encoding;
+    const float *baked = from->levels->joints.boxes; /* of what virtual joints do instead */
     buffer_align(out, 16);
     h->target_boxes_offset = (uint32_t)(out->count - base);
     for (uint32_t t = 0; t < e->target_count; t++) {
         float box[6] = { 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f };
         for (uint32_t v = 0; v < m->vertex_count; v++) {
             pack_grow_box(box, m->targets[t].position + 3 * (size_t)v);
+        }
+        if (baked) {
+            pack_grow_box(box, baked + 6 * (size_t)t);
+            pack_grow_box(box, baked + 6 * (size_t)t + 3);
         }
         for (int c = 0; c < 3; c++) {
             box[c] -= e->targets[t].position_error;
@@ -264,9 +270,11 @@ static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, n
 
 /* A level's header, from the full mesh's, whose offsets are known by now. */
 static noh_mesh_header level_header(const noh_mesh_header *full, const morph_encoding *e, const mesh_layout *l,
-                                    const lod_errors *errors, uint32_t level)
+                                    const mesh_levels *levels, uint32_t level)
 {
     const level_layout *own = &l->levels[level];
+    const lod_errors *errors = &levels->errors[level];
+    const int has_targets = !levels->joints.level || level < levels->joints.level;
     noh_mesh_header h = *full;
     h.level = level;
     h.vertex_count = own->vertex_count;
@@ -280,7 +288,7 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
         h.rect_count += part->rect_count;
         h.texel_count += part->texel_count;
         h.pair_count += part->pair_count;
-        h.level_skipped += e->targets[t].rect_count && !part->rect_count ? e->targets[t].radius : 0.0f;
+        h.level_skipped += has_targets && e->targets[t].rect_count && !part->rect_count ? e->targets[t].radius : 0.0f;
     }
     h.indices_offset += own->first_index * h.index_bytes;
     h.submeshes_offset += own->first_submesh * (uint32_t)sizeof(noh_submesh);
@@ -311,13 +319,13 @@ int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, m
         append_vertices(m, e, &l, &h, base, out);
         append_indices(&l, &h, base, out);
         append_targets(m, e, strings, &h, base, out);
-        append_target_boxes(m, e, &h, base, out);
+        append_target_boxes(from, &h, base, out);
         pack_influences(m, &l, &h, base, out);
         pack_joint_boxes(m, from->skin_joint_count, &h, base, out);
         pack_influence_list(m, &l, extra->index, &extra->influences);
     }
     for (uint32_t k = 0; k < l.level_count && !failed && !out->failed; k++) {
-        const noh_mesh_header header = level_header(&h, e, &l, &levels->errors[k], k);
+        const noh_mesh_header header = level_header(&h, e, &l, levels, k);
         memcpy(out->bytes + base + k * sizeof header, &header, sizeof header);
     }
     mesh_layout_free(&l);

@@ -339,6 +339,53 @@ static void write_influences(pack_writer *w, const void *made)
 
 const chunk_maker chunk_influences = { .write = write_influences };
 
+static uint32_t motion_word(const int16_t *motion)
+{
+    uint32_t word = 0;
+    for (uint32_t k = 0; k < 3u; k++) word |= ((uint32_t)motion[k] & 0x3ffu) << 10u * k;
+    return word;
+}
+
+static void write_joints_of(pack_writer *w, uint32_t index, const lod_joints *joints)
+{
+    const joint_fit *f = &joints->fit;
+    const size_t base = (chunk_begin(w, NOH_CHUNK_FAR_JOINTS, w->m->meshes[index].name), w->out.count);
+    noh_far_joints_header h;
+    memset(&h, 0, sizeof h);
+    h.mesh = index;
+    h.level = joints->level;
+    h.joint_count = f->joint_count;
+    h.target_count = f->target_count;
+    h.first_joint = joints->first_joint;
+    h.normal_error = joints->normal_most;
+    h.normal_error_p99 = joints->normal_p99;
+    h.centres_offset = sizeof h;
+    buffer_append(&w->out, &h, sizeof h);
+    buffer_append(&w->out, f->centre, 12u * (size_t)f->joint_count);
+    buffer_align(&w->out, 16);
+    h.scales_offset = (uint32_t)(w->out.count - base);
+    buffer_append(&w->out, f->scale, 8u * (size_t)f->joint_count);
+    buffer_align(&w->out, 16);
+    h.motions_offset = (uint32_t)(w->out.count - base);
+    for (size_t i = 0; i < f->joint_count * (size_t)f->target_count; i++) {
+        const size_t at = 6u * (i % f->joint_count * f->target_count + i / f->joint_count);
+        const uint32_t words[2] = { motion_word(f->motion + at), motion_word(f->motion + at + 3u) };
+        buffer_append(&w->out, words, sizeof words);
+    }
+    if (!w->out.failed) memcpy(w->out.bytes + base, &h, sizeof h);
+    chunk_end(w);
+}
+
+static void write_far_joints(pack_writer *w, const void *made)
+{
+    (void)made;
+    for (uint32_t i = 0; w->levels && i < w->m->mesh_count; i++) {
+        if (w->levels[i].joints.level) write_joints_of(w, i, &w->levels[i].joints);
+    }
+}
+
+const chunk_maker chunk_far_joints = { .write = write_far_joints };
+
 static void write_wrinkles(pack_writer *w, const void *made)
 {
     (void)made;

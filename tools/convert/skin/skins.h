@@ -16,8 +16,13 @@ typedef struct skin_options {
         *dual_quaternion; /* [dual_quaternion_count] meshes to skin by dual quaternions: names, or "all" */
     uint32_t dual_quaternion_count;
     int keep_parts; /* do not join rigid meshes that joints move */
+    int rigid_faces; /* 1: skins_of_faces */
     FILE *report;   /* NULL: quiet */
 } skin_options;
+
+/* Before skeletons are made: in a model without skins, nodes that draw meshes with targets become joints that move these
+ * (for lod_joints.h). 0, or 1 when out of memory. */
+int skins_of_faces(model *m);
 
 /* Bind every skinned mesh of a model to its skin, and every skin to its skeleton. Rigid meshes that a joint moves
  * become skinned ones (skin_rigid.h); a mesh that is drawn with several skins, or both with and without one, is copied.

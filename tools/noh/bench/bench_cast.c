@@ -210,6 +210,7 @@ static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, 
         const float *weights = h->weights + mesh->first_weight;
         noh_gl_morph *morph = item->model->morph;
         noh_gl_morph_binding binding;
+        noh_mesh level;
         float placed[12];
         int moved = 0;
         memcpy(placed, world, sizeof placed);
@@ -226,6 +227,8 @@ static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, 
         if (mesh->skinned) {
             if (mesh->skin.header != ready) noh_character_skin(ch, &mesh->skin, h->of->stage->jobs[0].matrices);
             ready = mesh->skin.header;
+            level = noh_mesh_at_lod(&mesh->mesh, h->kind->plan->levels[at->level].mesh_levels[m]);
+            noh_mesh_move_far_joints(&level, weights, h->of->stage->jobs[0].matrices);
             noh_gl_skin_set_matrices(item->skin, at->place, h->of->stage->jobs[0].matrices);
         }
     }

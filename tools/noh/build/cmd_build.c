@@ -33,6 +33,7 @@ typedef struct lod_args {
     option_list from;
     int fast;
     double color_edges, own_share;
+    const char *faces;
 } lod_args;
 
 typedef struct skin_args {
@@ -199,6 +200,14 @@ static int set_skin(const build_args *a, convert_options *o)
     return 0;
 }
 
+/* The finest level with virtual joints: `joints` is the coarsest that there is. */
+static int parse_faces(const char *text, uint32_t *level)
+{
+    const int is_level = !strncmp(text, "joints:", 7) && text[7] > '0' && text[7] < '0' + (int)NOH_LOD_LEVELS_MAX;
+    *level = is_level ? (uint32_t)(text[7] - '0') : strcmp(text, "joints") ? 0u : NOH_LOD_LEVELS_MAX - 1u;
+    return strcmp(text, "targets") && strcmp(text, "joints") && (!is_level || text[8]);
+}
+
 static int set_lod(const build_args *a, convert_options *o)
 {
     uint32_t level;
@@ -219,6 +228,11 @@ static int set_lod(const build_args *a, convert_options *o)
     }
     o->lod.own_share = a->lod.own_share > 0.0 ? (float)a->lod.own_share : -1.0f;
     o->lod.mode = a->lod.fast ? LOD_FAST : LOD_QUALITY;
+    if (parse_faces(a->lod.faces, &o->lod.face_joints)) {
+        return tool_usage("--lod-faces must be targets, joints or joints:K, K from 1 to %u, not '%s'",
+                          NOH_LOD_LEVELS_MAX - 1u, a->lod.faces);
+    }
+    o->source.skin.rigid_faces = o->lod.face_joints > 0;
     return a->lod.levels ? parse_levels(a->lod.levels, &o->lod.level_count, &o->lod.by_error) : 0;
 }
 
@@ -507,6 +521,15 @@ static const option options[] = {
       .what =
           "give the coarsest levels that together use at most this share of a mesh's vertices their own vertices, which may lie off the surface: their errors fall by a third, and the mesh grows by these vertices; 0: all levels share the mesh's vertices",
       .example = "0",
+      .needs = "--lod" },
+    { .name = "--lod-faces",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, lod.faces),
+      .value = "targets|joints|joints:K",
+      .initial = "targets",
+      .what =
+          "joints: the coarsest level, or those from level K on, follow the targets by up to 16 virtual joints a mesh, and are drawn as skinned meshes: no targets, no accumulators, larger errors. A face without joints gets one. Meshes whose targets move texture coordinates and meshes skinned by dual quaternions keep their targets",
+      .example = "joints",
       .needs = "--lod" },
     { .name = "--transfer",
       .kind = OPTION_TEXT,

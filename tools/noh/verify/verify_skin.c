@@ -119,6 +119,7 @@ static int check_pose(mesh_job *m)
     }
     noh_local_to_model(&m->skeleton, m->pose, m->skeleton.joint_count, m->model);
     noh_skin_matrices(&m->skin, m->model, m->matrices);
+    noh_mesh_move_far_joints(m->mesh, m->weights, m->matrices);
     noh_morph_layers_init(m->layers, noh_morph_layers_size(m->mesh) + 16u, m->mesh, &layers, NULL);
     noh_morph_accumulate_scalar(m->mesh, m->weights, &layers);
     reference(m, &layers);
