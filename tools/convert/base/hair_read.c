@@ -1,6 +1,7 @@
 #include "hair_read.h"
 
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -82,9 +83,25 @@ static int read_sphere(text_scan *s, text_word name, hair_text *hair)
     return sphere[3] > 0.0f ? 0 : text_fail(s, name.line, "a sphere's radius must be above 0");
 }
 
-static int read_setting(text_scan *s, text_word word, hair_text *hair)
+/* A glTF file in the folder of the text. */
+static int read_curves(text_scan *s, text_word name, const char *folder, hair_text *hair)
+{
+    text_word word;
+    model_error reason = { "", "" };
+    char path[1024];
+    if (text_take_on_line(s, &word)) return 1;
+    if (!word.size || hair->curves.count) return text_fail(s, name.line, "`curves` must be given once, with one file");
+    if ((size_t)snprintf(path, sizeof path, "%s%.*s", word.text[0] == '/' ? "" : folder, (int)word.size, word.text) >=
+        sizeof path) {
+        return text_fail(s, name.line, "the path is too long");
+    }
+    return curves_read(path, &hair->curves, &reason) ? text_fail(s, name.line, "%.200s: %.300s", path, reason.what) : 0;
+}
+
+static int read_setting(text_scan *s, text_word word, const char *folder, hair_text *hair)
 {
     char shown[TEXT_SHOWN];
+    if (text_is(word, "curves")) return read_curves(s, word, folder, hair);
     if (text_is(word, "joint")) return read_joint(s, hair);
     if (text_is(word, "sphere")) return read_sphere(s, word, hair);
     for (size_t i = 0; i < sizeof settings / sizeof settings[0]; i++) {
@@ -96,13 +113,13 @@ static int read_setting(text_scan *s, text_word word, hair_text *hair)
                      text_show(word, shown));
 }
 
-static int read_line(text_scan *s, hair_text *hair)
+static int read_line(text_scan *s, const char *folder, hair_text *hair)
 {
     char shown[TEXT_SHOWN];
     text_word word;
     if (text_take_on_line(s, &word)) return 1;
     if (!word.size) return 0; /* a comment */
-    if (read_setting(s, word, hair) || text_take_on_line(s, &word)) return 1;
+    if (read_setting(s, word, folder, hair) || text_take_on_line(s, &word)) return 1;
     return word.size ? text_fail(s, word.line, "'%s' is one word too many", text_show(word, shown)) : 0;
 }
 
@@ -136,6 +153,8 @@ int hair_read(const char *path, hair_text **out, uint32_t *line, model_error *er
 {
     text_scan s;
     size_t size = 0;
+    const char *slash = strrchr(path, '/');
+    char folder[1024] = "";
     char *text = input_read(path, &size, error);
     int failed = 0;
     *out = text ? with_defaults() : NULL;
@@ -143,10 +162,11 @@ int hair_read(const char *path, hair_text **out, uint32_t *line, model_error *er
         free(text);
         return 1;
     }
+    if (slash && (size_t)(slash + 1 - path) < sizeof folder) memcpy(folder, path, (size_t)(slash + 1 - path));
     text_start(&s, text, size, error);
     while (!failed && text_next_line(&s)) {
         *line = s.line;
-        failed = read_line(&s, *out);
+        failed = read_line(&s, folder, *out);
     }
     failed = failed || check_whole(&s, *out);
     if (failed) error->where[0] = 0; /* *line has the line */
@@ -158,5 +178,6 @@ void hair_free(hair_text *hair)
 {
     if (!hair) return;
     free(hair->joint);
+    curves_free(&hair->curves);
     free(hair);
 }

@@ -5,6 +5,7 @@
 
 #include <stdint.h>
 
+#include "convert/base/curves.h"
 #include "convert/base/error.h"
 
 #define HAIR_SPHERES_MAX 3u /* of a text; the skull takes up to five more */
@@ -22,6 +23,7 @@ typedef struct hair_text {
     float gloss, pull[2], damping, gravity;
     float spheres[HAIR_SPHERES_MAX][4];
     uint32_t sphere_count;
+    curve_list curves; /* count 0: hair is combed */
 } hair_text;
 
 /* 0, or 1 with *line and *error; free in both cases. */

@@ -20,12 +20,14 @@
  *   gltf_animation.cpp animations
  *   gltf_extras.cpp    an animation's extras: callback keys, sync markers, loops
  *   gltf_material.cpp  materials, textures, images
+ *   gltf_curves.cpp    lines as curves
  *   gltf_vrm.cpp       VRM: bones of a person, expressions, direction
  *   gltf_springs.cpp   springs: VRMC_springBone, VRM 0, extras
  *   gltf_left_out.cpp  warnings about features that the model does not store */
 #ifndef NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 #define NOH_CONVERT_GLTF_GLTF_INTERNAL_H
 
+#include "convert/base/curves.h"
 #include "convert/model/model_build.h"
 
 #include <array>
@@ -256,6 +258,9 @@ struct toon_maps {
 };
 /* MToon of a material: sets its tones, rim and outline. After its base colour. */
 toon_maps read_toon(file &f, size_t index, const std::string &where, model_material &out);
+/* All that the curves of a file need; then the curves, as in base/curves.h. */
+void read_scene(file &f, const bytes &data);
+void read_curves(file &f, const bytes &data, curve_list &out);
 void read_springs(file &f); /* after read_nodes */
 /* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
  * nodes outside the scene. */

@@ -5,6 +5,8 @@
 #include <exception>
 #include <memory>
 
+#include "convert/base/curves.h"
+
 namespace gltf
 {
 
@@ -106,7 +108,8 @@ static void read_container(file &f, const bytes &data)
         fail("byte 0", "this is not a glTF file: it starts neither with 'glTF' (.glb) nor with a JSON object (.gltf)");
 }
 
-static void read_model(file &f, const bytes &data)
+/* Up to the nodes. */
+void read_scene(file &f, const bytes &data)
 {
     size_t slash = f.path.find_last_of('/');
     f.directory = slash == std::string::npos ? "" : f.path.substr(0, slash + 1);
@@ -116,6 +119,11 @@ static void read_model(file &f, const bytes &data)
     read_materials(f);
     read_meshes(f);
     read_nodes(f);
+}
+
+static void read_model(file &f, const bytes &data)
+{
+    read_scene(f, data);
     read_vrm(f);
     read_skins(f);
     read_animations(f);
@@ -143,10 +151,9 @@ static int refuse(model_error *error, const std::string &where, const std::strin
     return model_fail(error, where.c_str(), "%s", what.c_str());
 }
 
-/* `given`: the file's bytes; null: they are read from the path. */
-static int read(const char *path, const bytes *given, model **out, model_error *error)
+/* `given`: the file's bytes; null: they are read from the path. To a model, or to curves alone. */
+static int read(const char *path, const bytes *given, model **out, curve_list *curves, model_error *error)
 {
-    *out = nullptr;
     try {
         std::unique_ptr<model, model_deleter> building(model_new());
         if (!building) throw std::bad_alloc();
@@ -154,8 +161,10 @@ static int read(const char *path, const bytes *given, model **out, model_error *
             file f;
             f.path = path;
             f.out = building.get();
-            read_model(f, given ? *given : read_whole_file(f.path, ""));
+            const bytes data = given ? *given : read_whole_file(f.path, "");
+            curves ? read_curves(f, data, *curves) : read_model(f, data);
         }
+        if (curves) return 0;
         if (model_complete(building.get(), error)) return 1;
         *out = building.release();
         return 0;
@@ -172,11 +181,19 @@ static int read(const char *path, const bytes *given, model **out, model_error *
 
 extern "C" int model_read_gltf(const char *path, model **out, model_error *error)
 {
-    return gltf::read(path, nullptr, out, error);
+    *out = nullptr;
+    return gltf::read(path, nullptr, out, nullptr, error);
 }
 
 extern "C" int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error)
 {
     const gltf::bytes data(bytes, bytes + size);
-    return gltf::read(path, &data, out, error);
+    *out = nullptr;
+    return gltf::read(path, &data, out, nullptr, error);
+}
+
+extern "C" int curves_read(const char *path, curve_list *out, model_error *error)
+{
+    memset(out, 0, sizeof *out);
+    return gltf::read(path, nullptr, nullptr, out, error);
 }

@@ -7,7 +7,8 @@
 #define SUBSTEPS 8
 #define RADIANS (3.14159265358979 / 180.0)
 #define ROOTED 0.98 /* of the radii: roots are in the skin */
-#define CROWN 4.0   /* degrees: the innermost row is no point */
+#define CURVES_NEAR 3u
+#define CROWN 4.0 /* degrees: the innermost row is no point */
 
 typedef struct vec {
     double x, y, z;
@@ -128,6 +129,69 @@ static void grow_hair(const hair_text *t, const skull *s, vec p, double length, 
     }
 }
 
+/* ---- curves ---- */
+
+/* The place at a share of a curve's length, less its root. */
+static vec along(const curve_list *c, uint32_t curve, double share)
+{
+    const float *p = c->points + 3 * (size_t)c->starts[curve];
+    const uint32_t count = c->starts[curve + 1u] - c->starts[curve];
+    const vec root = { p[0], p[1], p[2] };
+    double length = 0.0, left;
+    for (uint32_t i = 0; i + 1u < count; i++) {
+        const vec a = { p[3u * i], p[3u * i + 1u], p[3u * i + 2u] };
+        const vec way = add((vec){ p[3u * i + 3u], p[3u * i + 4u], p[3u * i + 5u] }, -1.0, a);
+        length += sqrt(dot(way, way));
+    }
+    left = share * length;
+    for (uint32_t i = 0; i + 1u < count; i++) {
+        const vec a = { p[3u * i], p[3u * i + 1u], p[3u * i + 2u] };
+        const vec way = add((vec){ p[3u * i + 3u], p[3u * i + 4u], p[3u * i + 5u] }, -1.0, a);
+        const double step = sqrt(dot(way, way));
+        if (step > 0.0 && (left <= step || i + 2u == count))
+            return add(add(a, -1.0, root), fmin(left / step, 1.0), way);
+        left -= step;
+    }
+    return (vec){ 0.0, 0.0, 0.0 };
+}
+
+/* The curves whose roots are nearest, and how much each counts: less the farther it is. */
+static uint32_t nearest_curves(const curve_list *c, vec p, uint32_t found[CURVES_NEAR], double weights[CURVES_NEAR])
+{
+    double far[CURVES_NEAR], sum = 0.0;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < c->count; i++) {
+        const float *r = c->points + 3 * (size_t)c->starts[i];
+        const vec way = add((vec){ r[0], r[1], r[2] }, -1.0, p);
+        const double distance = dot(way, way);
+        uint32_t at = count < CURVES_NEAR ? count++ : CURVES_NEAR;
+        for (; at > 0 && far[at - 1u] > distance; at--) {
+            if (at < CURVES_NEAR) far[at] = far[at - 1u], found[at] = found[at - 1u];
+        }
+        if (at < CURVES_NEAR) far[at] = distance, found[at] = i;
+    }
+    for (uint32_t i = 0; i < count; i++) sum += weights[i] = 1.0 / (far[i] + 1e-6);
+    for (uint32_t i = 0; i < count; i++) weights[i] /= sum;
+    return count;
+}
+
+/* A hair from its own root, of the shape and length of the nearest curves, outside of the skull. */
+static void follow_curves(const hair_text *t, const skull *s, vec root, float *points)
+{
+    const uint32_t count = (uint32_t)t->points;
+    uint32_t near[CURVES_NEAR];
+    double weights[CURVES_NEAR];
+    const uint32_t near_count = nearest_curves(&t->curves, root, near, weights);
+    for (uint32_t i = 0; i < count; i++) {
+        vec p = root;
+        for (uint32_t k = 0; k < near_count; k++) {
+            p = add(p, weights[k], along(&t->curves, near[k], (double)i / (count - 1u)));
+        }
+        if (i) p = push_out(t, s, p, 0.0);
+        points[3u * i] = (float)p.x, points[3u * i + 1u] = (float)p.y, points[3u * i + 2u] = (float)p.z;
+    }
+}
+
 /* ---- all of it ---- */
 
 static void grow_all(const hair_text *t, hair_grown *g)
@@ -139,8 +203,12 @@ static void grow_all(const hair_text *t, hair_grown *g)
         const double inward = 1.0 - (double)r / (rows - 1u), share = 1.0 - inward * inward;
         for (uint32_t a = 0; a < around; a++) {
             const double azimuth = 360.0 * RADIANS * a / around;
-            grow_hair(t, &s, root_at(t, &s, azimuth, share), t->length[0] + (t->length[1] - t->length[0]) * share,
-                      g->points + (size_t)(r * around + a) * g->point_count * 3u);
+            const vec root = root_at(t, &s, azimuth, share);
+            float *points = g->points + (size_t)(r * around + a) * g->point_count * 3u;
+            if (t->curves.count)
+                follow_curves(t, &s, root, points);
+            else
+                grow_hair(t, &s, root, t->length[0] + (t->length[1] - t->length[0]) * share, points);
         }
     }
     for (uint32_t i = 0; i < g->patch_count; i++) {

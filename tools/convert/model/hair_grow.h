@@ -2,7 +2,8 @@
  *
  * Roots stand in rows from the crown to the hairline, the same number in each, so that four neighbours are a patch. A
  * hair grows along the comb's direction on the skull, higher above it the longer it is: what grows in front lies on
- * what grows behind. Where the skull falls away below, it hangs. */
+ * what grows behind. Where the skull falls away below, it hangs. Where the text has curves, hair takes their shapes
+ * instead. */
 #ifndef NOH_CONVERT_MODEL_HAIR_GROW_H
 #define NOH_CONVERT_MODEL_HAIR_GROW_H
 

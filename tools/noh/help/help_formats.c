@@ -198,6 +198,7 @@ const char *const help_formats_text[] = {
     "   hairline FRONT SIDE BACK                    how far from the crown hair grows, 5 to 175 (40 80 110)",
     "   comb X Y Z                                  the direction it is combed in (0 -0.5 -0.85: back)",
     "   length CROWN HAIRLINE                       0.01 to 10 (0.3 0.3)",
+    "   curves FILE.glb                             in place of comb, length and lift: lines of a glTF file, from root to tip; each control hair has the shape of those whose roots are nearest",
     "   lift H                                      height above the hair that grows behind it (0.012)",
     "   around N, rows N                            control hairs around the head, and rows of them; at most 256 in all (20, 4)",
     "   points N                                    points per control hair, 2 to 32 (14)",
