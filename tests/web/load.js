@@ -106,7 +106,7 @@ async function own(browser) {
     check('a file of one\'s own: clips are listed once', await page.locator('#clips option').count() === clips);
     const bad = fs.readFileSync(raw);
     bad[bad.length >> 1] ^= 16;
-    for (const [name, buffer, words] of [['a.txt', Buffer.from('glTF'), 'none of'], ['a.bvh', Buffer.from('HIERARCHY'), 'motion alone'], ['bad.noh', bad, 'cannot be shown'], ['short.noh', bad.subarray(0, 3), 'no pack'],
+    for (const [name, buffer, words] of [['a.txt', Buffer.from('glTF'), 'none of'], ['a.bvh', Buffer.from('HIERARCHY'), 'motion alone'], ['a.csv', Buffer.from('Time,JawOpen'), 'motion alone'], ['bad.noh', bad, 'cannot be shown'], ['short.noh', bad.subarray(0, 3), 'no pack'],
         ['cut.nohz', sent.subarray(0, sent.length >> 1), 'cut short'], ['large.noh', Buffer.alloc(9e6), 'cannot be shown']]) {
         await give(name, buffer, words);
         check(`a file of one's own, ${name}: it says what is wrong`, (await said()).startsWith(`${name} cannot be shown: `), await said());

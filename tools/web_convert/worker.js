@@ -33,7 +33,7 @@ async function convert({ files, options }) {
     for (const [name, bytes] of await decodeAll(files)) program.FS.writeFile(`/webp/${name}`, bytes);
     program.FS.chdir('/in');
     for (const { name, bytes } of files) program.FS.writeFile(name, bytes);
-    const models = files.filter(({ name }) => /\.(glb|gltf|vrm|fbx|obj|bvh)$/i.test(name)).map(({ name }) => name);
+    const models = files.filter(({ name }) => /\.(glb|gltf|vrm|fbx|obj|bvh|csv|trc|c3d|vrma)$/i.test(name)).map(({ name }) => name);
     const status = program.callMain(['build', ...models, '-o', '/out.noh', ...options]);
     if (status) throw new Error(errors.join('\n') || `the converter ended with ${status}`);
     return { pack: program.FS.readFile('/out.noh'), warnings };

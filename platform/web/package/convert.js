@@ -4,17 +4,17 @@ import { reach } from './reach.js';
 
 const packs = /\.nohz?$/i;
 const figures = /\.(glb|gltf|vrm|fbx|obj)$/i;
-const motions = /\.bvh$/i;
+const motions = /\.(bvh|csv|trc|c3d|vrma)$/i;
 const alone = /\.(glb|vrm|fbx)$/i; // in one file
 const mostKept = 8;
-export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.fbx', '.obj', '.bvh'];
+export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.fbx', '.obj', '.bvh', '.csv', '.trc', '.c3d', '.vrma'];
 
 // Detect files that cannot be shown, before loading anything. names: of files given together.
 export function refusal(names) {
     const count = (pattern) => names.filter((name) => pattern.test(name)).length;
     if (count(packs) === 1 && names.length === 1) return '';
     if (count(packs)) return 'a pack is shown alone';
-    if (count(figures) > 1) return 'one model at a time, and any number of .bvh with it';
+    if (count(figures) > 1) return 'one model at a time, and any number of clips with it';
     return count(figures) + count(motions) ? '' : `it is none of ${kinds.join(', ')}`;
 }
 
@@ -88,7 +88,7 @@ async function keep(cache, key, pack) {
     for (const old of keys.slice(0, Math.max(0, keys.length - mostKept))) await cache.delete(old);
 }
 
-// A visitor's files, one set after another: a .bvh alone belongs to the previous model.
+// A visitor's files, one set after another: clips alone belong to the previous model.
 export class Visitor {
     constructor() {
         this.model = []; // the files of the last converted model
@@ -102,7 +102,7 @@ export class Visitor {
             this.model = [];
             return files[0];
         }
-        if (!has(figures) && !this.model.length) throw new Error('a .bvh has motion alone: drop it together with its model, or after it');
+        if (!has(figures) && !this.model.length) throw new Error('it has motion alone: drop it together with its model, or after it');
         const all = has(figures) ? files : [...this.model, ...files], pack = await convert(all, settings);
         this.model = all;
         return pack;

@@ -278,7 +278,7 @@ export class NohCharacter extends HTMLElement {
     readonly character: Character | null;
     /** Resolves to whether the pack is shown. */
     load(source: PackSource): Promise<boolean>;
-    /** A pack, or a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh), converted in a worker. */
+    /** A pack, or a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh, .csv, .trc, .c3d, .vrma), converted in a worker. */
     open(files: Iterable<File>): Promise<boolean>;
     play(name: string | null, options?: PlayOptions): Promise<void>;
     setWeight(target: string, weight: number): Promise<void>;
@@ -313,7 +313,7 @@ export type HotspotEvent = CustomEvent<{ visible: boolean }>;
 export function addPointers(canvas: HTMLCanvasElement, character: Character, wheel?: (event: WheelEvent) => boolean, asked?: () => boolean): () => void;
 /** The faces look at the pointer while it is over the canvas. Returns a function that ends it. */
 export function addGaze(canvas: HTMLCanvasElement, character: Character, asked?: () => boolean): () => void;
-/** Convert a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh) to a pack, in a worker. `tell` takes
+/** Convert a model (.glb, .gltf, .vrm, .fbx, .obj) with its files and clips (.bvh, .csv, .trc, .c3d, .vrma) to a pack, in a worker. `tell` takes
  * progress, `warn` each warning. `options`: as for `noh build`. */
 export function convert(files: readonly File[], settings?: { tell?: (words: string) => void; warn?: (words: string) => void; options?: readonly string[] }): Promise<Uint8Array>;
 /** Mouth shapes of a text, letter by letter. */
