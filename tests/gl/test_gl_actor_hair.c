@@ -484,6 +484,28 @@ static void fewer_strips_cover_as_much(void **state)
     close_scene(&s);
 }
 
+/* Where hair begins on bright paint, it fades in, within more than a pixel. */
+static void the_hairline_is_soft(void **state)
+{
+    uint32_t hard = 0, all = 0;
+    scene s;
+    (void)state;
+    open_scene(&s, 1, 1, 0.0f, IN_STATE);
+    frame_from(&s, RADIANS(20.0f), RADIANS(35.0f), 0.3f);
+    uint8_t *bald = picture(&s, 0), *hair = picture(&s, 1);
+    for (uint32_t i = 0; i + 1u < SIDE * SIDE; i++) {
+        if (bald[4u * i] < 100 || bald[4u * i + 4u] < 100) continue;
+        const double step = (double)hair[4u * i] / bald[4u * i] - (double)hair[4u * i + 4u] / bald[4u * i + 4u];
+        all += fabs(step) > 0.1;
+        hard += fabs(step) > 0.5;
+    }
+    printf("# %u of %u edges of hair on paint are hard\n", hard, all);
+    free(bald);
+    free(hair);
+    close_scene(&s);
+    assert_true(all > 100u && 20u * hard < all);
+}
+
 static double difference(const uint8_t *a, const uint8_t *b)
 {
     double sum = 0.0;
@@ -530,6 +552,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(all_strips_are_one_draw),
     cmocka_unit_test(all_heads_are_some_draws),
     cmocka_unit_test(fewer_strips_cover_as_much),
+    cmocka_unit_test(the_hairline_is_soft),
     cmocka_unit_test(hair_fades_into_paint),
 };
 
