@@ -7,7 +7,7 @@ const http = require('http');
 const path = require('path');
 const zlib = require('zlib');
 
-const types = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml', '.jpg': 'image/jpeg' };
+const types = { '.glb': 'model/gltf-binary', '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm', '.svg': 'image/svg+xml', '.jpg': 'image/jpeg' };
 
 // A file alone is served as itself.
 const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, !name || name.endsWith('/') ? `${name}index.html` : name) : place;

@@ -11,6 +11,13 @@ export function cameraOf(bounds) {
     return { centre, eye, near: Math.max(distance - 2 * radius, distance * 0.02), far: distance + 2 * radius, key: key.map((k) => k / size), right, up, back };
 }
 
+// Of the meshes below an object of three.js at rest: its own bounds have room for all targets.
+export function boundsAtRest(object, box, part) {
+    object.updateMatrixWorld(true);
+    object.traverse((mesh) => { if (mesh.isMesh) box.union(part.setFromBufferAttribute(mesh.geometry.attributes.position).applyMatrix4(mesh.matrixWorld)); });
+    return [...box.min.toArray(), ...box.max.toArray()];
+}
+
 // Columns.
 export function matrixOf({ eye, near, far, right, up, back }) {
     const f = 1 / Math.tan(Math.PI / 12), dot = (a) => a[0] * eye[0] + a[1] * eye[1] + a[2] * eye[2];
