@@ -6,9 +6,9 @@
 puppet=$build/demo/puppet.glb
 text=tools/demo_assets/puppet/puppet.springs
 
-noh build "$puppet" -o "$work/a.noh" --springs $text --quiet
+noh build "$puppet" -o "$work/a.noh" --springs $text --effort 1 --quiet
 expect 0 'build --springs'
-noh build "$puppet" -o "$work/plain.noh" --quiet
+noh build "$puppet" -o "$work/plain.noh" --effort 1 --quiet
 noh info "$work/a.noh"
 expect 0 'info'
 check 'tells how many swing' grep -q '^  springs: 4 joints in 4 chains, 4 colliders, ' "$work/out"
