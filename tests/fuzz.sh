@@ -50,7 +50,7 @@ fuzz() {
     [ -n "${linked:-}" ] || link_target "$target" || return 1
     set -- "$work/$target.corpus" "$4"
     [ ! -d "$found" ] || set -- "$@" "$found"
-    "$work/$target" -seed=1 -max_total_time="$seconds" -max_len="$max_len" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 \
+    "$work/$target" -seed=1 -max_total_time="$seconds" -max_len="$max_len" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 \
         -artifact_prefix="$work/$target-" "$@" >"$work/$target.txt" 2>&1
 }
 fuzz fuzz_pack 8192 tests/fuzz/found "$build/tests/fuzz/corpus" &

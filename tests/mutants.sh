@@ -11,7 +11,7 @@
 #   NOH_ASSETS  as for tests/run.sh
 #   NOH_TEST    only rows whose mutant, test or code contains one of these words: NOH_TEST='ragdoll hair'
 #   JOBS        copies of the tree used in parallel (default: number of processors)
-#   NOH_LIMIT_S time limit of one test in seconds (300)
+#   NOH_LIMIT_S processor seconds of one process of a test (300)
 #
 # Copies are in NOH_BUILD/mutants and are always removed at the end. A mutant rebuilds only the objects that depend on
 # it and one program, and runs one function of this program: other outputs are restored from NOH_BUILD, with their
@@ -35,8 +35,8 @@ unset MAKEFLAGS MFLAGS MAKELEVEL
 
 # Runs a program in the background, so that a signal reaches it: timeout ends all its processes.
 child=
-limited() { # SECONDS COMMAND...
-    timeout -k 5 "$@" &
+limited() { # SECONDS COMMAND...: of the processor for a process, and four times as many by the clock
+    (seconds=$1 && shift && ulimit -S -t "$seconds" && exec timeout -k 5 $((4 * seconds)) "$@") &
     child=$!
     wait $child
 }
@@ -48,7 +48,7 @@ verdict() { # FOLDER PROGRAM FUNCTION LOG
     limited "$limit" env -C "$1" NOH_BUILD="$1/$build" NOH_EMBED="$1/$build/embed" NOH_FUNCTION="${3#.\*}" ${5:-} "$2" \
         >"$4" 2>&1 </dev/null
     status=$?
-    if [ $status = 124 ] || [ $status = 137 ]; then
+    if [ $status = 124 ] || [ $status = 137 ] || [ $status = 152 ]; then
         told="takes more than $limit s"
     elif grep -q 'exception: ' "$4"; then
         told=crashes

@@ -23,8 +23,8 @@ find tests/unit -name 'test_*.c' ! -path 'tests/unit/tools/*' ! -path 'tests/uni
 # shellcheck disable=SC2016
 xargs -P "$jobs" -I '{}' sh -c '
     log=$1/$(echo "$2" | tr / _)
-    timeout 1200 valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --child-silent-after-fork=yes --suppressions=tests/memcheck.supp \
-        "$3/tests/$2" >"$log.tap" 2>"$log.txt" </dev/null
+    (ulimit -S -t 1200 && exec timeout 4800 valgrind -q --error-exitcode=99 --leak-check=full --errors-for-leak-kinds=definite --child-silent-after-fork=yes --suppressions=tests/memcheck.supp \
+        "$3/tests/$2") >"$log.tap" 2>"$log.txt" </dev/null
     echo $? >"$log.code"' sh "$work" '{}' "$build" <"$work/programs"
 
 passed=0 failed=0 skipped=0

@@ -26,7 +26,7 @@ while read -r file; do
     name=${file#"$dir"/}
     count=$((count + 1))
     code=0
-    timeout 30 "$build/noh" build "$file" -o "$work/out.noh" >"$work/text" 2>"$work/message" || code=$?
+    (ulimit -S -t 30 && exec timeout 600 "$build/noh" build "$file" -o "$work/out.noh") >"$work/text" 2>"$work/message" || code=$?
     grep '^warning' "$work/text" >"$work/warnings" || true
     if [ $code = 1 ] && [ -s "$work/message" ]; then
         refused=$((refused + 1))

@@ -86,12 +86,12 @@ check_pack() {
     rm -f "$out"/*.png
     : >"$out/log.txt"
     # a pack for one part of the page
-    [ "$all" = 0 ] || timeout -k 5 1500 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size "$paths" >"$out/log.txt" 2>&1
+    [ "$all" = 0 ] || timeout -k 5 6000 node tests/web/page.js "$build/web/$name" "$chromium" "$out" "$clip" "$time" $size "$paths" >"$out/log.txt" 2>&1
     code=$?
     [ "$all" = 0 ] || count $code "$out/log.txt"
     : >"$out/figure.txt"
     if [ -n "$figure" ]; then
-        NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 1500 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
+        NOH_WEB_ONLY=${NOH_WEB_ONLY:-$figure} timeout -k 5 6000 node tests/web/figure.js "$build/web/$name" "$chromium" "$out" 256 >"$out/figure.txt" 2>&1
         count $? "$out/figure.txt"
     fi
     if [ "$name" = nell ]; then
@@ -99,18 +99,18 @@ check_pack() {
         most=$("$build/noh" budget "$build/web/$name/page.noh" --nominal --gpu g52 --tier phone --size 780x1688 --json |
             awk -F': ' '/"material"/ { is = 1 } /"percent_of_frame"/ { if (is && $2 + 0 > most) most = $2 + 0; if (!is) all += $2; is = 0 } END { print most + all }')
         if awk "BEGIN { exit !($most > 10 && $most <= 200) }"; then ok; else not_ok "a frame takes $most % of 1/60 s of a Mali-G52"; fi
-        timeout -k 5 1500 node tests/web/greet.js "$build/web/$name" "$chromium" "$out" >"$out/greet.txt" 2>&1
+        timeout -k 5 6000 node tests/web/greet.js "$build/web/$name" "$chromium" "$out" >"$out/greet.txt" 2>&1
         count $? "$out/greet.txt"
     fi
     case $name in mask | wig | nell) # with levels, the coarsest first, and without
-        timeout -k 5 1500 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
+        timeout -k 5 6000 node tests/web/load.js "$build/web/$name" "$chromium" "$out" >"$out/load.txt" 2>&1
         count $? "$out/load.txt"
         ;;
     esac
     if [ "$name" = mask ]; then
-        timeout -k 5 1500 node tests/web/controls.js "$build/web/$name" "$chromium" "$out" "$clip" >"$out/controls.txt" 2>&1
+        timeout -k 5 6000 node tests/web/controls.js "$build/web/$name" "$chromium" "$out" "$clip" >"$out/controls.txt" 2>&1
         count $? "$out/controls.txt"
-        timeout -k 5 1500 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
+        timeout -k 5 6000 node tests/web/speech.js "$build/web/$name" "$chromium" "$out" >"$out/speech.txt" 2>&1
         count $? "$out/speech.txt"
     fi
     plan=$(node $fetch "$build/web-objects/plan.js" "$build/web/$name/page.nohz" 1)
@@ -172,7 +172,7 @@ assets=${NOH_ASSETS:-../shared/assets}
 inside() { # NAME RATE CLIP...
     name=$1 out=$build/web-check/$1
     shift
-    timeout -k 5 3000 node tests/web/silhouette.js "$build/web/$name" "$chromium" "$out" "$@" >"$out/silhouette.log" 2>&1
+    timeout -k 5 6000 node tests/web/silhouette.js "$build/web/$name" "$chromium" "$out" "$@" >"$out/silhouette.log" 2>&1
     count $? "$out/silhouette.log"
 }
 if [ "${NOH_LONG:-0}" != 1 ]; then
@@ -187,7 +187,7 @@ if [ "${NOH_LONG:-0}" = 1 ] && [ -f "$build/web/mask/index.html" ]; then # the c
     name=festival out=$build/web-check/festival
     mkdir -p "$out"
     make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web-festival WEB_PACK="$build/page/mask.noh" >/dev/null || not_ok 'the crowd does not build'
-    NOH_WEB_RATES=1 timeout -k 5 1500 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
+    NOH_WEB_RATES=1 timeout -k 5 6000 node tests/web/festival.js "$build/web/mask" "$chromium" "$out" >"$out/log.txt" 2>&1
     count $? "$out/log.txt"
 fi
 [ "${NOH_LONG:-0}" != 1 ] || [ ! -f "$build/web/mask/index.html" ] || add tests/web_stock.sh "$build/web/mask"

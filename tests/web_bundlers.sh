@@ -21,7 +21,7 @@ rm -rf "$project/node_modules/noh-character"
 cp -a "$build/npm/package" "$project/node_modules/noh-character"
 cp "$build/demo/arm.glb" "$project"
 "$build/noh" pack "$1" -o "$project/face.nohz" --quiet
-timeout -k 5 1500 node tests/web/bundlers.js "$project" "$chromium" "$build/web-check" "$project" >"$project/log.txt" 2>&1
+timeout -k 5 6000 node tests/web/bundlers.js "$project" "$chromium" "$build/web-check" "$project" >"$project/log.txt" 2>&1
 code=$?
 passed=$(grep -c '^ok ' "$project/log.txt") failed=$(grep -c '^not ok ' "$project/log.txt")
 [ "$code" = 0 ] || [ "$failed" != 0 ] || failed=1

@@ -50,11 +50,11 @@ done
 cp tests/web/types.ts tests/web/react.tsx "$project"
 check 'types' node "$(node -p 'require.resolve("typescript/package.json")' | sed 's,package.json$,bin/tsc,')" --noEmit --strict \
     --target es2022 --module nodenext --moduleResolution nodenext --skipLibCheck false --jsx react-jsx "$project/types.ts" "$project/react.tsx"
-timeout -k 5 1500 node tests/web/package.js "$project" "$chromium" "$out" "$project" >"$out/log.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/log.txt")" != 0 ] ||
+timeout -k 5 6000 node tests/web/package.js "$project" "$chromium" "$out" "$project" >"$out/log.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/log.txt")" != 0 ] ||
     not_ok "tests/web/package.js ends too early: $(tail -n 1 "$out/log.txt")"
 passed=$((passed + $(grep -c '^ok ' "$out/log.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/log.txt")))
 grep -v '^ok \|^1\.\.' "$out/log.txt"
-timeout -k 5 1500 node tests/web/three.js "$project" "$chromium" "$out" "$project" "$build/noh" >"$out/three.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/three.txt")" != 0 ] ||
+timeout -k 5 6000 node tests/web/three.js "$project" "$chromium" "$out" "$project" "$build/noh" >"$out/three.txt" 2>&1 || [ "$(grep -c '^not ok ' "$out/three.txt")" != 0 ] ||
     not_ok "tests/web/three.js ends too early: $(tail -n 1 "$out/three.txt")"
 passed=$((passed + $(grep -c '^ok ' "$out/three.txt"))) failed=$((failed + $(grep -c '^not ok ' "$out/three.txt")))
 grep -v '^ok \|^1\.\.' "$out/three.txt"

@@ -28,7 +28,7 @@ while [ ! -s "$out/display" ] && [ $tries -lt 150 ]; do sleep 0.2; tries=$((trie
 DISPLAY=:$(cat "$out/display")
 export DISPLAY
 try() { # NAME PROGRAM
-    timeout -k 5 900 node tests/web/stock.js "$folder" "$2" "$out" >"$out/$1.txt" 2>&1
+    timeout -k 5 6000 node tests/web/stock.js "$folder" "$2" "$out" >"$out/$1.txt" 2>&1
     code=$?
     good=$(grep -c '^ok ' "$out/$1.txt") bad=$(grep -c '^not ok ' "$out/$1.txt")
     [ "$code" = 0 ] || [ "$bad" != 0 ] || bad=1

@@ -75,7 +75,7 @@ int main(int argc, char **argv)
     if (argc != 3 || strlen(argv[2]) > 1024) {
         return 2;
     }
-    alarm(120); /* the window may never answer; before it does, it converts the file */
+    alarm(1200); /* the window may never answer; before it does, it converts the file */
     d.display = XOpenDisplay(NULL);
     if (!d.display) {
         return 1;

@@ -28,7 +28,7 @@ program() { # NAME PACKAGE
     # shellcheck disable=SC2046
     check "$1: builds without a warning" gcc -std=gnu99 -O1 -Wall -Wextra -Werror -Iruntime $(pkg-config --cflags "$2") "$source" \
         "$build/libnoh.a" -Wl,--gc-sections $(pkg-config --libs "$2") -o "$work/$1"
-    timeout 120 "$work/$1" "$build/demo/puppet.noh" walk 5 >"$work/out" 2>"$work/err"
+    (ulimit -S -t 120 && exec timeout 1200 "$work/$1" "$build/demo/puppet.noh" walk 5) >"$work/out" 2>"$work/err"
     code=$?
     if [ $code != 0 ] && grep -qi 'window\|GL' "$work/err"; then
         skip "$1: runs" "$(head -n 1 "$work/err")"
@@ -36,7 +36,7 @@ program() { # NAME PACKAGE
     fi
     expect 0 "$1: five frames of a walk"
     check "$1: no message" test ! -s "$work/err"
-    timeout 120 "$work/$1" "$work/bad" walk 5 >"$work/out" 2>"$work/err"
+    (ulimit -S -t 120 && exec timeout 1200 "$work/$1" "$work/bad" walk 5) >"$work/out" 2>"$work/err"
     code=$?
     expect 1 "$1: a file that is no pack"
     check "$1: the reason" grep -q 'pack' "$work/err"

@@ -111,7 +111,7 @@ figure() { # sets $shot
     shot=$work/noh-figure-$shots.png
     xdotool key F11
     tries=0
-    while [ ! -f "$shot" ] && [ $tries -lt 900 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
+    while [ ! -f "$shot" ] && [ $tries -lt 6000 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
 }
 drag() { # X0 Y0 X1 Y1 BUTTON
     xdotool mousemove "$1" "$2" mousedown "${5:-1}"
@@ -132,7 +132,7 @@ open_viewer() { # SIZE [FILE]: sets $viewer, $window
     viewer=$!
     trap 'kill $viewer $xvfb 2>/dev/null; rm -rf "$work"' EXIT
     tries=0 # xdotool may trip over a window that is just being made
-    while find_window; [ -z "$window" ] && [ $tries -lt 3 ] && kill -0 $viewer 2>/dev/null; do sleep 1; tries=$((tries + 1)); done
+    while find_window; [ -z "$window" ] && [ $tries -lt 10 ] && kill -0 $viewer 2>/dev/null; do sleep 1; tries=$((tries + 1)); done
 }
 find_window() {
     window=$(timeout 60 xdotool search --sync --onlyvisible --pid $viewer 2>/dev/null | tail -n 1)
@@ -184,7 +184,7 @@ xdotool key Tab
 xdotool key F12
 shots=$((shots + 1))
 tries=0
-while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 100 ]; do sleep 0.1; tries=$((tries + 1)); done
+while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 6000 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
 check 'F12 saves the window' test "$(png_size "noh-window-$shots.png")" = 1280x800
 lose
 check 'F10 loses the context, and a new one comes' test "${window:-$lost}" != "$lost"
