@@ -48,7 +48,7 @@ get_system() {
     for package in "$folder"/apt/cache/archives/*.deb; do dpkg-deb -x "$package" "$system" || return 1; done
     [ -e "$system/lib" ] || ln -s usr/lib "$system/lib"
     tar -xf "$folder"/mesa_*.orig.tar.xz -C "$folder" --wildcards '*/include' '*/src/util' '*/src/drm-shim' \
-        '*/src/c11' '*/src/gallium/include' '*/src/*/drm-shim' && mv "$folder"/mesa-* "$folder/mesa"
+        '*/src/c11' '*/src/*/drm-shim' && mv "$folder"/mesa-* "$folder/mesa"
 }
 
 # Mesa's device without a GPU: each library is preloaded, answers a driver's ioctls, and draws nothing.
