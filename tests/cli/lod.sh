@@ -130,10 +130,10 @@ elif [ -f "$head" ]; then
     noh verify "$work/joints.noh" --lod 3
     expect 0 'verify of the level with virtual joints'
     for weight in 0 1; do
-        noh dump "$work/joints.noh" -o "$work/jaw$weight.obj" --lod 3 --weight "jawOpen=$weight"
-        expect 0 "dump of it with the jaw at $weight"
+        noh dump "$work/joints.noh" -o "$work/mouth$weight.obj" --lod 3 --weight "mouth-open=$weight"
+        expect 0 "dump of it with the mouth at $weight"
     done
-    check 'targets move its vertices' sh -c '! cmp -s "$1" "$2"' - "$work/jaw0.obj" "$work/jaw1.obj"
+    check 'targets move its vertices' sh -c '! cmp -s "$1" "$2"' - "$work/mouth0.obj" "$work/mouth1.obj"
     noh build "$head" -o "$work/joints.noh" --lod 4 --lod-fast --lod-faces joints:2 --quiet
     noh info "$work/joints.noh"
     check 'from level 2 on' test "$(grep -c '^  level .* 0 texels' "$work/out")" = 2
