@@ -349,8 +349,8 @@ static uint32_t motion_word(const int16_t *motion)
 static void write_joints_of(pack_writer *w, uint32_t index, const lod_joints *joints)
 {
     const joint_fit *f = &joints->fit;
-    const size_t base = (chunk_begin(w, NOH_CHUNK_FAR_JOINTS, w->m->meshes[index].name), w->out.count);
     noh_far_joints_header h;
+    size_t base;
     memset(&h, 0, sizeof h);
     h.mesh = index;
     h.level = joints->level;
@@ -360,6 +360,8 @@ static void write_joints_of(pack_writer *w, uint32_t index, const lod_joints *jo
     h.normal_error = joints->normal_most;
     h.normal_error_p99 = joints->normal_p99;
     h.centres_offset = sizeof h;
+    chunk_begin(w, NOH_CHUNK_FAR_JOINTS, w->m->meshes[index].name);
+    base = w->out.count;
     buffer_append(&w->out, &h, sizeof h);
     buffer_append(&w->out, f->centre, 12u * (size_t)f->joint_count);
     buffer_align(&w->out, 16);
