@@ -7,8 +7,8 @@
 #include "gpu/canvas.h"
 #include "null.h"
 
-#define WIDTH 320u
-#define HEIGHT 180u
+#define WIDTH 160u
+#define HEIGHT 90u
 #define PIXELS (WIDTH * HEIGHT)
 #define BOUND 200000u
 #define FEW 2u /* kinds that have coarse packs: PUPPETS and MASKS */
