@@ -229,7 +229,7 @@ static int by_size(const void *a, const void *b)
 }
 
 /* The deltas become what the joints do, and normals are compared with what they were. */
-static int write_deltas(model_mesh *mesh, const joint_points *points, lod_joints *of)
+static int write_deltas(model_mesh *mesh, const joint_fit_points *points, lod_joints *of)
 {
     const size_t count = (size_t)of->vertex_count * mesh->target_count;
     float *off = model_zeros(count, sizeof *off);
@@ -253,7 +253,7 @@ static int fit(model *m, model_mesh *mesh, lod_joints *out)
 {
     point_arrays a = { NULL, NULL, NULL, NULL, NULL, NULL, NULL };
     int failed = fill_points(mesh, out, &a);
-    const joint_points points = { out->vertex_count,
+    const joint_fit_points points = { out->vertex_count,
                                   mesh->target_count,
                                   a.place,
                                   a.normal,

@@ -13,7 +13,7 @@
 
 /* One fit: the joints as numbers that are not rounded yet, and the least that any round was off by. */
 typedef struct fit_state {
-    const joint_points *points;
+    const joint_fit_points *points;
     joint_fit *out;
     float *motion;      /* [joint_count][target_count][6] */
     float *best;        /* the same, of the best round */
@@ -43,7 +43,7 @@ static void apply(const float *motion, const float *centre, const float *p, floa
 
 /* ---- seeds ---- */
 
-static float squared_apart(const joint_points *p, uint32_t a, uint32_t b)
+static float squared_apart(const joint_fit_points *p, uint32_t a, uint32_t b)
 {
     const size_t width = 3u * (size_t)p->target_count;
     float sum = 0.0f;
@@ -56,7 +56,7 @@ static float squared_apart(const joint_points *p, uint32_t a, uint32_t b)
 
 static void add_joint(fit_state *s, uint32_t seed)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     joint_fit *f = s->out;
     const uint32_t j = f->joint_count++;
     f->parent[j] = p->parent[seed];
@@ -71,7 +71,7 @@ static void add_joint(fit_state *s, uint32_t seed)
 /* Each time the point that is moved least like those taken, or like one that rests. */
 static int seed(fit_state *s, uint32_t joint_max)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     float *apart = model_zeros(p->count, sizeof *apart);
     const size_t width = 3u * (size_t)p->target_count;
     if (!apart) return 1;
@@ -218,7 +218,7 @@ static void weigh_point(fit_state *s, uint32_t v)
 
 static double farthest_off(const fit_state *s, uint32_t v)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     const size_t width = 3u * (size_t)p->target_count;
     double most = 0.0;
     for (size_t t = 0; t < p->target_count; t++) {
@@ -239,7 +239,7 @@ static double farthest_off(const fit_state *s, uint32_t v)
 /* Returns the farthest that any point is off, squared. */
 static double weigh_all(fit_state *s)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     double most = 0.0;
     for (uint32_t v = 0; v < p->count; v++) {
         for (uint32_t j = 0; j < s->out->joint_count; j++) {
@@ -260,7 +260,7 @@ static double weigh_all(fit_state *s)
 /* Each joint's centre: the mean of what it moves. */
 static void place_centres(fit_state *s)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     for (uint32_t j = 0; j < s->out->joint_count; j++) {
         double sum[4] = { 0.0, 0.0, 0.0, 0.0 };
         for (size_t i = 0; i < p->count * (size_t)JOINTS_PER_VERTEX; i++) {
@@ -293,7 +293,7 @@ static void rows_of(const fit_state *s, uint32_t v, uint32_t j, double weight, d
 
 static void add_point(fit_state *s, uint32_t v)
 {
-    const joint_points *p = s->points;
+    const joint_fit_points *p = s->points;
     const size_t size = 6u * (size_t)s->out->joint_count, targets = p->target_count;
     const float *weight = s->out->weight + v * (size_t)JOINTS_PER_VERTEX;
     const uint8_t *joint = s->out->joint + v * (size_t)JOINTS_PER_VERTEX;
@@ -441,7 +441,7 @@ static int allocate(fit_state *s, uint32_t joint_max)
            !s->best_centre || !s->predicted || !s->importance || !s->off || !s->matrix || !s->right;
 }
 
-int joint_fit_make(const joint_points *points, uint32_t joint_max, joint_fit *out)
+int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit *out)
 {
     fit_state s;
     int failed;
@@ -473,7 +473,7 @@ void joint_fit_free(joint_fit *f)
     memset(f, 0, sizeof *f);
 }
 
-void joint_fit_motion(const joint_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
+void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
                       float turn[3])
 {
     const float *place = points->place + 3u * (size_t)point;

@@ -16,7 +16,7 @@
 #define JOINTS_PER_VERTEX 4u
 
 /* Points that lie at one place and are moved alike get the same weights: normals do not change these. */
-typedef struct joint_points {
+typedef struct joint_fit_points {
     uint32_t count, target_count;
     const float *place, *normal; /* [count][3] */
     const float *move, *turn;    /* [count][target_count][3] of each target: of the point, of the unit normal */
@@ -24,7 +24,7 @@ typedef struct joint_points {
     const float *share;          /* [count] that joint's weight, which is dealt out; the rest is other joints' */
     const uint8_t *slots;        /* [count] 1..JOINTS_PER_VERTEX: the most that the share is dealt to */
     float normal_length;         /* a normal that is off by 1 counts as that length */
-} joint_points;
+} joint_fit_points;
 
 typedef struct joint_fit {
     uint32_t joint_count, target_count;
@@ -39,11 +39,11 @@ typedef struct joint_fit {
 #define JOINT_MOTION_MAX 511
 
 /* Fit at most joint_max joints. Fewer where fewer leave nothing. 0, or 1 when out of memory; free in both cases. */
-int joint_fit_make(const joint_points *points, uint32_t joint_max, joint_fit *out);
+int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit *out);
 void joint_fit_free(joint_fit *f);
 
 /* What a target at weight 1 does to a point: its move, and the turn w of what lies about it. */
-void joint_fit_motion(const joint_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
+void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
                       float turn[3]);
 
 #endif
