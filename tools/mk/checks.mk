@@ -37,7 +37,7 @@ view: deps-view
 	@$(BUILD)/noh view $(FILE)
 
 # What tests read of the demo.
-TEST_PACKS := $(addprefix $(BUILD)/,mask.noh wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/roam.noh demo/coat.noh demo/arm.glb demo/nell.noh demo/flush.noh)
+TEST_PACKS := $(addprefix $(BUILD)/,mask.noh mask_far.noh wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/roam.noh demo/coat.noh demo/arm.glb demo/nell.noh demo/flush.noh)
 check: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
 	@$(MAKE) --no-print-directory -j$(JOBS) WERROR="$(CHECK_WERROR)" all tests $(TEST_PACKS)
