@@ -401,7 +401,8 @@ noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds, or the desc has no user_values */
 noh_result noh_gl_skin_set_user(noh_gl_skin *skin, uint32_t instance, const float values[4], noh_error *error);
 
-/* Set the wrinkles and colours of one instance's regions, for noh_gl_draw_crowd; initially 0. noh_gl_skin_set_place keeps them.
+/* Set the wrinkles and colours of one instance's regions, for noh_gl_draw_crowd; initially 0. noh_gl_skin_set_place
+ * keeps them.
  * shapes  regions of noh_wrinkles_weights, 0..1, stored in 255ths; NULL: none
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; NOT_FOUND the instance's mesh has no
  *         wrinkles */
@@ -624,16 +625,15 @@ typedef struct noh_gl_renderer {
     noh_gl_texture white;       /* 1 x 1, for materials without a texture */
     const noh_gl_light *light;  /* of this pass; NULL if not lit */
     const noh_lighting *lighting;
-    noh_gl_camera camera; /* of this pass */
-    uint8_t tint[4];      /* of the next noh_gl_draw_mesh */
-    float user[4];        /* of the next noh_gl_draw_mesh */
-    int priority;         /* of the next draws, or NOH_PRIORITY_ANY */
-    float
-        wrinkles[NOH_WRINKLE_REGIONS];  /* of the next noh_gl_draw_mesh: vectors of noh_wrinkle_regions, then colours */
-    uint8_t wrinkle_models, smoothed;   /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
-    uint8_t shading;                    /* noh_shading */
-    const noh_gl_triangles *triangles;  /* of the next noh_gl_draw_mesh; NULL: all of the level */
-    const struct noh_gl_before *before; /* of the next draws, the last frame; NULL: as they are now */
+    noh_gl_camera camera;                /* of this pass */
+    uint8_t tint[4];                     /* of the next noh_gl_draw_mesh */
+    float user[4];                       /* of the next noh_gl_draw_mesh */
+    int priority;                        /* of the next draws, or NOH_PRIORITY_ANY */
+    float wrinkles[NOH_WRINKLE_REGIONS]; /* of the next noh_gl_draw_mesh: of noh_wrinkle_regions, then colours */
+    uint8_t wrinkle_models, smoothed;    /* NOH_WRINKLE_BY_*, 0: the material's; 255: smoothed out */
+    uint8_t shading;                     /* noh_shading */
+    const noh_gl_triangles *triangles;   /* of the next noh_gl_draw_mesh; NULL: all of the level */
+    const struct noh_gl_before *before;  /* of the next draws, the last frame; NULL: as they are now */
     unsigned cover;       /* of the next draws: a buffer in place of the mesh's indices, as large; 0: none */
     noh_gl_raster raster; /* state restored by noh_gl_draw_end */
     uint32_t variant_count;
@@ -702,8 +702,8 @@ void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
  * them to 0. Instances of a crowd have their own (noh_gl_skin_set_user). NULL: zeros */
 void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
 
-/* Set the wrinkles and colours of regions for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets them to none. Instances of
- * a crowd have their own (noh_gl_skin_set_wrinkles).
+/* Set the wrinkles and colours of regions for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets them to none.
+ * Instances of a crowd have their own (noh_gl_skin_set_wrinkles).
  * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
 void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
 
