@@ -555,7 +555,8 @@ typedef struct noh_recipe_row {
      * the name of an expression that moves it, which is a target too. Of
      * joint-head, joint-neck, joint-chest, joint-eye-left and joint-eye-right the target is a joint (modules.h).
      * Of override-lids, override-eyes, override-speech and binary the target is the upper channel of an emotion, or
-     * an expression, and the weight a noh_override, or 1 (noh_face_rules, face.h) */
+     * an expression, and the weight a noh_override, or 1 (noh_face_rules, face.h). Of `phone-` and one or two mouth
+     * shapes, phone-aa-ih, the target is a phone that has them, for `noh speak` */
     uint32_t channel, channel_hash;
     float weight; /* -4..4; for a corrective's driver its peak, above 0, at most 1; for a range its limit */
     uint32_t reserved[3];

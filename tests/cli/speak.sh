@@ -24,6 +24,24 @@ if [ -n "$json" ]; then
         if $json "$expression" <"$work/out"; then ok "$expression"; else not_ok "$expression"; fi
     done
 fi
+# A face's recipe knows phones of its own.
+printf 'phone QQ oh ou\nphone P FF # in place of PP\n' >"$work/own.recipe"
+noh build "$build/mask.glb" -o "$work/own.noh" --recipe "$work/own.recipe" --quiet
+noh speak 'Palm' --labels "$work/line.phones" --face "$work/own.noh" --json
+expect 0 'a face has mouth shapes of phones'
+check 'no phone is unknown' sh -c '! grep -q QQ "$1"' - "$work/err"
+if [ -n "$json" ]; then
+    for expression in 'j.phones.map(p => p.viseme).join() === "sil,FF,aa,sil,PP,oh"' \
+        'j.frames.viseme[20] === "FF" && j.frames.viseme[82] === "oh" && j.frames.viseme[88] === "ou"'; do
+        if $json "$expression" <"$work/out"; then ok "$expression"; else not_ok "$expression"; fi
+    done
+fi
+for row in 'phone' 'phone QQ' 'phone QQ smile' 'phone QQ oh ou aa' 'phone QQ oh
+phone QQ ou'; do
+    echo "$row" >"$work/bad.recipe"
+    noh build "$build/mask.glb" -o "$work/bad.noh" --recipe "$work/bad.recipe" --quiet
+    expect 1 "a bad row: $row"
+done
 noh speak 'Palm' --labels "$work/line.phones" --face "$build/mask.noh" -o "$work/palm.noh"
 expect 0 'they make a clip'
 noh info "$work/palm.noh"

@@ -296,6 +296,38 @@ static int read_binary(text_scan *s, recipe_text *recipe)
     return end_rule(s, form) || add_row(s, recipe, line, "binary", emotion, 1.0f);
 }
 
+/* Behind the word `phone`: the mouth shapes of a phone of a language, in place of the usual ones. */
+static int read_phone(text_scan *s, recipe_text *recipe)
+{
+    static const char form[] = "phone PHONE SHAPE [SHAPE]";
+    const uint32_t line = s->line;
+    char channel[NOH_NAME_BYTES_MAX] = "phone";
+    text_word phone, shape;
+    uint32_t count = 0;
+    if (take_target(s, line, form, &phone)) return 1;
+    for (; count < 3u; count++) {
+        uint32_t channels[2] = { 0, 0 };
+        if (text_take_on_line(s, &shape)) return 1;
+        if (!shape.size) break;
+        if (count == 2u || find_channels(shape, channels) != 1 || channels[0] < NOH_CHANNEL_VISEMES) count = 3u;
+        if (count == 3u) break;
+        (void)snprintf(channel + strlen(channel), sizeof channel - strlen(channel), "-%s",
+                       noh_face_channel_name(channels[0]));
+    }
+    if (count != 1u && count != 2u) {
+        return text_fail(s, line,
+                         "write the phone as `%s`, such as `phone ai aa ih`: shapes are sil, PP, FF, TH, DD, kk, CH, "
+                         "SS, nn, RR, aa, E, ih, oh and ou",
+                         form);
+    }
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        if (strncmp(recipe->rows[i].channel, "phone-", 6) == 0 && text_is(phone, recipe->rows[i].target)) {
+            return text_fail(s, line, "the phone is already in line %u", recipe->rows[i].line);
+        }
+    }
+    return add_row(s, recipe, line, channel, phone, 1.0f);
+}
+
 /* ---- wrinkles ---- */
 
 static int add_wrinkle(text_scan *s, recipe_text *recipe, uint32_t line, text_word word, uint32_t region, float weight)
@@ -408,6 +440,7 @@ static int read_line(text_scan *s, recipe_text *recipe)
     if (text_is(channel, "expression")) return read_expression(s, recipe);
     if (text_is(channel, "override")) return read_override(s, recipe);
     if (text_is(channel, "binary")) return read_binary(s, recipe);
+    if (text_is(channel, "phone")) return read_phone(s, recipe);
     if (text_is(channel, "wrinkle")) return read_wrinkle(s, recipe, 0);
     if (text_is(channel, "color")) return read_wrinkle(s, recipe, 1);
     if (text_is(channel, "tint")) return read_tint(s, recipe);

@@ -31,7 +31,10 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
     }
     for (uint32_t i = 0; i < (*out)->count; i++) {
         const recipe_row *row = &(*out)->rows[i];
-        if (strncmp(row->channel, "override-", 9) == 0 || strcmp(row->channel, "binary") == 0) continue;
+        if (strncmp(row->channel, "override-", 9) == 0 || strcmp(row->channel, "binary") == 0 ||
+            strncmp(row->channel, "phone-", 6) == 0) {
+            continue;
+        }
         const int is_joint = strncmp(row->channel, "joint-", 6) == 0;
         const int is_there = is_joint ? source_has_joint(s, row->target) : has_target(s->m, row->target);
         if (!is_there && model_warn(s->m, "%s:%u: no %s '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,

@@ -101,6 +101,8 @@ const char *const help_formats_text[] = {
     "   binary EMOTION-upper                        it shows whole above 0.5, else not at all (VRM's isBinary)",
     "   expression NAME TARGET [WEIGHT]             the target NAME, which may be empty, moves TARGET too (VRM's other",
     "                                               expressions); override and binary take its NAME in later rows",
+    "   phone PHONE SHAPE [SHAPE]                   the mouth shapes of a phone, as `noh speak` prints it, in place of the",
+    "                                               usual ones: phone ai aa ih",
     "   joint-head JOINT                            a joint of the face; also joint-neck, joint-chest, joint-eye-left,",
     "                                               joint-eye-right",
     "   corrective TARGET DRIVER [PEAK] ...         its weight is the product of its drivers' weights; a driver with",

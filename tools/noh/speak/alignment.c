@@ -1,4 +1,5 @@
 #include "alignment.h"
+#include "phone_shapes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -73,7 +74,7 @@ static double slowness(const synthesis *s, const posteriors *heard)
         frames += best != NOH_VISEME_SIL;
     }
     for (size_t i = 0; i < s->phone_count; i++) {
-        if (noh_viseme_of_phone(s->phones[i].name, NULL) != NOH_VISEME_SIL) expected += duration_of(s, i);
+        if (phone_shape(s->phones[i].name, NULL) != NOH_VISEME_SIL) expected += duration_of(s, i);
     }
     return expected > 0.0 ? frames / POSTERIOR_RATE / expected : 1.0;
 }
@@ -99,7 +100,7 @@ static int make_states(const synthesis *s, double slower, state_list *out)
     for (size_t i = 0; i < s->phone_count; i++) {
         const double seconds = slower * duration_of(s, i);
         noh_viseme second;
-        const noh_viseme first = noh_viseme_of_phone(s->phones[i].name, &second);
+        const noh_viseme first = phone_shape(s->phones[i].name, &second);
         const int after_pause = out->count && out->items[out->count - 1u].pause;
         if (!after_pause && (!out->count || first == NOH_VISEME_SIL || begins_word(s, i))) {
             add(out, i, NOH_VISEME_SIL, PAUSE_FRAMES, 1);

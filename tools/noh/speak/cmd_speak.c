@@ -9,6 +9,7 @@
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
 #include "alignment.h"
+#include "phone_shapes.h"
 #include "hearing.h"
 #include "labels.h"
 #include "platform.h"
@@ -46,7 +47,7 @@ static void json_phones(json *j, const synthesis *said)
     json_open(j, "phones", '[');
     for (size_t i = 0; i < said->phone_count; i++) {
         const size_t end = i + 1u < said->phone_count ? said->phones[i + 1u].sample : said->sample_count;
-        const noh_viseme viseme = noh_viseme_of_phone(said->phones[i].name, NULL);
+        const noh_viseme viseme = phone_shape(said->phones[i].name, NULL);
         json_open(j, NULL, '{');
         json_number(j, "start_s", (double)said->phones[i].sample / said->sample_rate);
         json_number(j, "end_s", (double)end / said->sample_rate);
@@ -317,19 +318,15 @@ static int hear(const speak_args *a, spoken *s)
     return status;
 }
 
-static int write_pack(const speak_args *a, const spoken *s)
+static int write_pack(const speak_args *a, const spoken *s, const pack_file *face)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     byte_buffer out = { NULL, 0, 0, 0 };
-    pack_file face;
-    int status = pack_file_open(&face, a->face);
-    if (status) return status;
-    status = speech_track_pack(&s->track, &s->voice, &s->said, s->text, &face, a->name, &out);
+    int status = speech_track_pack(&s->track, &s->voice, &s->said, s->text, face, a->name, &out);
     if (!status && noh_file_write(a->output, out.bytes, out.count, &error)) {
         status = tool_fail(a->output, "cannot write: %s", error.what);
     }
     buffer_free(&out);
-    pack_file_close(&face);
     return status;
 }
 
@@ -359,14 +356,18 @@ static int say(const speak_args *a, spoken *s)
 static int run(void *args)
 {
     const speak_args *a = args;
+    pack_file face;
     spoken s;
-    int status;
+    int status = a->face ? pack_file_open(&face, a->face) : 0;
+    if (status) return status;
     memset(&s, 0, sizeof s);
+    phone_shapes_of(a->face ? &face.pack : NULL);
     status = say(a, &s);
-    if (!status && a->output) status = write_pack(a, &s);
+    if (!status && a->output) status = write_pack(a, &s, &face);
     if (!status && a->wav) status = wav_write(a->wav, s.said.samples, s.said.sample_count, s.said.sample_rate);
     if (!status && a->as_json) status = print_json(a, &s);
     if (!status && !a->as_json) print_text(a, &s);
+    if (a->face) pack_file_close(&face);
     speech_track_free(&s.track);
     prosody_free(&s.voice);
     synthesis_free(&s.said);
@@ -427,9 +428,9 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, face),
       .value = "PACK",
-      .what = "the face that speaks: its targets need names of ARKit, VRM or facial units",
-      .example = "face.noh",
-      .needs = "-o" },
+      .what = "the face that speaks: its targets need names of ARKit, VRM or facial units; rows `phone` of its recipe give "
+              "the mouth shapes of a language's phones",
+      .example = "face.noh" },
     { .name = "--name",
       .kind = OPTION_TEXT,
       .at = offsetof(speak_args, name),

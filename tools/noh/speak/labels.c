@@ -1,4 +1,5 @@
 #include "labels.h"
+#include "phone_shapes.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,7 +33,7 @@ static int add(label_list *l, double start, double end, const char *phone, size_
     l->items = more;
     more[l->count].start = start;
     more[l->count].end = end;
-    more[l->count].first = noh_viseme_of_phone(phone, &more[l->count].second);
+    more[l->count].first = phone_shape(phone, &more[l->count].second);
     more[l->count].line = line;
     snprintf(more[l->count].phone.name, sizeof more->phone.name, "%s", phone);
     l->count++;

@@ -1,4 +1,5 @@
 #include "speech_track.h"
+#include "phone_shapes.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -64,7 +65,7 @@ int speech_track_make(const synthesis *said, speech_track *out)
         const uint64_t next = i + 1u < said->phone_count ? said->phones[i + 1u].sample : said->sample_count;
         const uint32_t start = tick_of(said, said->phones[i].sample), end = tick_of(said, next);
         noh_viseme second;
-        const noh_viseme first = noh_viseme_of_phone(said->phones[i].name, &second);
+        const noh_viseme first = phone_shape(said->phones[i].name, &second);
         if (first == NOH_VISEME_COUNT || start >= out->speech.end) continue; /* a mark, or nothing that lips show */
         add_phone(out, start, first);
         if (second != NOH_VISEME_COUNT && end > start + 5u) add_phone(out, start + (end - start) * 3u / 5u, second);
