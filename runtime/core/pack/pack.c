@@ -7,6 +7,7 @@
 #include <stddef.h>
 #include <string.h>
 
+#include "core/base/compiler_internal.h"
 #include "core/pack/check_internal.h"
 #include "core/pack/pack_internal.h"
 
@@ -190,7 +191,7 @@ static noh_result check_tail(const noh_pack *pack, noh_error *error)
 /* Checks come in an order in which each may rely on those before it: the counts of the header, the checksum of header
  * and table, then chunk by chunk its place, its checksum and its content, and the padding at the end. The pack is built
  * in a copy, which the caller gets only when everything has passed. */
-noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error)
+NOH_COLD noh_result noh_pack_open(const void *bytes, size_t byte_count, noh_pack *pack, noh_error *error)
 {
     noh_pack p;
     noh_result result;
