@@ -1982,6 +1982,10 @@ static void nothing_to_convert_is_refused(void **state)
     (void)state;
     write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"}}");
     file_refused("no triangle meshes and no animations", "");
+    /* Nodes outside the scene are no reason. */
+    write_text("test.gltf",
+               "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{},{}],\"scene\":0,\"scenes\":[{\"nodes\":[0]}]}");
+    file_refused("there is nothing to convert", "glTF JSON");
 }
 
 static void deep_json_is_refused(void **state)

@@ -133,9 +133,10 @@ static void read_model(file &f, const bytes &data)
     warn_left_out(f);
     if (f.out->mesh_count == 0 && f.out->clip_count == 0) {
         const std::string nothing = "the file has no triangle meshes and no animations: there is nothing to convert";
-        if (f.losses.empty()) fail("glTF JSON", nothing);
-        const left_out &loss = f.losses[0];
-        fail(loss.first, nothing + "; " + loss.what.substr(loss.what.find(' ') + 1));
+        for (const left_out &loss : f.losses) /* nodes and cameras are no reason */
+            if (loss.first.compare(0, 6, "node '") != 0 && loss.first.compare(0, 8, "camera '") != 0)
+                fail(loss.first, nothing + "; " + loss.what.substr(loss.what.find(' ') + 1));
+        fail("glTF JSON", nothing);
     }
 }
 
