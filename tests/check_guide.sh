@@ -75,6 +75,9 @@ cat $guide/find_your_way.md $guide/add_*.md | grep -oE '`[a-z_]+(/[a-z_0-9]+)+\.
     echo "$file"
 done >"$work/files"
 check 'files that they name are there' sh -c '! grep . "$1"' - "$work/files"
+minor=$(sed -n 's/^#define NOH_VERSION "\([0-9]*\.[0-9]*\)\..*"/\1/p' runtime/noh/base.h)
+grep -rhoE 'find_package\(noh [0-9.]+' $guide | grep -vxF "find_package(noh $minor" >"$work/versions"
+check 'CMake is asked for this version' sh -c '! grep . "$1"' - "$work/versions"
 # "`file`: `name`, `name`" in a cell of the table of searches.
 awk '/^\| .*\.(c|glsl)`/ {
     cells = split($0, cell, "|")

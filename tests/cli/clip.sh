@@ -120,7 +120,7 @@ check 'is a warning' grep -q 'warning: line .*: the file ends after .* frames; t
 sed 's/^1 20 0 5/1 20 x 5/' "$work/walk.bvh" >"$work/word.bvh"
 noh build "$work/word.bvh" -o "$work/x.noh"
 expect 0 'a word among the numbers'
-check 'is a warning' grep -q "warning: line 20: 'x' is not a number; the clip ends before it" "$work/out"
+check 'is a warning' grep -q "warning: line 20: 'x' is not a number; 1 frame that cannot be read repeats the nearest one" "$work/out"
 rm -f "$work/x.noh"
 printf 'walk 0.02 step\nwalk later step\n' >"$work/keys.txt"
 noh build "$work/walk.bvh" -o "$work/x.noh" --events "$work/keys.txt"

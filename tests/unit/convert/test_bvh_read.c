@@ -281,7 +281,7 @@ static void bad_frames_repeat_the_nearest(void **state)
         const char *rows, *warning;
         double x[4]; /* of each frame, the first number */
     } all[] = {
-        { "1 ? 3\n4 5 6\n7 8 9\n2 3 4\n", "line 10: '?' is not a number; 1 frames that", { 4, 4, 7, 2 } },
+        { "1 ? 3\n4 5 6\n7 8 9\n2 3 4\n", "line 10: '?' is not a number; 1 frame that", { 4, 4, 7, 2 } },
         { "1 2\n1 2 nan\n7 8 9\n2 3 4\n",
           "line 10: frame 0 has 2 numbers; the channels need 3; 2 frames",
           { 7, 7, 7, 2 } },
@@ -302,7 +302,7 @@ static void bad_frames_repeat_the_nearest(void **state)
         raw_set_free(set);
     }
     check_warned(HEAD "Frames: 4\nFrame Time: 0.01\n1 2 3\n?\n1 2 3\n4 5\n", 3,
-                 "the last 1 frames cannot be read, and the clip ends before them");
+                 "the clip ends before the last frames, which cannot be read (1 of them)");
 }
 
 /* A clip ends before frames at its end that cannot be read. */

@@ -196,13 +196,13 @@ static int end_clip(bvh_file *f, uint32_t frame, uint32_t end, uint32_t held, co
     char text[sizeof bad->what + sizeof bad->where + 160];
     f->set->clips[0].frame_count = end;
     if (held) {
-        (void)snprintf(text, sizeof text, "%s: %s; %u frames that cannot be read repeat the nearest one", bad->where,
-                       bad->what, held);
+        (void)snprintf(text, sizeof text, "%s: %s; %u frame%s that cannot be read repeat%s the nearest one", bad->where,
+                       bad->what, held, held == 1u ? "" : "s", held == 1u ? "s" : "");
         if (warn(f, text)) return 1;
     }
     if (end < frame) {
         if (held)
-            (void)snprintf(text, sizeof text, "the last %u frames cannot be read, and the clip ends before them",
+            (void)snprintf(text, sizeof text, "the clip ends before the last frames, which cannot be read (%u of them)",
                            frame - end);
         else
             (void)snprintf(text, sizeof text, "%s: %s; the clip ends before it", bad->where, bad->what);

@@ -155,7 +155,7 @@ static void bind_nodes(file &f)
         }
         out.skin = MODEL_NONE;
         leave_out(f, "node '" + printable(out.name) + "'",
-                  " has a skin, but its mesh has no joints; the node alone places it");
+                  " has a skin, but its mesh lacks JOINTS_0 or WEIGHTS_0; the node alone places it");
     }
 }
 

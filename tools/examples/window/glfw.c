@@ -20,7 +20,9 @@ static noh_gl_proc get_proc(void *user, const char *name)
 
 static int fail(const char *what)
 {
-    return fprintf(stderr, "%s: %s (need %lu) %s\n", what, e.what ? e.what : "", (unsigned long)e.need, gl.log), 1;
+    const char *why = e.what;
+    if (!why) (void)glfwGetError(&why);
+    return fprintf(stderr, "%s: %s (need %lu) %s\n", what, why ? why : "", (unsigned long)e.need, gl.log), 1;
 }
 
 int main(int argc, char **argv)
@@ -28,21 +30,19 @@ int main(int argc, char **argv)
     const char *clip = argc > 2 ? argv[2] : "walk";
     const noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .root_up = 1 };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .encode_srgb = 1, .gpu = &noh_stage_on_gl };
-    const float grey[4] = { 0.16f, 0.17f, 0.2f, 1.0f }, far = 1.0f;
+    float grey[4] = { 0.16f, 0.17f, 0.2f, 1.0f }, far = 1.0f, sphere[4];
     FILE *in = argc > 1 ? fopen(argv[1], "rb") : NULL;
     void *file = malloc(64 << 20);
-    GLFWwindow *window = NULL;
     noh_stage *stage;
     noh_stage_view view;
     noh_actor actor;
-    float sphere[4];
-    if (noh_pack_open(file, in ? fread(file, 1, 64 << 20, in) : 0, &pack, &e)) return fail("pack");
+    if (!in || noh_pack_open(file, fread(file, 1, 64 << 20, in), &pack, &e)) return fail("walk PACK [CLIP [FRAMES]]");
     if (!glfwInit()) return fail("GLFW");
     glfwWindowHint(GLFW_CLIENT_API, GLFW_OPENGL_ES_API);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-    if (!(window = glfwCreateWindow(960, 720, "noh", NULL, NULL))) return fail("window");
+    GLFWwindow *window = glfwCreateWindow(960, 720, "noh", NULL, NULL);
     glfwMakeContextCurrent(window);
-    if (noh_gl_open(&gl, get_proc, NULL, &e)) return fail("GL");
+    if (!window || noh_gl_open(&gl, get_proc, NULL, &e)) return fail("GL");
     if (noh_stage_plan_make(&desc, &gl.caps, &plan, &e) ||
         noh_stage_init(malloc(plan.cpu_bytes), plan.cpu_bytes, &gl.device, &desc, &plan, &stage, &e) ||
         noh_stage_spawn(stage, 0, NULL, &actor, &e) || noh_actor_play(stage, actor, 0, clip, NULL, &e))

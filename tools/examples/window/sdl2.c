@@ -34,7 +34,7 @@ int main(int argc, char **argv)
     noh_stage_view view;
     noh_actor actor;
     float sphere[4];
-    if (noh_pack_open(file, bytes, &pack, &e)) return fail("pack");
+    if (!file || noh_pack_open(file, bytes, &pack, &e)) return fail("walk PACK [CLIP [FRAMES]]");
     if (SDL_Init(SDL_INIT_VIDEO)) return fail("SDL");
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_PROFILE_MASK, SDL_GL_CONTEXT_PROFILE_ES);
     SDL_GL_SetAttribute(SDL_GL_CONTEXT_MAJOR_VERSION, 3);

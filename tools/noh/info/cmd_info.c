@@ -154,7 +154,7 @@ static int print_clip(const pack_file *file, uint32_t index)
         printf("clip '%s': %.3f s, %u joints, %u floats, %u bytes, %u callback key%s, %u sync marker%s%s\n", clip.name,
                tool_clip_seconds(&info), info.joint_count, info.float_count, clip.header->clip_bytes,
                clip.header->event_count, plural(clip.header->event_count), clip.header->marker_count,
-               plural(clip.header->marker_count), info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : "");
+               plural(clip.header->marker_count), info.flags & NOH_CLIP_FLAG_LOOP ? ", a loop" : ", plays once");
         info_print_keys(&file->pack, &clip);
         info_print_errors(&file->pack, &clip);
     }

@@ -194,7 +194,7 @@ void info_print_errors(const noh_pack *pack, const noh_pack_clip *clip)
     const double unit = unit_cm(pack, clip);
     uint32_t count;
     const uint32_t *levels = noh_pack_joint_levels(pack, h->skeleton, &count);
-    printf("  off by at most %.3g, %.3g, %.3g cm at 30, 15, 8 Hz", unit * (double)h->update_rate_error[1],
+    printf("  if played with less: off by at most %.3g, %.3g, %.3g cm at 30, 15, 8 Hz", unit * (double)h->update_rate_error[1],
            unit * (double)h->update_rate_error[2], unit * (double)h->update_rate_error[3]);
     for (uint32_t i = 1; i < h->joint_error_count; i++) {
         printf("%s %.3g", i == 1 ? ";" : ",", unit * (double)clip->joint_errors[i]);
