@@ -29,6 +29,9 @@ static double shell_cm(const clips_settings *s)
     return s->clip.shell_cm > 0.0 ? s->clip.shell_cm : 3.0;
 }
 
+#define CLOSED_CM 0.1 /* ends nearer than this look alike */
+
+/* How a loop closes, or that a clip might be one. */
 static int report_loop(const raw_set *set, const raw_clip *clip, const clips_settings *s, model_error *error)
 {
     raw_loop_check loop;
@@ -36,8 +39,11 @@ static int report_loop(const raw_set *set, const raw_clip *clip, const clips_set
         snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
-    if (s->report) {
+    if (clip->loop) {
         fprintf(s->report, "  loop: first and last frame differ by %.3f cm, %.3f cm in place\n", loop.difference_cm,
+                loop.in_place_cm);
+    } else if (loop.in_place_cm < CLOSED_CM && loop.float_cm < CLOSED_CM) {
+        fprintf(s->report, "  plays once, and ends as it begins (%.3f cm in place): --loop makes it a loop\n",
                 loop.in_place_cm);
     }
     return 0;
@@ -180,10 +186,9 @@ static int encode_clip(const raw_set *set, raw_clip *clip, const error_points *a
         clip_errors_measure(&set->skeleton, clip, &out->bytes, at, &out->errors, error)) {
         return 1;
     }
-    if (s->report) {
-        report_clip(s, set, out);
-    }
-    return s->check_loops && clip->joint_count ? report_loop(set, clip, s, error) : 0;
+    if (!s->report) return 0;
+    report_clip(s, set, out);
+    return clip->joint_count ? report_loop(set, clip, s, error) : 0;
 }
 
 /* What a set's clips move, and where their errors are measured. */
