@@ -109,8 +109,9 @@ typedef enum noh_half_mode {
 #define NOH_SKIN_JOINTS_MAX 4096u /* of a skin */
 /* a uniform block of 12 KiB; ES 3.0 guarantees 16 KiB. A vertex has 8 bits for an index into its palette */
 #define NOH_PALETTE_JOINTS_MAX 256u
-#define NOH_INFLUENCES_MAX 8u /* joints per vertex on the GPU and in the SIMD kernels */
-#define NOH_SKIN_LIST_MAX 32u /* joints per vertex of a list (deform.h), on the CPU */
+#define NOH_INFLUENCES_MAX 8u  /* joints per vertex on the GPU and in the SIMD kernels */
+#define NOH_FAR_JOINTS_MAX 32u /* virtual joints of a mesh */
+#define NOH_SKIN_LIST_MAX 32u  /* joints per vertex of a list (deform.h), on the CPU */
 
 /* ---- clips, their sets and banks ---- */
 

@@ -297,8 +297,6 @@ typedef struct noh_wrinkles_header {
  * skin, that targets move on top (noh_mesh_move_far_joints, deform.h). The vertices of these levels have weights for
  * them, and no accumulation texels. Libraries older than this chunk refuse a pack with it (unknown type). ---- */
 
-#define NOH_FAR_JOINTS_MAX 32u /* of a mesh */
-
 typedef struct noh_far_joints_header {
     uint32_t mesh;         /* the n-th mesh chunk, a skinned one without dual quaternions */
     uint32_t level;        /* the finest level whose vertices they move, above 0 */
