@@ -63,11 +63,11 @@ void figure_draw_blobs(figure *f)
 
 #define REACHES 3.0f /* radii of what casts it */
 
-/* A body; a head hangs in the air. */
+/* A body; a head hangs in the air, and so does a thing on a joint. */
 static int stands(const figure *f)
 {
     int joints = 0;
-    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) joints |= f->plan.kinds[k].joint_count > 0;
+    for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) joints |= f->plan.kinds[k].joint_count > 1;
     return joints && !figure_is_head(f);
 }
 
