@@ -558,8 +558,7 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX }, first = { 0, 0 };
     noh_stage_desc d = *desc;
-    noh_gl_tiles tiles;
-    noh_gl_morph_desc morph;
+    int in_draws;
     NOH_ASSERT(plan && caps && out);
     noh_stage_desc_by_plan(&d, plan);
     while (noh_gl_next_site(plan, d.kind_count, &site)) {
@@ -568,10 +567,8 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
             break;
         }
     }
-    noh_gl_tiles_of(&d, plan, first, &tiles);
-    morph = noh_gl_site_morph(&d, &tiles);
-    morph.without_direct = !noh_gl_sums_in_draws(&d, plan, caps);
-    return noh_gl_morph_plan_make(&morph, caps, out, error);
+    in_draws = noh_gl_sums_in_draws(&d, plan, caps);
+    return noh_gl_site_plan(&d, plan, first, caps, !in_draws, out, error);
 }
 
 /* The last frame; without motion, this one. */

@@ -2,6 +2,7 @@
 #ifndef NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 #define NOH_STAGE_GL_STAGE_GL_INTERNAL_H
 
+#include "core/base/compiler_internal.h"
 #include "stage/actors/stage_draws_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "gl/draw/gl_draw_internal.h"
@@ -242,6 +243,11 @@ noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan
 /* The finest that is in the kind's own pack. Returns 0 where that is the finest of all: none comes later. */
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse);
 noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_tiles *tiles);
+
+/* The plan of a site's model. Its tiles take kilobytes of stack, so it is never inlined. */
+NOH_NEVER_INLINE noh_result noh_gl_site_plan(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner,
+                                             const noh_gl_caps *caps, int without_direct, noh_gl_morph_plan *out,
+                                             noh_error *error);
 
 /* Whether the stage's path is `direct`. One renderer draws the whole stage, so `auto` takes it for all meshes or none:
  * where it is the cheapest for each. That is settled before bounds make the plan smaller, or each step might change

@@ -176,6 +176,17 @@ noh_gl_morph_desc noh_gl_site_morph(const noh_stage_desc *desc, const noh_gl_til
     return d;
 }
 
+noh_result noh_gl_site_plan(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner,
+                            const noh_gl_caps *caps, int without_direct, noh_gl_morph_plan *out, noh_error *error)
+{
+    noh_gl_tiles tiles;
+    noh_gl_morph_desc d;
+    noh_gl_tiles_of(desc, plan, owner, &tiles);
+    d = noh_gl_site_morph(desc, &tiles);
+    d.without_direct = without_direct;
+    return noh_gl_morph_plan_make(&d, caps, out, error);
+}
+
 int noh_gl_sums_in_draws(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
@@ -184,16 +195,12 @@ int noh_gl_sums_in_draws(const noh_stage_desc *desc, const noh_stage_plan *plan,
         return (desc->morph_path ? desc->morph_path : plan->morph_path) == NOH_MORPH_DIRECT;
     }
     while (noh_gl_next_site(plan, desc->kind_count, &site)) {
-        noh_gl_morph_desc d;
         noh_gl_morph_plan p;
-        noh_gl_tiles tiles;
         if (!is_same(noh_gl_owner(desc, plan, site), site) ||
             !noh_gl_site_mesh(desc, plan, site).header->touched_count) {
             continue;
         }
-        noh_gl_tiles_of(desc, plan, site, &tiles);
-        d = noh_gl_site_morph(desc, &tiles);
-        if (noh_gl_morph_plan_make(&d, caps, &p, NULL) || p.path != NOH_MORPH_DIRECT) return 0;
+        if (noh_gl_site_plan(desc, plan, site, caps, 0, &p, NULL) || p.path != NOH_MORPH_DIRECT) return 0;
         any = 1;
     }
     return any;
