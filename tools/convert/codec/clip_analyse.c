@@ -82,11 +82,12 @@ static double rotation_range(const encoder *e, uint32_t joint, double mean[4])
     return worst;
 }
 
-static void find_modes(encoder *e)
+/* Returns 1 when out of memory. */
+static int find_modes(encoder *e)
 {
     double *lever = enc_alloc(e, e->joint_count, sizeof *lever);
     double value[4];
-    if (!lever) return;
+    if (!lever) return 1;
     for (uint32_t j = e->joint_count; j-- > 0u;) {
         enc_joint *t = &e->joints[j];
         const double scale = parent_scale(e, j);
@@ -114,6 +115,7 @@ static void find_modes(encoder *e)
         }
     }
     free(lever);
+    return 0;
 }
 
 /* Whether `joint` moves rigidly with `carrier`: all joints between them are constant. */
@@ -546,7 +548,7 @@ static int find_depths(encoder *e)
 int enc_analyse(encoder *e)
 {
     double lever = 0.0;
-    find_modes(e);
+    if (find_modes(e)) return 1;
     for (uint32_t j = 0; j < e->joint_count; j++) find_constants(e, j);
     for (uint32_t j = 0; j < e->joint_count; j++) {
         enc_joint *t = &e->joints[j];

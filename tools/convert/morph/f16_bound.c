@@ -50,15 +50,13 @@ static void add_target(const morph_encoding *e, const morph_target *t, bound *bo
     }
 }
 
-void f16_bound(const morph_encoding *e, float *position, float *direction)
+int f16_bound(const morph_encoding *e, float *position, float *direction)
 {
     size_t texels = (size_t)e->height << e->width_log2;
     bound *bounds = calloc(texels * 9 + 1, sizeof *bounds);
     double worst_position = 0.0, worst_direction = 0.0, largest = 0.0;
     *position = *direction = NOH_NUMBER_MAX;
-    if (!bounds) {
-        return;
-    }
+    if (!bounds) return 1;
     for (uint32_t t = 0; t < e->target_count; t++) {
         add_target(e, &e->targets[t], bounds);
     }
@@ -78,4 +76,5 @@ void f16_bound(const morph_encoding *e, float *position, float *direction)
         *direction = nextafterf((float)worst_direction, 1e30f);
     }
     free(bounds);
+    return 0;
 }

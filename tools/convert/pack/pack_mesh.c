@@ -253,7 +253,6 @@ static void set_counts(const model_mesh *m, const morph_encoding *e, const mesh_
     h->uv_per_unit = e->uv_per_unit;
     set_bounds(m, h);
     set_uv_range(m, h);
-    f16_bound(e, &h->f16_position_bound, &h->f16_direction_bound);
 }
 
 static void set_skin(const model_mesh *m, const mesh_layout *l, uint32_t skin, noh_mesh_header *h)
@@ -312,6 +311,7 @@ int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, m
     int failed = mesh_layout_make(m, levels, e, from->submesh_blends, &l, error);
     if (!failed) {
         set_counts(m, e, &l, &h);
+        if (f16_bound(e, &h.f16_position_bound, &h.f16_direction_bound)) out->failed = 1;
         set_skin(m, &l, from->skin, &h);
         h.world_scale = from->world_scale;
         memcpy(h.influence_errors, levels->cap_error, sizeof h.influence_errors);
