@@ -43,6 +43,26 @@ shows take 0.083333 '0.60 0.40 1.00'
 noh info "$work/take.noh" --json
 check 'it lasts 6 frames at 60 Hz' grep -q '"seconds": 0.1' "$work/out"
 
+# A VRM animation moves the expressions of a VRM: a preset by its channel, an author's own by its name.
+model person '"Joy","LidL","c"'
+sed 's/^{/{"extensionsUsed":["VRMC_vrm"],"extensions":{"VRMC_vrm":{"specVersion":"1.0","expressions":{"preset":{"happy":{"morphTargetBinds":[{"node":0,"index":0,"weight":0.5}]}},"custom":{"Wink":{"morphTargetBinds":[{"node":0,"index":1,"weight":1}]}}}}},/' \
+    "$work/person.gltf" >"$work/person.new" && mv "$work/person.new" "$work/person.gltf"
+keys=$(printf '\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0\0\0\0\0\0\0\200\77\0\0\0\0\0\0\0\0' | base64)
+cat >"$work/mood.gltf" <<END
+{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0,1,2]}],"nodes":[{"name":"hips"},{"name":"one"},{"name":"two"}],
+"extensionsUsed":["VRMC_vrm_animation"],"extensions":{"VRMC_vrm_animation":{"specVersion":"1.0","humanoid":{"humanBones":{"hips":{"node":0}}},
+"expressions":{"preset":{"happy":{"node":1},"angry":{"node":7}},"custom":{"Wink":{"node":2}}}}},
+"animations":[{"name":"mood","samplers":[{"input":0,"output":1}],"channels":[{"sampler":0,"target":{"node":1,"path":"translation"}},{"sampler":0,"target":{"node":2,"path":"translation"}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[1]},{"bufferView":1,"componentType":5126,"count":2,"type":"VEC3"}],
+"bufferViews":[{"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":24}],
+"buffers":[{"byteLength":32,"uri":"data:application/octet-stream;base64,$keys"}]}
+END
+noh build "$work/person.gltf" "$work/mood.gltf" -o "$work/mood.noh"
+expect 0 'a VRM and an animation'
+warns "VRM expression 'angry': its animation was left out: its node does not exist"
+shows mood 1 '0.50 1.00 0.00'
+shows mood 0.5 '0.25 0.50 0.00'
+
 # Seconds, other separators, a face that has no such targets.
 printf 'time;jaw_open;mouthSmileLeft\r\n0.50;0;0\r\n0.54;0.5;0\r\n0.58;1;0\r\n' >"$work/seconds.csv"
 model jaw '"jawOpen","a","b"'
@@ -50,7 +70,7 @@ build jaw seconds
 shows seconds 0.04 '0.50 0.00 0.00'
 model other '"a","b","c"'
 build other seconds
-warns 'has no target named as a shape of ARKit: its 2 scalars move nothing'
+warns 'has no target for its 2 shapes'
 noh build "$work/seconds.csv" -o "$work/alone.noh"
 expect 0 'build a take alone'
 noh info "$work/alone.noh"

@@ -1353,10 +1353,12 @@ static void vrm_animations_are_for_any_body(void **state)
     (void)state;
     model *m = load(
         vrm_scene("\"VRMC_vrm_animation\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{"
-                  "\"node\":1}}},\"expressions\":{\"preset\":{\"happy\":{\"node\":2}}},\"lookAt\":{\"node\":2}}"));
+                  "\"node\":1}}},\"expressions\":{\"preset\":{\"happy\":{\"node\":2},\"aa\":{\"node\":9}}},"
+                  "\"lookAt\":{\"node\":2}}"));
     assert_true(m->for_any_body);
     assert_string_equal(m->nodes[1].name, "hips");
-    assert_true(has_warning(m, "VRM expression 'happy': its animation was left out"));
+    assert_string_equal(m->nodes[2].expression, "joy-upper");
+    assert_true(has_warning(m, "VRM expression 'aa': its animation was left out: its node does not exist"));
     assert_true(has_warning(m, "VRM lookAt: its animation was left out"));
     model_free(m);
 }

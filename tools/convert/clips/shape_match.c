@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "convert/base/names.h"
+#include "convert/base/recipe_read.h"
 #include "convert/model/model_build.h"
 #include "raw_set.h"
 
@@ -43,6 +44,38 @@ static float reach_cm(const model *m, uint32_t mesh, uint32_t target)
     return (float)(100.0 * most * (double)model_mesh_scale(m, mesh));
 }
 
+/* How much of a target a scalar is, by the rows of its mesh's recipe: expressions of VRM. */
+static float share_of(const recipe_text *recipe, const char *scalar, const char *target)
+{
+    const int blinks = strcmp(scalar, "blink") == 0;
+    float sum = 0.0f;
+    for (uint32_t i = 0; recipe && i < recipe->count; i++) {
+        const recipe_row *row = &recipe->rows[i];
+        const char *channel = row->channel + (row->channel[0] == ':');
+        const int is_it = strcmp(channel, scalar) == 0 || (blinks && strcmp(channel, "blink-left") == 0);
+        if (is_it && strcmp(row->target, target) == 0) sum += row->weight;
+    }
+    return sum;
+}
+
+/* A target's weight by its mesh's recipe. Returns 0 where no scalar moves it. */
+static int fill_by_recipe(const recipe_text *recipe, const raw_clip *clip, uint32_t count, const char *name,
+                          raw_floats *out, uint32_t target, uint8_t *taken)
+{
+    int any = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const float share = share_of(recipe, clip->floats[i].name, name);
+        if (share == 0.0f) continue;
+        for (size_t k = 0; k < clip->frame_count; k++) {
+            float *to = &out->values[k * out->width + target];
+            *to = (any ? *to : 0.0f) + share * clip->floats[i].values[k];
+        }
+        taken[i] = 1;
+        any = 1;
+    }
+    return any;
+}
+
 static void fill(const raw_clip *clip, const uint32_t from[2], float standing, raw_floats *out, uint32_t target)
 {
     for (size_t k = 0; k < clip->frame_count; k++) {
@@ -53,7 +86,8 @@ static void fill(const raw_clip *clip, const uint32_t from[2], float standing, r
 }
 
 /* The weights of one node, behind the clip's `count` scalars; left out where none of its targets is named. */
-static int add_node(const model *m, uint32_t node, uint32_t count, raw_clip *clip, uint8_t *taken)
+static int add_node(const model *m, uint32_t node, uint32_t count, const recipe_text *recipe, raw_clip *clip,
+                    uint8_t *taken)
 {
     const uint32_t mesh = m->nodes[node].mesh, targets = mesh == MODEL_NONE ? 0 : m->meshes[mesh].target_count;
     const float *own = m->nodes[node].weights;
@@ -69,8 +103,12 @@ static int add_node(const model *m, uint32_t node, uint32_t count, raw_clip *cli
     if (!out->name || !out->radius) return 1;
     for (uint32_t t = 0; t < targets; t++) {
         uint32_t from[2];
-        sources_of(clip, count, m->meshes[mesh].targets[t].name, from);
         out->radius[t] = reach_cm(m, mesh, t);
+        if (fill_by_recipe(recipe, clip, count, m->meshes[mesh].targets[t].name, out, t, taken)) {
+            any = 1;
+            continue;
+        }
+        sources_of(clip, count, m->meshes[mesh].targets[t].name, from);
         fill(clip, from, own ? own[t] : m->meshes[mesh].weights[t], out, t);
         if (from[0] == MODEL_NONE) continue;
         taken[from[0]] = taken[from[1]] = 1;
@@ -87,9 +125,8 @@ static int warn(model *m, const char *path, const raw_clip *clip, uint32_t count
         if (!taken[i]) lost++, first = i;
     }
     if (lost == count) {
-        return model_warn(m,
-                          "clip '%.60s': %.100s has no target named as a shape of ARKit: its %u scalars move nothing",
-                          clip->name, path, count);
+        return model_warn(m, "clip '%.60s': %.100s has no target for its %u shape%s, such as '%s'", clip->name, path,
+                          count, count == 1u ? "" : "s", clip->floats[0].name);
     }
     return lost && model_warn(m, "clip '%.60s': %.100s has no target '%s'%s: %u of %u shapes were left out", clip->name,
                               path, clip->floats[first].name, lost > 1 ? " and others" : "", lost, count);
@@ -102,7 +139,16 @@ int shapes_match(model *m, const char *path, raw_clip *clip)
     uint8_t *taken = model_zeros(count, 1);
     int failed = !grown || !taken;
     if (grown) clip->floats = grown;
-    for (uint32_t n = 0; n < m->node_count && !failed; n++) failed = add_node(m, n, count, clip, taken);
+    for (uint32_t n = 0; n < m->node_count && !failed; n++) {
+        const char *text = m->nodes[n].mesh == MODEL_NONE ? NULL : m->meshes[m->nodes[n].mesh].recipe;
+        recipe_text *recipe = text ? recipe_new() : NULL;
+        model_error ignored; /* a recipe with a bad line is reported where it is kept */
+        uint32_t line;
+        failed = text && !recipe;
+        if (recipe) (void)recipe_add_text(recipe, text, strlen(text), &line, &ignored);
+        failed = failed || add_node(m, n, count, recipe, clip, taken);
+        recipe_free(recipe);
+    }
     failed = failed || warn(m, path, clip, count, taken);
     if (!failed && clip->float_count > count) {
         for (uint32_t i = 0; i < count; i++) raw_floats_clear(&clip->floats[i]);

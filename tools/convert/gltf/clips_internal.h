@@ -31,6 +31,12 @@ uint32_t joint_of(const skeleton_plan &p, uint32_t node);
 std::vector<node_joint> find_movers(const model &m, const std::vector<skeleton_plan> &plans);
 void build_skeleton(const model &m, const skeleton_plan &p, raw_skeleton &out);
 
+/* Whether a channel moves no joint: weights of targets, or of an expression. */
+inline bool is_weight(const model &m, const model_channel &c)
+{
+    return c.path == MODEL_PATH_WEIGHTS || (c.path == MODEL_PATH_TRANSLATION && m.nodes[c.node].expression);
+}
+
 /* --- sample_rate.cpp --- */
 
 /* A channel, and what an error of it is worth. */

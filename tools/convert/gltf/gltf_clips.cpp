@@ -146,6 +146,8 @@ static std::vector<double> radius_of(const set_job &job, uint32_t node, const ra
 
 /* --- the tracks of one clip --- */
 
+const double expression_cm = 1.0; /* how far an expression at weight 1 moves a face, to choose a rate by */
+
 static std::vector<track> find_tracks(const set_job &job, const model_clip &clip)
 {
     std::vector<track> tracks;
@@ -153,10 +155,13 @@ static std::vector<track> find_tracks(const set_job &job, const model_clip &clip
     for (uint32_t i = 0; i < clip.channel_count; ++i) {
         const model_channel &c = clip.channels[i];
         uint32_t joint = joint_of(*job.plan, c.node);
-        if (c.path != MODEL_PATH_WEIGHTS && joint != MODEL_NONE)
+        if (!is_weight(*job.m, c) && joint != MODEL_NONE)
             tracks.push_back({ &c, joint, lever_of(job, c, joint), {}, job.seen[joint] });
-        if (c.path == MODEL_PATH_WEIGHTS && std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node))
+        if (!is_weight(*job.m, c) || !std::binary_search(weight_nodes.begin(), weight_nodes.end(), c.node)) continue;
+        if (c.path == MODEL_PATH_WEIGHTS)
             tracks.push_back({ &c, MODEL_NONE, 0.0, radius_of(job, c.node, nullptr), false });
+        else
+            tracks.push_back({ &c, MODEL_NONE, 0.0, { expression_cm, 0.0, 0.0 }, false });
     }
     return tracks;
 }
@@ -266,6 +271,19 @@ static void fill_weights(const set_job &job, const track &t, const timing &when,
     sample_track(job, t, when, floats.values, width, place);
 }
 
+/* The weight of a VRM animation's expression. */
+static void fill_expression(const set_job &job, const track &t, const timing &when, raw_clip &clip,
+                            const std::string &where)
+{
+    raw_floats &floats = clip.floats[clip.float_count++];
+    std::vector<float> moved(size_t{ clip.frame_count } * 3);
+    check_memory(raw_floats_alloc(&floats, clip.frame_count, 1));
+    floats.node = MODEL_NONE;
+    floats.name = copy_string(job.m->nodes[t.channel->node].expression);
+    sample_track(job, t, when, moved.data(), 3, where + " expression '" + printable(floats.name) + "'");
+    for (size_t k = 0; k < clip.frame_count; ++k) floats.values[k] = moved[3 * k];
+}
+
 static void copy_events(const model_clip &from, raw_clip &clip)
 {
     for (uint32_t i = 0; i < from.event_count; ++i) {
@@ -317,7 +335,10 @@ static void make_clip(const set_job &job, const model_clip &from, const std::vec
     fill_joints(job, tracks, when, clip, where);
     clip.floats = zeros<raw_floats>(tracks.size());
     for (const track &t : tracks)
-        if (t.joint == MODEL_NONE) fill_weights(job, t, when, clip, where);
+        if (t.joint == MODEL_NONE && t.channel->path == MODEL_PATH_WEIGHTS)
+            fill_weights(job, t, when, clip, where);
+        else if (t.joint == MODEL_NONE)
+            fill_expression(job, t, when, clip, where);
     warn_of_error(job, clip, tolerance_cm, where);
     if (!(sample_rate_hz > 0.0)) warn_of_rate(job, when, where);
 }

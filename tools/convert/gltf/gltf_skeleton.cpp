@@ -42,7 +42,7 @@ static void survey_animations(const model &m, survey &s)
 {
     for (uint32_t c = 0; c < m.clip_count; ++c)
         for (uint32_t i = 0; i < m.clips[c].channel_count; ++i)
-            if (m.clips[c].channels[i].path != MODEL_PATH_WEIGHTS) s.animated[m.clips[c].channels[i].node] = true;
+            if (!is_weight(m, m.clips[c].channels[i])) s.animated[m.clips[c].channels[i].node] = true;
 }
 
 /* Assign a skin to each joint; skins that share one are united. */
@@ -139,7 +139,7 @@ static std::vector<bool> nodes_with_weights(const model &m)
     std::vector<bool> found(m.node_count, false);
     for (uint32_t c = 0; c < m.clip_count; ++c)
         for (uint32_t i = 0; i < m.clips[c].channel_count; ++i)
-            if (m.clips[c].channels[i].path == MODEL_PATH_WEIGHTS) found[m.clips[c].channels[i].node] = true;
+            if (is_weight(m, m.clips[c].channels[i])) found[m.clips[c].channels[i].node] = true;
     return found;
 }
 

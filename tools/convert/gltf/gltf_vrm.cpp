@@ -227,7 +227,8 @@ static void add_new(file &f, const value &vrm, recipes &r)
     const bool both = presets && presets->IsObject() && presets->Has("blinkLeft") && presets->Has("blinkRight");
     for (size_t i = 0; presets && presets->IsObject() && i < presets->Keys().size(); ++i) {
         const std::string name = presets->Keys()[i];
-        if (!is_double(name, both)) add_expression(f, name, vrm_expression_channel(name.c_str(), 0), presets->Get(name), false, r);
+        if (!is_double(name, both))
+            add_expression(f, name, vrm_expression_channel(name.c_str(), 0), presets->Get(name), false, r);
     }
     for (size_t i = 0; customs && customs->IsObject() && i < customs->Keys().size(); ++i)
         add_expression(f, customs->Keys()[i], nullptr, customs->Get(customs->Keys()[i]), false, r);
@@ -452,9 +453,20 @@ static void read_vrm_animation(file &f, const value &animation)
     name_bones(f, animation);
     for (const char *kind : { "preset", "custom" }) {
         const value *all = expressions ? member(*expressions, kind) : nullptr;
-        for (size_t i = 0; all && all->IsObject() && i < all->Keys().size(); ++i)
-            leave_out(f, "VRM expression '" + printable(all->Keys()[i]) + "'",
-                      ": its animation was left out: clips move bones and targets");
+        if (!all || !all->IsObject()) continue;
+        for (const std::string &name : all->Keys()) {
+            const size_t node = index_member(all->Get(name), "node", f.node_of.size());
+            const char *channel = vrm_expression_channel(name.c_str(), 0);
+            if (node >= f.node_of.size() || f.node_of[node] == MODEL_NONE) {
+                leave_out(f, "VRM expression '" + printable(name) + "'",
+                          ": its animation was left out: its node does not exist, or is not in the default scene");
+                continue;
+            }
+            model_node &out = f.out->nodes[f.node_of[node]];
+            free(out.expression);
+            out.expression = nullptr;
+            out.expression = copy_string(channel && *kind == 'p' ? channel : name);
+        }
     }
     if (member(animation, "lookAt")) leave_out(f, "VRM lookAt", ": its animation was left out: clips have no gaze");
 }

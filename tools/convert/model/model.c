@@ -133,6 +133,7 @@ void model_free(model *m)
     for (uint32_t i = 0; m->nodes && i < m->node_count; ++i) {
         free(m->nodes[i].name);
         free(m->nodes[i].weights);
+        free(m->nodes[i].expression);
     }
     for (uint32_t i = 0; m->skins && i < m->skin_count; ++i) skin_free(&m->skins[i]);
     for (uint32_t i = 0; m->clips && i < m->clip_count; ++i) clip_free(&m->clips[i]);

@@ -139,6 +139,8 @@ typedef struct model_node {
         world[16];  /* column-major, from the local matrices in double precision; skinned meshes are not placed by it */
     float *weights; /* [targets of the mesh] or NULL: the mesh's defaults hold */
     uint32_t skin;  /* index, or MODEL_NONE: it has none, or its skin was left out with a warning */
+    char *expression; /* of a VRM animation: the channel of a recipe, or an expression's own name, whose weight is the
+                         x of its translation; else NULL */
 } model_node;
 
 /* The joints that move a mesh. Vertices in the bind pose become joint-local by inverse_bind. */
