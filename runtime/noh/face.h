@@ -22,7 +22,6 @@ extern "C" {
  *   noh_face_set_emotion   start an emotion, which rises, holds and fades
  *   noh_face_set_activity  resting, talking or reading: sets the blink rate and how long the gaze rests on a point
  *   noh_face_speak         what speech asks of brows, head, lids and gaze
- *   noh_face_phrase_end    a phrase ends: people often blink then
  *   noh_face_blink         blink now
  *   noh_face_pose_of       the visible pose
  *
@@ -170,9 +169,6 @@ void noh_face_blink(noh_face *face, const noh_face_desc *desc);
  * speech  NULL: nothing
  * errors  ARG a field is not in 0..1 */
 noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_face_speech *speech, noh_error *error);
-
-/* Blink now with a probability of one half. */
-void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc);
 
 void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose);
 

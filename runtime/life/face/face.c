@@ -395,14 +395,6 @@ void noh_face_blink(noh_face *face, const noh_face_desc *desc)
     noh_face_blink_pull(face, desc);
 }
 
-void noh_face_phrase_end(noh_face *face, const noh_face_desc *desc)
-{
-    NOH_ASSERT(face && desc);
-    if (noh_face_uniform(face->seed, NOH_FACE_PHRASE, face->blinks) < 0.5f) {
-        noh_face_blink_pull(face, desc);
-    }
-}
-
 noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_face_speech *speech, noh_error *error)
 {
     static const noh_face_speech none = { 0.0f, 0.0f, 0.0f, 0.0f };

@@ -63,8 +63,7 @@ typedef enum noh_face_stream {
     NOH_FACE_TREMOR,
     NOH_FACE_TREMOR_WAY,
     NOH_FACE_BREATH,
-    NOH_FACE_PHRASE,
-    NOH_FACE_IDLE, /* three: yaw, pitch, roll */
+    NOH_FACE_IDLE = NOH_FACE_BREATH + 2, /* three: yaw, pitch, roll */
     NOH_FACE_MOOD = NOH_FACE_IDLE + 3,
     NOH_FACE_STRATA,
     NOH_FACE_SWAY,                      /* three: yaw, pitch, roll */

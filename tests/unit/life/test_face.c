@@ -459,7 +459,7 @@ static noh_face play(uint32_t cut)
         if (second % 7u == 3u)
             noh_face_set_emotion(&face, (noh_emotion)(second % 7u), 0.7f, 0, second % 2u ? 9600 : 0, 0, NULL);
         if (second % 17u == 5u) noh_face_set_activity(&face, &desc, (noh_activity)(second % 3u));
-        if (second % 13u == 6u) noh_face_phrase_end(&face, &desc);
+        if (second % 13u == 6u) noh_face_blink(&face, &desc);
         for (uint32_t left = SECOND; left;) {
             const uint32_t ticks = cut ? (left < cut ? left : cut) : left;
             noh_face_step(&face, &desc, ticks);
@@ -629,7 +629,7 @@ static void the_bits_are_the_same_everywhere(void **state)
         for (size_t k = 0; k < sizeof pose; k++) hash = (hash ^ bytes[k]) * 16777619u;
     }
     print_message("hash %08x\n", hash);
-    assert_int_equal(hash, 0x042c914d);
+    assert_int_equal(hash, 0xfdbfbd06);
 }
 
 int main(int argc, char **argv)
