@@ -111,7 +111,11 @@ int size_guess(model *m, FILE *report)
     const double scale = s.eyes > 0.0 ? s.eyes / EYES_M : s.height / HEIGHT_M;
     const double off = s.eyes > 0.0 ? OFF_BY_EYES : OFF_BY_HEIGHT;
     size_t best = 0;
-    if (!(scale > 0.0)) return 0;
+    if (!(scale > 0.0)) { /* no person */
+        const double height = height_of_meshes(m);
+        if (report && height > 0.0) fprintf(report, "the model is %.3g m high\n", height);
+        return 0;
+    }
     if (s.eyes > 0.0) (void)snprintf(eyes, sizeof eyes, ", its eyes %.3g cm apart", 100.0 * s.eyes);
     if (report) fprintf(report, "the figure is %.3g m high%s\n", s.height, eyes);
     if (scale < off && scale > 1.0 / off) return 0;
