@@ -130,7 +130,7 @@ END
     for shown in "$room" 'studio --light studio --rotate 40 --shadow off --tonemap none --background gradient'; do
         # shellcheck disable=SC2086
         "$build/noh" render "$shown_pack" --springs off -o "$out/native.png" --size ${size}x$size --camera full --pose rest ${shown#* } >/dev/null || not_ok "noh render $shown"
-        for path in $paths; do [ ! -f "$out/${path}_${shown%% *}.png" ] || compare "${path}_${shown%% *}"; done
+        for path in $paths; do [ ! -f "$out/${path}_${shown%% *}.png" ] || compare "${path}_${shown%% *}" 0.3; done
     done
     if [ -f "$out/tier.png" ]; then
         # shellcheck disable=SC2086

@@ -1,5 +1,6 @@
 /* Control hairs from curves (tools/convert/base/curves.h, model/hair_grow.h): lines of a glTF file, and hair that takes
- * their shapes. */
+ * their shapes.
+ * cross: never, the reader of glTF is C++ */
 #include "support/support.h"
 
 #include <math.h>

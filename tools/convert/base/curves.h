@@ -18,8 +18,8 @@ typedef struct curve_list {
     uint32_t count;
 } curve_list;
 
-/* A primitive of mode LINE_STRIP is a curve, and one of mode LINES a curve for each chain of segments. What cannot be read is left
- * out. 0, or 1 and the error, also where the file has no curve. Free in both cases. */
+/* A primitive of mode LINE_STRIP is a curve, and one of mode LINES a curve for each chain of segments. What cannot be
+ * read is left out. 0, or 1 and the error, also where the file has no curve. Free in both cases. */
 int curves_read(const char *path, curve_list *out, model_error *error);
 void curves_free(curve_list *curves);
 

@@ -408,7 +408,8 @@ static int read_tint(text_scan *s, recipe_text *recipe)
     if (!word.size) return text_fail(s, line, "write the colour of a region as `%s`, such as `tint r c03030`", form);
     if (take_channel(s, line, channel, &region)) return 1;
     for (size_t i = 0; i < word.size && value; i++) {
-        const char *digit = memchr(digits, word.text[i] | (word.text[i] >= 'A' ? 32 : 0), 16);
+        const int c = word.text[i] | (word.text[i] >= 'A' ? 32 : 0);
+        const char *digit = c ? strchr(digits, c) : NULL;
         value = digit && value < 1u << 24 ? value << 4 | (uint32_t)(digit - digits) : 0;
     }
     if (value >> 24 != 1u) {
