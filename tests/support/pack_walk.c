@@ -27,6 +27,16 @@
 
 #define NAMES_LOOKED_UP 64u /* looking up names takes targets squared: enough to see every kind */
 
+noh_pack_chunk *pack_find(uint8_t *bytes, uint32_t tag)
+{
+    const noh_pack_header *header = (const noh_pack_header *)(const void *)bytes;
+    noh_pack_chunk *chunks = (noh_pack_chunk *)(void *)(bytes + sizeof *header);
+    for (uint32_t i = 0; i < header->chunk_count; i++) {
+        if (chunks[i].type == tag) return &chunks[i];
+    }
+    return NULL;
+}
+
 void pack_repair(uint8_t *bytes, size_t count)
 {
     noh_pack_header header;

@@ -164,6 +164,7 @@ static void its_rows_are_found(void **state)
 
 typedef struct forged {
     uint8_t *bytes;
+    size_t count;
     noh_pack_chunk *chunk;
     noh_pack_match_header *h;
     noh_pack_match_clip *clips;
@@ -175,12 +176,11 @@ typedef struct forged {
 
 static void forge(forged *f)
 {
-    noh_pack_header *header;
     uint8_t *base;
-    f->bytes = test_aligned(good, good_count);
-    header = (noh_pack_header *)(void *)f->bytes;
-    f->chunk = (noh_pack_chunk *)(void *)(header + 1) + header->chunk_count - 1;
-    assert_int_equal(f->chunk->type, NOH_TAG_MATCH);
+    f->count = good_count;
+    f->bytes = test_aligned(good, f->count);
+    f->chunk = pack_find(f->bytes, NOH_TAG_MATCH);
+    assert_non_null(f->chunk);
     base = f->bytes + f->chunk->offset;
     f->h = (noh_pack_match_header *)(void *)base;
     f->clips = (noh_pack_match_clip *)(void *)(base + f->h->clips_offset);
@@ -222,38 +222,7 @@ static void forge(forged *f)
     X(box_64, "does not hold", f->boxes[1][NOH_MATCH_GROUP_BYTES] = -127)     \
     X(box_512, "does not hold", f->boxes[2][NOH_MATCH_GROUP_BYTES + 1] = -127)
 
-typedef struct forgery {
-    const char *name, *what;
-    void (*lie)(forged *f);
-} forgery;
-
-#define LIE(name, what, lie)          \
-    static void lie_##name(forged *f) \
-    {                                 \
-        lie;                          \
-    }
-FORGERIES(LIE)
-#define ROW(name, what, lie) { #name, what, lie_##name },
-static const forgery forgeries[] = { FORGERIES(ROW) };
-
-static void lies_are_refused(void **state)
-{
-    (void)state;
-    for (size_t i = 0; i < TEST_COUNT(forgeries); i++) {
-        noh_error error = { NOH_OK, "", 0, 0 };
-        noh_pack pack;
-        forged f;
-        forge(&f);
-        forgeries[i].lie(&f);
-        pack_repair(f.bytes, good_count);
-        if (noh_pack_open(f.bytes, good_count, &pack, &error) != NOH_ERR_DATA ||
-            !strstr(error.what, forgeries[i].what)) {
-            fail_msg("%s: '%s'", forgeries[i].name, error.what);
-        }
-        assert_in_range(error.where, f.chunk->offset, f.chunk->offset + f.chunk->bytes);
-        free(f.bytes);
-    }
-}
+#include "support/forgeries_template.h"
 
 static void what_opens_can_be_searched(void **state)
 {

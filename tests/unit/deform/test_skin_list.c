@@ -203,12 +203,44 @@ static void lists_follow_their_vertices(void **state)
 
 /* ---- lies ---- */
 
+static listed good;
+
+static int make_good(void **state)
+{
+    (void)state;
+    good = make();
+    return 0;
+}
+
+static int unmake_good(void **state)
+{
+    (void)state;
+    unmake(&good);
+    return 0;
+}
+
 typedef struct forged {
+    uint8_t *bytes;
+    size_t count;
+    noh_pack_chunk *chunk;
     noh_influences_header *h;
     uint32_t *vertices, *firsts;
     float *weights;
     uint16_t *joints;
 } forged;
+
+static void forge(forged *f)
+{
+    f->count = good.count;
+    f->bytes = test_aligned(good.bytes, f->count);
+    f->chunk = pack_find(f->bytes, NOH_TAG_INFLUENCES);
+    assert_non_null(f->chunk);
+    f->h = (noh_influences_header *)(void *)(f->bytes + f->chunk->offset);
+    f->vertices = (uint32_t *)(void *)((uint8_t *)f->h + f->h->vertices_offset);
+    f->firsts = (uint32_t *)(void *)((uint8_t *)f->h + f->h->firsts_offset);
+    f->weights = (float *)(void *)((uint8_t *)f->h + f->h->weights_offset);
+    f->joints = (uint16_t *)(void *)((uint8_t *)f->h + f->h->joints_offset);
+}
 
 #define FORGERIES(X)                                                    \
     X(mesh_missing, "names a mesh", f->h->mesh = 1)                     \
@@ -229,46 +261,7 @@ typedef struct forged {
     X(weight_more, "sum to 1", f->weights[5] += 0.01f)                  \
     X(joint_missing, "joint that its skin lacks", f->joints[9] = 24)
 
-typedef struct forgery {
-    const char *name, *what;
-    void (*lie)(forged *f);
-} forgery;
-
-#define LIE(name, what, lie)          \
-    static void lie_##name(forged *f) \
-    {                                 \
-        lie;                          \
-    }
-FORGERIES(LIE)
-#define ROW(name, what, lie) { #name, what, lie_##name },
-static const forgery forgeries[] = { FORGERIES(ROW) };
-
-static void lies_are_refused(void **state)
-{
-    listed x = make();
-    (void)state;
-    for (size_t i = 0; i < TEST_COUNT(forgeries); i++) {
-        uint8_t *bytes = test_aligned(x.bytes, x.count);
-        const noh_pack_chunk *chunk = (const noh_pack_chunk *)(void *)(bytes + sizeof(noh_pack_header)) +
-                                      x.pack.runs[NOH_CHUNK_INFLUENCES].first;
-        noh_influences_header *h = (noh_influences_header *)(void *)(bytes + chunk->offset);
-        forged f = { h, (uint32_t *)(void *)((uint8_t *)h + h->vertices_offset),
-                     (uint32_t *)(void *)((uint8_t *)h + h->firsts_offset),
-                     (float *)(void *)((uint8_t *)h + h->weights_offset),
-                     (uint16_t *)(void *)((uint8_t *)h + h->joints_offset) };
-        noh_error error = { NOH_OK, "", 0, 0 };
-        noh_pack pack;
-        assert_int_equal(chunk->type, NOH_TAG_INFLUENCES);
-        forgeries[i].lie(&f);
-        pack_repair(bytes, x.count);
-        if (noh_pack_open(bytes, x.count, &pack, &error) != NOH_ERR_DATA || !strstr(error.what, forgeries[i].what)) {
-            fail_msg("%s: '%s'", forgeries[i].name, error.what);
-        }
-        assert_in_range(error.where, chunk->offset, chunk->offset + chunk->bytes);
-        free(bytes);
-    }
-    unmake(&x);
-}
+#include "support/forgeries_template.h"
 
 int main(int argc, char **argv)
 {
@@ -277,7 +270,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(ranges_and_targets),
         cmocka_unit_test(eight_is_what_was_not_asked_for),
         cmocka_unit_test(lists_follow_their_vertices),
-        cmocka_unit_test(lies_are_refused),
+        cmocka_unit_test_setup_teardown(lies_are_refused, make_good, unmake_good),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
