@@ -256,16 +256,7 @@ noh_mesh noh_gl_alone_level(const noh_gl_alone *alone, uint32_t index, uint32_t 
 void noh_gl_draw_alone(noh_gl_alone *alone, uint32_t index, const noh_stage_part *share)
 {
     drawing *d = &alone->drawing;
-    const noh_character *ch = noh_stage_character(d->k, d->k->order[alone->place]);
-    const uint32_t fewer = noh_lod_influence_count(&ch->lod, &d->k->table);
-    const noh_stage_drawing of = { .k = d->k,
-                                   .mesh = index,
-                                   .first = alone->place,
-                                   .count = 1,
-                                   .level = share->level,
-                                   .influence_count = noh_stage_influences(d->k, index, share->level, fewer),
-                                   .from = share->from,
-                                   .to = share->to };
+    const noh_stage_drawing of = noh_stage_drawing_alone(d->k, index, alone->place, *share);
     if (!(actor_at(d, alone->place)->look.hidden_meshes >> index & 1u)) draw_alone(d, &of, alone->place);
 }
 

@@ -81,18 +81,24 @@ static int wear_the_same(const walk *w, uint32_t a, uint32_t b)
 /* ---- opaque meshes ---- */
 
 /* Vertices that virtual joints move need all of these: errors of fewer influences are errors of the skeleton's joints. */
-uint32_t noh_stage_influences(const noh_stage_kind *k, uint32_t mesh, uint32_t level, uint32_t fewer)
+static uint32_t influences_of(const noh_stage_kind *k, uint32_t mesh, uint32_t level, uint32_t fewer)
 {
     const noh_far_joints_header *far_joints = k->meshes[mesh].mesh.far_joints;
     return far_joints && noh_stage_mesh_level(k, mesh, level) >= far_joints->level ? 0u : fewer;
 }
 
+noh_stage_drawing noh_stage_drawing_alone(const noh_stage_kind *k, uint32_t mesh, uint32_t place, noh_stage_part part)
+{
+    const noh_character *ch = noh_stage_character(k, k->order[place]);
+    const uint32_t fewer = noh_lod_influence_count(&ch->lod, &k->table);
+    const uint32_t influences = influences_of(k, mesh, part.level, fewer);
+    return (noh_stage_drawing){ k, mesh, place, 1, part.level, influences, part.from, part.to, NOH_STAGE_OPAQUE, 1 };
+}
+
 static void draw_alone(const walk *w, uint32_t mesh, uint32_t place, noh_stage_part part)
 {
-    const noh_character *ch = noh_stage_character(w->k, w->k->order[place]);
-    const uint32_t fewer = noh_lod_influence_count(&ch->lod, &w->k->table);
-    const uint32_t influences = noh_stage_influences(w->k, mesh, part.level, fewer);
-    const noh_stage_drawing d = { w->k, mesh, place, 1, part.level, influences, part.from, part.to, w->priority, 1 };
+    noh_stage_drawing d = noh_stage_drawing_alone(w->k, mesh, place, part);
+    d.priority = w->priority;
     w->pass->draw(w->pass->user, &d);
 }
 
@@ -101,7 +107,7 @@ static void draw_together(const walk *w, uint32_t mesh, uint32_t run, uint32_t f
     const uint32_t caps = noh_stage_influence_levels(w->k);
     const noh_lod_table *table = &w->k->table;
     const uint32_t fewer = table->influence_level_count ? table->influences[run % caps].influence_count : 0;
-    const uint32_t influences = noh_stage_influences(w->k, mesh, run / caps, fewer);
+    const uint32_t influences = influences_of(w->k, mesh, run / caps, fewer);
     const noh_stage_drawing d = { w->k, mesh, first, count, run / caps, influences, 0.0f, 1.0f, w->priority, 0 };
     w->pass->draw(w->pass->user, &d);
 }

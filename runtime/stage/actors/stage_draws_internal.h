@@ -46,8 +46,8 @@ static inline uint32_t noh_stage_mesh_level(const noh_stage_kind *k, uint32_t me
     return k->plan->levels[level].mesh_levels[mesh];
 }
 
-/* The influences that a level of a mesh is drawn with, where `fewer` do for the skeleton; 0: all. */
-uint32_t noh_stage_influences(const noh_stage_kind *k, uint32_t mesh, uint32_t level, uint32_t fewer);
+/* One actor's mesh at one of its levels, by itself and opaque. */
+noh_stage_drawing noh_stage_drawing_alone(const noh_stage_kind *k, uint32_t mesh, uint32_t place, noh_stage_part part);
 
 /* Whether an actor's mesh is mirrored, by its node or by the joint that the actor is attached to. One draw has one
  * winding, so it is drawn alone. Places of their own never mirror. */
