@@ -378,8 +378,8 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc)
 
 static int good_state(const noh_ragdoll_state *s)
 {
-    return noh_is_finite3(s->position) && is_unit4(s->rotation) && noh_is_finite3(s->velocity) && noh_is_finite3(s->spin) &&
-           noh_is_finite3(s->goal_position) && is_unit4(s->goal_rotation);
+    return noh_is_finite3(s->position) && is_unit4(s->rotation) && noh_is_finite3(s->velocity) &&
+           noh_is_finite3(s->spin) && noh_is_finite3(s->goal_position) && is_unit4(s->goal_rotation);
 }
 
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy)

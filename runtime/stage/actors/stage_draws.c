@@ -80,7 +80,8 @@ static int wear_the_same(const walk *w, uint32_t a, uint32_t b)
 
 /* ---- opaque meshes ---- */
 
-/* Vertices that virtual joints move need all of these: errors of fewer influences are errors of the skeleton's joints. */
+/* Vertices that virtual joints move need all of these: errors of fewer influences are errors of the skeleton's
+ * joints. */
 static uint32_t influences_of(const noh_stage_kind *k, uint32_t mesh, uint32_t level, uint32_t fewer)
 {
     const noh_far_joints_header *far_joints = k->meshes[mesh].mesh.far_joints;

@@ -146,7 +146,8 @@ static void points_that_a_target_tears_stay(void **state)
 static void levels_have_none_beyond_their_share(void **state)
 {
     (void)state;
-    const lod_settings few = { 4, 0, LOD_QUALITY, 0.0f, 0.02f, NULL, 0 }, fast = { 4, 0, LOD_FAST, 0.0f, 1.0f, NULL, 0 };
+    const lod_settings few = { 4, 0, LOD_QUALITY, 0.0f, 0.02f, NULL, 0 },
+                       fast = { 4, 0, LOD_FAST, 0.0f, 1.0f, NULL, 0 };
     model *m = lod_face_model(&head);
     const uint32_t before = m->meshes[0].vertex_count;
     model_error error = { "", "" };

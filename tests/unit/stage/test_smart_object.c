@@ -92,7 +92,8 @@ static uint64_t hold_ticks(const town *t, uint32_t need)
     for (uint32_t k = 0; k < SLOTS; k++) {
         const noh_smart_object *o = &t->objects[object_of(t, k)];
         const noh_smart_slot *s = &t->slots[k];
-        const uint64_t ticks = (uint64_t)o->going_ticks + s->enter_ticks + s->use_ticks + s->leave_ticks + 5u * STEP_MAX;
+        const uint64_t ticks = (uint64_t)o->going_ticks + s->enter_ticks + s->use_ticks + s->leave_ticks +
+                               5u * STEP_MAX;
         if (o->need == need && ticks > most) most = ticks;
     }
     return most;

@@ -254,15 +254,15 @@ static int fit(model *m, model_mesh *mesh, lod_joints *out)
     point_arrays a = { NULL, NULL, NULL, NULL, NULL, NULL, NULL };
     int failed = fill_points(mesh, out, &a);
     const joint_fit_points points = { out->vertex_count,
-                                  mesh->target_count,
-                                  a.place,
-                                  a.normal,
-                                  a.move,
-                                  a.turn,
-                                  a.parent,
-                                  a.share,
-                                  a.slots,
-                                  NORMAL_SHARE * diagonal(mesh, out) };
+                                      mesh->target_count,
+                                      a.place,
+                                      a.normal,
+                                      a.move,
+                                      a.turn,
+                                      a.parent,
+                                      a.share,
+                                      a.slots,
+                                      NORMAL_SHARE * diagonal(mesh, out) };
     failed = failed || joint_fit_make(&points, LOD_JOINTS_MAX, &out->fit);
     out->first_joint = m->skins[mesh->skin].joint_count;
     failed = failed || grow_skin(&m->skins[mesh->skin], &out->fit) || write_deltas(mesh, &points, out);

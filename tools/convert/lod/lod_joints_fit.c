@@ -473,8 +473,8 @@ void joint_fit_free(joint_fit *f)
     memset(f, 0, sizeof *f);
 }
 
-void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
-                      float turn[3])
+void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target,
+                      float move[3], float turn[3])
 {
     const float *place = points->place + 3u * (size_t)point;
     memset(move, 0, 3u * sizeof *move);

@@ -43,7 +43,7 @@ int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit
 void joint_fit_free(joint_fit *f);
 
 /* What a target at weight 1 does to a point: its move, and the turn w of what lies about it. */
-void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target, float move[3],
-                      float turn[3]);
+void joint_fit_motion(const joint_fit_points *points, const joint_fit *f, uint32_t point, uint32_t target,
+                      float move[3], float turn[3]);
 
 #endif
