@@ -31,6 +31,8 @@ fi
 exec unshare -rn sh -c "$*"
 END
 chmod +x reach
+# A login sets SHELL. Without it parallel 20221122 runs nothing on another machine and reports success.
+export SHELL=/bin/sh
 n=0
 while [ $n -lt "$clips" ]; do
     printf 'HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Xposition Yposition Zrotation\nEnd Site\n{\nOFFSET 0 1 0\n}\n}\nMOTION\nFrames: 3\nFrame Time: 0.04\n0 0 0\n0 1 %s\n1 0 90\n' $n >clips/c$n.bvh
