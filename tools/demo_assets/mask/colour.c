@@ -56,7 +56,8 @@ static V3 lip_colour(V3 base, const Seed *seed)
     double inside = seed->mouth > 0 ? edge - from_line : from_line - edge;
     double soft = mix(0.0010, 0.0004, smooth(0, 0.35, mouth_almond(seed->s)));
     double k = smooth(-soft, soft, inside);
-    return v3_mix(base, red, 0.95 * k);
+    V3 colour = v3_mix(base, red, 0.95 * k);
+    return v3_scale(colour, 1 - 0.6 * smooth(0.0011, 0, fabs(from_line)) * sqrt(mouth_almond(seed->s)));
 }
 
 static V3 lid_colour(V3 base, const Seed *seed)

@@ -89,8 +89,8 @@ static double half_mouth(int side, double s)
 
 static double lip_shift(FacePoint point, const Pose *pose)
 {
-    double upper = 0.0020 + 0.0030 * pose->funnel + 0.0020 * pose->shrug_upper;
-    double lower = 0.0026 + 0.0042 * pose->funnel - 0.0036 * pose->shrug_lower + 0.0030 * pose->tongue_out;
+    double upper = 0.0030 * pose->funnel;
+    double lower = 0.0042 * pose->funnel + 0.0030 * pose->tongue_out;
     double shut = pose->mouth_close + pose->cheek_puff + 0.75 * pose->pucker;
     for (int side = 0; side < SIDES; side++) {
         double half = half_mouth(side, point.s);
@@ -164,13 +164,13 @@ static void drag_whole_mouth(V3 *shift, FacePoint point, const Pose *pose)
     if (point.mouth > 0) {
         shift->y -= pose->roll_upper * (0.0012 * red + 0.0035 * width * bump((from_line - 0.007) / 0.010));
         shift->z -= pose->roll_upper * 0.0036 * red;
-        shift->y += pose->shrug_upper * 0.0022 * width * bump((from_line - 0.004) / 0.015);
+        shift->y += pose->shrug_upper * 0.0022 * width * bump((from_line - 0.007) / 0.007);
         shift->z += pose->shrug_upper * 0.0028 * width * bump((from_line - 0.003) / 0.014);
     } else {
         shift->y += pose->roll_lower * (0.0014 * red + 0.0040 * width * bump((from_line + 0.008) / 0.011));
         shift->z -= pose->roll_lower * 0.0040 * red;
-        shift->z += pose->shrug_lower * 0.0032 * width * bump((from_line + 0.004) / 0.014);
-        shift->y += pose->shrug_lower * 0.0020 * width * bump((from_line + 0.012) / 0.012);
+        shift->z += pose->shrug_lower * 0.0032 * width * bump((from_line + 0.008) / 0.008);
+        shift->y += pose->shrug_lower * 0.0038 * width * bump((from_line + 0.010) / 0.010);
     }
 }
 
@@ -200,5 +200,5 @@ V3 face_place(FacePoint point, const Pose *pose)
     double x = point.s + shift.x, y = point.t + shift.y;
     double depth = over_ball(x, y, head_depth(x, y) + relief(point, pose));
     V3 at = v3(x, y, depth + shift.z);
-    return jaw_move(at, jaw_weight(point), pose);
+    return jaw_move(at, jaw_weight(point, pose), pose);
 }

@@ -12,10 +12,8 @@ typedef struct {
 
 typedef struct {
     const char *name;
-    const char *extras;              /* more of the mesh's, as JSON */
     const FigureMaterial *materials; /* of the parts */
     int target_count;                /* the first ones of targets.h */
-    int lips_meet;                   /* at rest */
     int animation_count;
     Animation (*animation)(int number);
     Model model;

@@ -4,11 +4,13 @@
 #include "mouth.h"
 #include "wood.h"
 
+static const Pose rest;
+
 /* Parts without slits are treated like the border of the face next to them. */
 static double border_hold(const Seed *seed)
 {
     FacePoint point = { seed->s, seed->t, seed->t > EYE_Y ? 1 : -1, seed->t > MOUTH_Y ? 1 : -1 };
-    return jaw_weight(point);
+    return jaw_weight(point, &rest);
 }
 
 double jaw_hold(const Seed *seed)
@@ -17,7 +19,7 @@ double jaw_hold(const Seed *seed)
     case ON_SKIN:
     case ON_LIP_FOLD: {
         FacePoint point = { seed->s, seed->t, seed->eye, seed->mouth };
-        return jaw_weight(point);
+        return jaw_weight(point, &rest);
     }
     case ON_STROKE:
     case ON_RIM: return border_hold(seed);

@@ -5,11 +5,12 @@
 static const double hinge_y = -0.004, hinge_z = -0.045, full_angle = 0.20;
 
 /* The skin between cheekbone and chin follows in part. At the mouth the lips part: the upper one stays, the lower one
- * follows fully, and at the corners both agree. */
-double jaw_weight(FacePoint point)
+ * follows fully, unless they are held closed, and at the corners both agree. */
+double jaw_weight(FacePoint point, const Pose *pose)
 {
     double skin = smooth(0.024, 0.092, -point.t);
     double from_line = point.t - mouth_line(point.s), width = mouth_gate(point.s, from_line);
+    width *= 1 - clamp(pose->mouth_close, 0, 1);
     if (point.mouth > 0) {
         return skin * (1 - width * bump(from_line / 0.030));
     }

@@ -4,8 +4,8 @@
 
 #include "face.h"
 
-/* How far a point of the face follows the jaw, 0 to 1. */
-double jaw_weight(FacePoint point);
+/* How far a point of the face follows the jaw, 0 to 1: in a pose whose mouth_close is 1 both lips stay together. */
+double jaw_weight(FacePoint point, const Pose *pose);
 
 V3 jaw_move(V3 at, double weight, const Pose *pose);
 

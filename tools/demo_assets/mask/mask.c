@@ -57,8 +57,6 @@ Figure mask_build(void)
                     .animation_count = ANIMATION_COUNT,
                     .animation = animation_make,
                     .model = model_begin(PART_COUNT, mask_place) };
-    /* Its lips are carved a little apart: at p, b and m they meet. */
-    mask.extras = ",\"recipe\":[\"PP mouthClose\",\"PP mouthPressLeft 0.2\",\"PP mouthPressRight 0.2\"]";
     build(&mask.model);
     figure_place(&mask);
     occlusion_bake(&mask.model, mask.frames, open);

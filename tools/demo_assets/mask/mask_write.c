@@ -100,10 +100,10 @@ static void write_deltas(Writer *w, Buffer *json, const Deltas *d, int vertices,
 
 /* What a target's pose is measured from: mouthClose shuts lips that an open jaw has parted (closed at rest, they cannot
  * come closer). */
-static Pose target_base(const Figure *figure, Pose *pose)
+static Pose target_base(Pose *pose)
 {
     Pose base = { 0 };
-    if (figure->lips_meet && pose->mouth_close > 0) {
+    if (pose->mouth_close > 0) {
         base.jaw_open = pose->jaw_open = 1;
     }
     return base;
@@ -115,7 +115,7 @@ static void write_targets(Writer *w, Buffer *json, const Figure *figure, int num
     const Frame *rest = &figure->frames[number];
     int zeros = write_zeros(w, rest->count);
     for (int target = 0; target < figure->target_count; target++) {
-        Pose pose = target_pose(target), base = target_base(figure, &pose);
+        Pose pose = target_pose(target), base = target_base(&pose);
         Frame from = mesh_frame(part, figure->weld[number], &base);
         Frame now = mesh_frame(part, figure->weld[number], &pose);
         Deltas deltas = find_deltas(&from, &now);
@@ -228,7 +228,7 @@ void mask_mesh_write(Writer *w, Buffer *json, const Figure *mask, const MaskWear
     for (int i = 0; i < mask->target_count; i++) {
         buffer_print(json, "%s\"%s\"", i ? "," : "", target_name(i));
     }
-    buffer_print(json, "]%s}}", mask->extras);
+    buffer_print(json, "]}}");
 }
 
 void materials_write(Buffer *json, const FigureMaterial *materials, int count)

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 typedef struct {
-    V3 at;
+    V3 at, open; /* at rest; with the jaw open, which parts lips that meet at rest */
     int vertex;
 } Placed;
 
@@ -15,38 +15,41 @@ static int compare(double a, double b)
     return (a > b) - (a < b);
 }
 
+static int compare_places(V3 a, V3 b)
+{
+    int order = compare(a.x, b.x);
+    if (!order) {
+        order = compare(a.y, b.y);
+    }
+    return order ? order : compare(a.z, b.z);
+}
+
 static int placed_order(const void *left, const void *right)
 {
     const Placed *a = left, *b = right;
-    int order = compare(a->at.x, b->at.x);
+    int order = compare_places(a->at, b->at);
     if (!order) {
-        order = compare(a->at.y, b->at.y);
-    }
-    if (!order) {
-        order = compare(a->at.z, b->at.z);
+        order = compare_places(a->open, b->open);
     }
     return order ? order : (a->vertex > b->vertex) - (a->vertex < b->vertex);
 }
 
-static int same_place(V3 a, V3 b)
-{
-    return !compare(a.x, b.x) && !compare(a.y, b.y) && !compare(a.z, b.z);
-}
-
 int *mesh_weld(const Part *part)
 {
-    static const Pose rest;
+    static const Pose rest, open = { .jaw_open = 1 };
     int count = part->seed_count;
     Placed *placed = grab(NULL, count, (int)sizeof *placed);
     int *first = grab(NULL, count, (int)sizeof *first);
     for (int i = 0; i < count; i++) {
         placed[i].at = part->place(&part->seeds[i], &rest);
+        placed[i].open = part->place(&part->seeds[i], &open);
         placed[i].vertex = i;
     }
     qsort(placed, (size_t)count, sizeof *placed, placed_order);
     for (int i = 0; i < count; i++) {
-        int joined = i > 0 && same_place(placed[i - 1].at, placed[i].at);
-        first[placed[i].vertex] = joined ? first[placed[i - 1].vertex] : placed[i].vertex;
+        const Placed *last = &placed[i > 0 ? i - 1 : 0];
+        int joined = i > 0 && !compare_places(last->at, placed[i].at) && !compare_places(last->open, placed[i].open);
+        first[placed[i].vertex] = joined ? first[last->vertex] : placed[i].vertex;
     }
     free(placed);
     return first;

@@ -10,8 +10,8 @@ typedef struct {
     double *handedness; /* +1 or -1 */
 } Frame;
 
-/* Which vertices share a place (for the same normal along texture seams):
- * `first[i]` is the lowest vertex at the place of vertex i. */
+/* Which vertices share a place, at rest and with the jaw open, and so a normal: `first[i]` is the lowest vertex at the
+ * place of vertex i. Lips that meet at rest keep their own normals. */
 int *mesh_weld(const Part *part);
 
 Frame mesh_frame(const Part *part, const int *first, const Pose *pose);

@@ -10,7 +10,7 @@
 enum { TEETH = 10, TOOTH_COLUMNS = 6, TOOTH_ROWS = 8 };
 enum { TONGUE_RINGS = 16, TONGUE_SEGMENTS = 16, BAG_RINGS = 9, BAG_SEGMENTS = 28 };
 
-/* Depth of the parted lips' edge at rest; everything else in the mouth lies behind it. */
+/* Depth of the lips' edge at rest; everything else in the mouth lies behind it. */
 static const double lips_z = 0.0272;
 
 /* Upright profile of a tooth: away from the cutting edge, and back. */
@@ -125,7 +125,8 @@ static double bag_weight(const Seed *seed)
 
 double bag_jaw_weight(const Seed *seed)
 {
-    return seed->s > 0 ? bag_weight(seed) : jaw_weight(bag_point(seed));
+    const Pose rest = { 0 };
+    return seed->s > 0 ? bag_weight(seed) : jaw_weight(bag_point(seed), &rest);
 }
 
 /* A cup behind the lips, open to the front and wider than the mouth. */

@@ -37,10 +37,8 @@ Figure nell_build(void)
                                                           { "teeth", 0.22 }, { "mouth", 0.75 }, { "sweater", 0.90 } };
     double *open[PARTS_MAX];
     Figure nell = { .name = "nell",
-                    .extras = "",
                     .materials = materials,
                     .target_count = ALL_TARGETS,
-                    .lips_meet = 1,
                     .animation_count = NELL_CLIPS,
                     .animation = nell_clip,
                     .model = model_begin(NELL_PARTS, nell_place) };
