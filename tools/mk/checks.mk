@@ -43,11 +43,6 @@ check: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) WERROR="$(CHECK_WERROR)" all tests $(TEST_PACKS)
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
-# What the table in tests/README.md says of its tests.
-mutants: deps-check
-	@$(MAKE) --no-print-directory -j$(JOBS) $(TEST_PACKS)
-	@NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" JOBS="$(JOBS)" sh tests/mutants.sh
-
 # Under ThreadSanitizer.
 threads: deps-fuzz
 	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh
