@@ -206,12 +206,18 @@ static void the_same_instant_is_the_same_pose(void **state)
     assert_memory_equal(&before, &s.feet, sizeof before);
     assert_memory_equal(first, s.pose, s.joints.joint_count * sizeof *first);
     assert_null(noh_feet_check(&s.feet));
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 10; i++) {
         noh_feet bad = s.feet;
         if (i == 0) bad.feet[1].part = 3;
         if (i == 1) bad.pelvis = NAN;
         if (i == 2) bad.feet[0].normal[1] = 0.5f;
         if (i == 3) bad.feet[0].stands = 1.5f;
+        if (i == 4) bad.begun = 2;
+        if (i == 5) bad.kept = NOH_FEET_LEGS_MAX + 1u;
+        if (i == 6) bad.feet[NOH_FEET_LEGS_MAX - 1u].is_held = 2;
+        if (i == 7) bad.feet[0].has_ground = 2;
+        if (i == 8) bad.feet[1].was[2][2] = INFINITY;
+        if (i == 9) bad.feet[1].held[1] = NAN;
         assert_non_null(noh_feet_check(&bad));
     }
     skin_asset_close(&s.a);

@@ -212,6 +212,41 @@ static void tangents_follow_their_strips(void **state)
     close_wig(&w);
 }
 
+/* Strips stray across their line, evenly to all sides: a curl by its radius all round, scatter by no more than itself
+ * each way; both grow from nothing at the root. */
+static void strips_stray_across_their_line(void **state)
+{
+    wig w;
+    (void)state;
+    open_wig(&w);
+    noh_pack_hair_header h = *w.cut.header;
+    double sum[3] = { 0.0, 0.0, 0.0 }, most = 0.0;
+    for (uint32_t i = 0; i < 2u * h.strip_count; i++) {
+        const uint32_t strip = i / 2u;
+        const float along = 0.1f * (float)(strip % 11u), amount = 0.02f;
+        float line[3], at[3], t[3], off[3], length = 0.0f, lean = 0.0f;
+        h.scatter = h.curl_radius = 0.0f;
+        memcpy(w.bytes, &h, sizeof h);
+        noh_haircut_vertex(&w.cut, w.cut.desc.rest, strip, along, line, t);
+        h.scatter = i % 2u ? 0.0f : amount, h.curl_radius = i % 2u ? amount : 0.0f, h.curl_turns = 2.0f;
+        memcpy(w.bytes, &h, sizeof h);
+        noh_haircut_vertex(&w.cut, w.cut.desc.rest, strip, along, at, t);
+        for (int c = 0; c < 3; c++) {
+            off[c] = at[c] - line[c];
+            length += off[c] * off[c], lean += off[c] * t[c];
+            if (i % 2u == 0) sum[c] += (double)(off[c] / amount);
+        }
+        length = sqrtf(length);
+        assert_true(fabsf(lean) < 2e-6f);
+        if (i % 2u) assert_true(fabsf(length - amount * along) < 2e-6f);
+        if (i % 2u == 0) assert_true(length < 1.4143f * amount * along + 2e-6f);
+        if (i % 2u == 0 && along > 0.0f) most = fmax(most, (double)(length / (amount * along)));
+    }
+    for (int c = 0; c < 3; c++) assert_true(fabs(sum[c]) < 0.1 * h.strip_count);
+    assert_true(most > 1.2);
+    close_wig(&w);
+}
+
 static void fewer_strips_are_wider(void **state)
 {
     wig w;
@@ -280,6 +315,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(hair_grows_on_the_skull),
     cmocka_unit_test(strips_lie_within_their_patch),
     cmocka_unit_test(tangents_follow_their_strips),
+    cmocka_unit_test(strips_stray_across_their_line),
     cmocka_unit_test(fewer_strips_are_wider),
     cmocka_unit_test(a_wig_comes_along),
 };
