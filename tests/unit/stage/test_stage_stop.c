@@ -1,5 +1,7 @@
 /* Layers: what additive ones add; stopping what plays: every kind of layer fades to what lies below it, a base layer to the bind pose, its root motion
  * and its graph with it; nothing leaps, whatever is stopped, played or stopped again meanwhile. */
+#include "noh/low_core.h"
+#include "stage/cast/stage_internal.h"
 #include "support/stage_fixture.h"
 
 #include <math.h>
@@ -359,6 +361,45 @@ static void a_pose_is_added_relative_to_another(void **state)
     close_stage(&c);
 }
 
+/* NOH_PLAY_PHASE: the clip begins at the part of its pass that the last clip has come to, however it got there; from
+ * its own start if nothing played. */
+static void a_clip_begins_at_the_phase_of_the_last(void **state)
+{
+    static const int64_t starts[] = { 0, 9000, 30000, -7000, 500000 };
+    cast c;
+    (void)state;
+    open_stage(&c);
+    const noh_actor phased = enter(&c), plain = enter(&c);
+    for (size_t i = 0; i < TEST_COUNT(starts) + 1u; i++) {
+        noh_play play = { .fade_ticks = 1, .speed = 1, .start_ticks = starts[i % TEST_COUNT(starts)] };
+        int64_t goal = 0;
+        shape shapes[2];
+        stop(&c, phased, BODY, 1);
+        frame(&c);
+        if (i < TEST_COUNT(starts)) {
+            const noh_clip_entry *clips = c.stage->kinds[0].set.clips;
+            if (noh_actor_play(c.stage, phased, BODY, "walk", &play, &said) != NOH_OK) fail_msg("%s", said.what);
+            frame(&c);
+            const noh_track *walk = noh_actor_track(c.stage, phased, BODY);
+            const uint32_t long_walk = clips[walk->clip].duration_ticks;
+            const uint32_t long_bow =
+                clips[noh_clip_set_find(&c.stage->kinds[0].set, noh_hash_name("bow"))].duration_ticks;
+            const int64_t now = play.start_ticks % (int64_t)long_walk;
+            assert_true(long_bow != long_walk);
+            goal = (now < 0 ? now + long_walk : now) * long_bow / long_walk;
+        }
+        play.flags = NOH_PLAY_PHASE;
+        assert_int_equal(noh_actor_play(c.stage, phased, BODY, "bow", &play, &said), NOH_OK);
+        play.flags = 0, play.start_ticks = goal;
+        assert_int_equal(noh_actor_play(c.stage, plain, BODY, "bow", &play, &said), NOH_OK);
+        frame(&c);
+        frame(&c);
+        shapes[0] = shape_of(&c, phased), shapes[1] = shape_of(&c, plain);
+        if (apart(&shapes[0], &shapes[1]) > 1e-3f) fail_msg("%d: off by %g", (int)i, apart(&shapes[0], &shapes[1]));
+    }
+    close_stage(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +412,7 @@ int main(void)
         cmocka_unit_test(a_graph_fades),
         cmocka_unit_test(a_fade_that_is_posed_seldom),
         cmocka_unit_test(a_pose_is_added_relative_to_another),
+        cmocka_unit_test(a_clip_begins_at_the_phase_of_the_last),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
