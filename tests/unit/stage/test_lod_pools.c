@@ -358,16 +358,19 @@ static void few_slots_change_hands_in_a_frame(void **state)
     uint32_t waited = 0, exchanged = 0;
     (void)state;
     for (int round = 0; round < 400; round++) {
+        const uint32_t full = round % 3 == 0; /* all ask, so that no slot is free: two have to exchange theirs */
         const uint32_t moves = test_random_below(&r, 7), bound = moves < 2 ? 2 : moves, rush = test_random_below(&r, 3);
         for (uint32_t i = 0; i < INSTANCES; i++) {
-            wishes[i].asks = test_random_below(&r, 8) != 0;
+            wishes[i].asks = full || test_random_below(&r, 8) != 0;
             wishes[i].level = rush ? test_random_below(&r, 4) : 0;
             wishes[i].priority = test_random_float(&r, 0.0f, 100.0f);
         }
         for (uint32_t frame = 0; frame <= INSTANCES; frame++) {
             uint8_t held[INSTANCES];
+            uint32_t holders = 0;
             for (uint32_t i = 0; i < INSTANCES; i++) {
                 held[i] = frame && wishes[i].asks && noh_lod_pools_slot(p, i).pool != NOH_NONE;
+                holders += held[i];
             }
             ask_some(p, wishes, moves);
             expect_bounded(p, wishes, bound);
@@ -375,14 +378,14 @@ static void few_slots_change_hands_in_a_frame(void **state)
                 if (held[i]) assert_int_not_equal(noh_lod_pools_slot(p, i).pool, NOH_NONE);
             }
             waited += noh_lod_pools_stats_of(p)->waiting;
-            exchanged += frame > 20u && noh_lod_pools_stats_of(p)->moved > 0;
+            exchanged += holders == INSTANCES && noh_lod_pools_stats_of(p)->moved > 0;
         }
         assert_int_equal(noh_lod_pools_stats_of(p)->waiting, 0);
         assert_int_equal(noh_lod_pools_stats_of(p)->moved, 0);
         expect_sound(p, wishes);
         expect_fair(p, wishes);
     }
-    assert_true(waited > 1000 && exchanged > 0);
+    assert_true(waited > 1000 && exchanged > 100);
     free(p);
 }
 
