@@ -379,7 +379,7 @@ static noh_result give_back_vertices(const planner *p, noh_error *error)
 /* What was given up first may fit again, once more was won than was needed. */
 static noh_result give_back(const planner *p, noh_error *error)
 {
-    noh_result result = p->plan->concession_count ? give_back_halves(p, error) : NOH_OK;
+    noh_result result = give_back_halves(p, error);
     for (uint32_t i = 0; i < p->desc->kind_count && result == NOH_OK; i++) {
         noh_kind_plan *k = &p->plan->kinds[i];
         const uint32_t now = k->cached_segment_count;
@@ -392,7 +392,7 @@ static noh_result give_back(const planner *p, noh_error *error)
             result = give_back_segments(p, i, most.cached_segment_count, error);
         }
     }
-    if (result == NOH_OK && p->plan->concession_count) result = give_back_vertices(p, error);
+    if (result == NOH_OK) result = give_back_vertices(p, error);
     return result;
 }
 

@@ -181,6 +181,21 @@ static void bad_graph(rig *r, noh_result result, const char *what)
     rig_open(r);
 }
 
+/* What is exactly at its limit is good. */
+static void limits_themselves_are_allowed(void **state)
+{
+    rig r;
+    (void)state;
+    rig_open(&r);
+    r.space.triangle_count = NOH_BLEND_SPACE_TRIANGLES_MAX;
+    for (uint32_t i = 0; i < sizeof r.triangles; i++) r.triangles[i] = (uint8_t)(1u + i % 3u);
+    r.points[0] = NOH_BLEND_SPACE_COORDINATE_MAX, r.points[7] = -NOH_BLEND_SPACE_COORDINATE_MAX;
+    r.thresholds[0] = -NOH_BLEND_SPACE_COORDINATE_MAX, r.thresholds[1] = NOH_BLEND_SPACE_COORDINATE_MAX;
+    assert_int_equal(noh_graph_check(&r.g, &r.s.set, NULL), NOH_OK);
+    r.space.triangle_count++;
+    bad_graph(&r, NOH_ERR_DATA, "space triangles");
+}
+
 static void counts_and_pointers_broken_in_turn(void **state)
 {
     rig r;
@@ -645,6 +660,7 @@ static void a_switch_without_a_pose_is_taken(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(limits_themselves_are_allowed),
         cmocka_unit_test(counts_and_pointers_broken_in_turn),
         cmocka_unit_test(node_fields_broken_in_turn),
         cmocka_unit_test(random_graphs_do_no_harm),
