@@ -1,6 +1,4 @@
 /* walkers_feet.c: feet on the ground for the nearest walkers. */
-#include <string.h>
-
 #include "core/base/assert_internal.h"
 #include "life/reach/feet_internal.h"
 #include "noh/base.h"
@@ -84,15 +82,10 @@ static const char *check(const void *user, const void *state)
 
 noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
 {
-    noh_modifier part;
     NOH_ASSERT(feet);
-    memset(&part, 0, sizeof part);
-    part.name = "feet of near walkers";
-    part.modify = modify;
-    part.check = check;
-    part.user = feet;
-    part.state_bytes = sizeof(near_feet);
-    return part;
+    return (noh_modifier){
+        .name = "feet of near walkers", .modify = modify, .check = check, .user = feet, .state_bytes = sizeof(near_feet)
+    };
 }
 
 const noh_feet_rig *noh_walkers_rig(const noh_modifier *part)

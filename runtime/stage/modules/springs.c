@@ -577,14 +577,11 @@ noh_module noh_springs_module(void)
 
 noh_modifier noh_springs_modifier(const noh_springs *springs)
 {
-    noh_modifier part;
     NOH_ASSERT(springs);
-    memset(&part, 0, sizeof part);
-    part.name = "springs";
-    part.modify = modify;
-    part.check = check;
-    part.user = springs;
-    part.state_bytes = springs->state_bytes;
-    part.scratch_bytes = springs->scratch_bytes;
-    return part;
+    return (noh_modifier){ .name = "springs",
+                           .modify = modify,
+                           .check = check,
+                           .user = springs,
+                           .state_bytes = springs->state_bytes,
+                           .scratch_bytes = springs->scratch_bytes };
 }

@@ -78,13 +78,8 @@ static const char *check(const void *user, const void *state)
 
 noh_modifier noh_feet_modifier(const noh_kind_feet *feet)
 {
-    noh_modifier part;
     NOH_ASSERT(feet);
-    memset(&part, 0, sizeof part);
-    part.name = "feet";
-    part.modify = put_on_ground;
-    part.check = check;
-    part.user = feet;
-    part.state_bytes = sizeof(noh_feet);
-    return part;
+    return (noh_modifier){
+        .name = "feet", .modify = put_on_ground, .check = check, .user = feet, .state_bytes = sizeof(noh_feet)
+    };
 }

@@ -8,8 +8,6 @@
 #include "noh/low_life.h"
 #include "noh/modules.h"
 
-#include <string.h>
-
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "stage/cast/stage_internal.h"
@@ -60,16 +58,13 @@ static void shift_gaze(const void *user, void *state, const float by[3])
 
 noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze)
 {
-    noh_modifier part;
     NOH_ASSERT(gaze);
-    memset(&part, 0, sizeof part);
-    part.name = "gaze";
-    part.modify = look;
-    part.check = check_gaze;
-    part.shift = shift_gaze;
-    part.user = gaze;
-    part.state_bytes = sizeof(noh_gaze);
-    return part;
+    return (noh_modifier){ .name = "gaze",
+                           .modify = look,
+                           .check = check_gaze,
+                           .shift = shift_gaze,
+                           .user = gaze,
+                           .state_bytes = sizeof(noh_gaze) };
 }
 
 /* ---- hands ---- */
@@ -99,14 +94,11 @@ static void shift_reach(const void *user, void *state, const float by[3])
 
 noh_modifier noh_reach_modifier(const noh_reach_rig *rig)
 {
-    noh_modifier part;
     NOH_ASSERT(rig);
-    memset(&part, 0, sizeof part);
-    part.name = "hands";
-    part.modify = reach_out;
-    part.check = check_reach;
-    part.shift = shift_reach;
-    part.user = rig;
-    part.state_bytes = sizeof(noh_reach);
-    return part;
+    return (noh_modifier){ .name = "hands",
+                           .modify = reach_out,
+                           .check = check_reach,
+                           .shift = shift_reach,
+                           .user = rig,
+                           .state_bytes = sizeof(noh_reach) };
 }
