@@ -228,7 +228,12 @@ done <"$work/results"
 wait
 workers=
 
-grep -h ' fails$' -r --include='*.lines' "$seeded/map" | sed 's/ fails$/ fails without a mutant: left out/'
+{
+    grep -h ' fails$' -r --include='*.lines' "$seeded/map" | sed 's/ fails$//'
+    for sound in "$work"/sound.*; do
+        case $sound in *.log) ;; *) grep -q n "$sound" 2>/dev/null && echo "${sound##*/sound.}" ;; esac
+    done
+} | sort -u | sed 's/$/ fails without a mutant: left out/'
 # shellcheck disable=SC2046 # file names
 perl tests/support/mutants_seed.pl uncovered "$seeded/map" 12 $(cat "$work/all")
 awk -F "$tab" -f tests/support/mutants_seed.awk tests/survivors.txt "$work/told"
