@@ -132,7 +132,7 @@ static void blends_go_by_their_shares(void **state)
     }
 }
 
-/* A clip of floats alone takes nothing from who walks, at any weight and at any depth. */
+/* A clip of floats alone takes nothing from a walk, at any weight and at any depth. */
 static void faces_slow_nobody_down(void **state)
 {
     world w;
