@@ -131,7 +131,7 @@ copy() { # FOLDER
     for file in *; do
         case $file in build*) ;; *) cp -pR "$file" "$1/" ;; esac
     done
-    (cd "$build" && find . \( -path ./mutants -o -path ./web -o -path ./tests/log -o -path ./angle \) -prune -o -type f \
+    (cd "$build" && find . \( -path './mutants*' -o -path ./web -o -path ./tests/log -o -path ./angle \) -prune -o -type f \
         \( -name '*.[oad]' -o -path './gen/*' -o -name embed -o -name noh -o -name '*.noh' -o -name '*.glb' \) -print) |
         tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
 }
