@@ -135,13 +135,15 @@ typedef enum noh_half_mode {
 
 /* ---- bodies ---- */
 
-#define NOH_TERRAIN_SIZE_MAX 4097u /* heights along a side of a pack's terrain */
-#define NOH_OBSTACLES_MAX 16u      /* of each kind in a world */
-#define NOH_FEET_LEGS_MAX 2u       /* placed on the ground */
-#define NOH_GAZE_JOINTS_MAX 8u     /* joints of spine, neck and head that turn together */
-#define NOH_REACH_ARMS_MAX 2u      /* arms that reach */
-#define NOH_RAGDOLL_BODIES_MAX 16u /* of one ragdoll */
-#define NOH_RAGDOLL_PAIRS_MAX 24u  /* pairs of colliding bodies of a ragdoll */
+#define NOH_TERRAIN_SIZE_MAX 4097u   /* heights along a side of a pack's terrain */
+#define NOH_OBSTACLES_MAX 16u        /* of each kind in a world */
+#define NOH_TOUCHES_MAX 8u           /* of a body that asks: 3 at each end, 2 between them */
+#define NOH_TRIANGLES_MAX (1u << 22) /* of one world */
+#define NOH_FEET_LEGS_MAX 2u         /* placed on the ground */
+#define NOH_GAZE_JOINTS_MAX 8u       /* joints of spine, neck and head that turn together */
+#define NOH_REACH_ARMS_MAX 2u        /* arms that reach */
+#define NOH_RAGDOLL_BODIES_MAX 16u   /* of one ragdoll */
+#define NOH_RAGDOLL_PAIRS_MAX 24u    /* pairs of colliding bodies of a ragdoll */
 #define NOH_RAGDOLL_SUBSTEPS_MAX 20u
 #define NOH_RAGDOLL_STEPS_MAX 4u     /* of 1/60 s per call; the rest of a longer time is dropped, and counted */
 #define NOH_RAGDOLLS_MAX 1024u       /* of one set */

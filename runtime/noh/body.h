@@ -33,10 +33,14 @@ typedef struct noh_ray {
  *   noh_world_check       check a world
  *   noh_field_height      height and normal of a height field at a place
  *   noh_field_ray         intersect a ray with a height field
+ *   noh_triangles_size    triangles as the physics of a world; noh_triangles_init
+ *
+ * Besides, it may hold the game's own physics: functions that answer rays and touches. Ragdolls, rigid bodies,
+ * points, feet, steps, walkers and shadows ask it wherever they look at the shapes here.
  *
  * The caller owns the world's arrays and keeps them while it is used. Up is +Y.
  * source   Amanatides, Woo: A fast voxel traversal algorithm, 1987 (the ray's walk through cells)
- * Threads: read-only; any number of threads. */
+ * Threads: read-only; any number of threads, but for `physics`. */
 
 #define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
 
@@ -61,6 +65,70 @@ typedef struct noh_field {
     float scale;             /* y per unit of height */
 } noh_field;
 
+/* ---- a game's physics ---- */
+
+typedef struct noh_world_ray {
+    float origin[3]; /* a point nearby: ray.from is relative to it, so that floats keep their digits far away */
+    noh_ray ray;
+} noh_world_ray;
+
+typedef struct noh_world_hit {
+    float distance;  /* in lengths of the ray's direction; below 0: no hit. Obstacles that contain the start: none */
+    float normal[3]; /* unit, out of the obstacle */
+} noh_world_hit;
+
+/* A body that asks what it touches now, and until the next question. */
+typedef struct noh_world_body {
+    float origin[3];     /* the capsule is relative to it */
+    noh_capsule capsule; /* a ball if its ends are equal */
+    float reach;         /* metres from its surface to the farthest surface that matters, 0.. */
+} noh_world_body;
+
+/* The nearest point of an obstacle, as the plane through it: a point `along` the capsule's axis stays in front of it,
+ * by the radius, until the next question. */
+typedef struct noh_touch {
+    noh_plane plane; /* relative to the body's origin; the normal leads out of the obstacle */
+    float along;     /* 0: the middle, -1: `from`, 1: `to` */
+} noh_touch;
+
+typedef struct noh_touches {
+    uint32_t count;
+    noh_touch at[NOH_TOUCHES_MAX]; /* nearest first */
+} noh_touches;
+
+/* Functions of the game. Ragdolls ask once for each 1/60 s and doll, rigid bodies once for each 1/600 s, feet once for
+ * each sole: in batches, always in the same order. The same question must get the same answer while a step or a frame
+ * runs: then results are equal for any number of jobs.
+ * An answer with a number that is not finite, or a normal that is not unit, counts as none; `along` is clamped.
+ * Threads: unless `threads` is set, noh never asks from two threads at once: feet in a stage with several jobs, which
+ * would, do without. Two stages that run at once must not share such a physics. */
+typedef struct noh_world_physics {
+    void (*rays)(void *user, const noh_world_ray *rays, uint32_t count, noh_world_hit *hits);
+    void (*touches)(void *user, const noh_world_body *bodies, uint32_t count, noh_touches *touches);
+    void *user;
+    uint32_t threads; /* 1: any number of threads may call at once */
+} noh_world_physics;
+
+/* ---- triangles ---- */
+
+/* Static triangles, as the physics of a world. Their fronts are solid (seen from there, corners go counterclockwise); a
+ * body that is behind the nearest one is led out of it. Rigid bodies meet them with their corners and round ends. */
+typedef struct noh_triangles_desc {
+    const float *positions; /* [position_count][3] metres; both arrays are used in place, and outlive the physics */
+    uint32_t position_count;
+    const uint32_t *indices; /* [triangle_count][3] */
+    uint32_t triangle_count; /* 1..NOH_TRIANGLES_MAX */
+} noh_triangles_desc;
+
+/* Exact size of what noh_triangles_init makes: 20 to 36 bytes a triangle. 0 if the count is out of its range. */
+size_t noh_triangles_size(uint32_t triangle_count);
+
+/* Make a tree of boxes over triangles, which answers rays and touches from any thread. It has no state.
+ * errors  ARG an index is past the positions, or a corner is not finite (where: the triangle), or memory NULL or
+ *         misaligned; LIMIT the count; MEMORY too small */
+noh_result noh_triangles_init(void *memory, size_t bytes, const noh_triangles_desc *desc, noh_world_physics *physics,
+                              noh_error *error);
+
 typedef struct noh_world {
     const noh_plane *planes;
     const noh_capsule *capsules;
@@ -69,11 +137,12 @@ typedef struct noh_world {
     const noh_field *field;                         /* NULL: none */
     float friction;                                 /* 0.., of everything */
     float restitution; /* 0..1: share of its velocity towards an obstacle that a body rebounds with; 0: no bounce */
+    const noh_world_physics *physics; /* NULL: none */
 } noh_world;
 
 /* Check a world.
- * errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area (where: the index);
- *         LIMIT more than NOH_OBSTACLES_MAX of one kind */
+ * errors  ARG a normal or rotation is not unit, a number is out of its range, a field has no area, a function of the
+ *         physics is NULL (where: the index); LIMIT more than NOH_OBSTACLES_MAX of one kind */
 noh_result noh_world_check(const noh_world *world, noh_error *error);
 
 /* Get the height and normal of a field at a place.

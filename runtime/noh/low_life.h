@@ -16,11 +16,10 @@ extern "C" {
 #endif
 
 /* ======== boxes, rays and capsules ========
- * Points in boxes, boxes that overlap, and a ray against a capsule.
+ * Points in boxes, and a ray against a capsule.
  *
- *   noh_aabb_contains                  axis-aligned boxes
- *   noh_obb_contains, noh_obb_overlap  oriented boxes
- *   noh_ray_capsule                    a ray against a capsule
+ *   noh_aabb_contains   axis-aligned boxes
+ *   noh_ray_capsule     a ray against a capsule
  *
  * Touching counts as overlapping. Boxes may be flat.
  * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes), 5.1.9 (segments), 5.3.3
@@ -32,12 +31,6 @@ typedef struct noh_aabb {
 } noh_aabb;
 
 int noh_aabb_contains(const noh_aabb *box, const float point[3]);
-int noh_obb_contains(const noh_obb *box, const float point[3]);
-
-/* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of
- * 1e-6 of the sides where edges are parallel and their product vanishes. Boxes closer than that margin may count as
- * overlapping. */
-int noh_obb_overlap(const noh_obb *a, const noh_obb *b);
 
 /* Intersect a ray with a capsule; a ball if `from` and `to` are equal. */
 float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3], float radius);
@@ -82,6 +75,7 @@ typedef struct noh_ragdolls_desc {
     const noh_ragdoll_rig *rig; /* copied */
     uint32_t count;             /* dolls, 1..NOH_RAGDOLLS_MAX */
     uint32_t substeps;          /* 5..NOH_RAGDOLL_SUBSTEPS_MAX per 1/60 s; default (0) 10 */
+    uint32_t asks;              /* 1: its worlds may have `physics`: 20,480 bytes more. 0: `physics` is not asked */
 } noh_ragdolls_desc;
 
 typedef struct noh_ragdolls noh_ragdolls;

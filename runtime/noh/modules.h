@@ -174,7 +174,7 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
  * smoothly.
  * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
  * whose actors are attached to others: a modifier does not know their own place.
- * Threads: the ground is read by jobs at the same time. */
+ * Threads: the ground is read by jobs at the same time; a world's physics only if it allows that (body.h). */
 
 /* Data shared by the feet of a kind's actors. */
 typedef struct noh_kind_feet {
@@ -244,7 +244,8 @@ typedef struct noh_kind_ragdoll {
     uint32_t count;         /* actors that may be down at once, 1..NOH_RAGDOLLS_MAX */
     uint32_t substeps;      /* of 1/60 s, 5..NOH_RAGDOLL_SUBSTEPS_MAX; default (0) 10 */
     float mass;             /* kilograms; default (0) 70 for a height of 1.75 m, by its cube */
-    const noh_world *world; /* metres; read by steps, must outlive the stage. NULL: nothing to collide with */
+    const noh_world *world; /* metres; read by steps, must outlive the stage. With `physics`, set before the plan, the
+                             * kind is 20,480 bytes larger. NULL: nothing to collide with */
     float stagger_speed;    /* most speed, metres per second, that a hit may give a standing actor that keeps its feet
                              * by steps; default (0) 0.6 of the square root of 9.82 times its leg: 1.73 for 0.85 m.
                              * Below 0: every hit makes it fall */

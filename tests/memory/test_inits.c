@@ -258,13 +258,24 @@ INIT(identity_init)
 INIT(ragdolls_init)
 {
     static noh_ragdoll_rig rig;
-    const noh_ragdolls_desc desc = { &rig, 3, 10 };
+    const noh_ragdolls_desc desc = { &rig, 3, 10, 0 };
     noh_ragdolls *set;
     rig.body_count = 1;
     rig.bodies[0] = (noh_ragdoll_body){
         NOH_NONE, 0, 0.1f, 0.05f, 1.0f, 0.01f, 0.01f, { 0.0f, 1.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }
     };
     return noh_ragdolls_init(memory, bytes, &desc, &set, error);
+}
+
+INIT(triangles_init)
+{
+    static const float positions[4][3] = { { 0, 0, 0 }, { 0, 0, 1 }, { 1, 0, 0 }, { 1, 1, 1 } };
+    static const uint32_t indices[6][3] = {
+        { 0, 1, 2 }, { 2, 1, 3 }, { 0, 2, 3 }, { 0, 3, 1 }, { 0, 1, 2 }, { 2, 1, 3 }
+    };
+    const noh_triangles_desc desc = { positions[0], 4, indices[0], 6 };
+    noh_world_physics physics;
+    return noh_triangles_init(memory, bytes, &desc, &physics, error);
 }
 
 INIT(spring_init)
@@ -496,6 +507,7 @@ static const struct {
     ROW(lod_pools_init),
     ROW(identity_init),
     ROW(ragdolls_init),
+    ROW(triangles_init),
     ROW(spring_init),
     ROW(springs_init),
     ROW(hair_init),

@@ -7,6 +7,7 @@
 #include "life/physics/contact_internal.h"
 
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/shape_internal.h"
 #include "noh/low_core.h"
@@ -255,11 +256,40 @@ static void touch_round(const noh_round_box *body, const noh_round_box *on, noh_
     }
 }
 
+/* Ask what each corner of a body touches, as a ball. Corners of no number ask nothing.
+ * shapes  touches[8] */
+static void ask_corners(const noh_world *w, const float origin[3], const noh_round_box *body, noh_touches *touches)
+{
+    noh_world_body asked[8];
+    noh_touches answers[8];
+    uint32_t count = 0, of[8];
+    for (uint32_t i = 0; i < 8; i++) {
+        noh_world_body *a = &asked[count];
+        touches[i].count = 0;
+        if (!corner_of(&body->box, i, a->capsule.from)) continue;
+        memcpy(a->capsule.to, a->capsule.from, sizeof a->capsule.to);
+        memcpy(a->origin, origin, sizeof a->origin);
+        a->capsule.radius = body->radius;
+        a->reach = noh_length3(body->box.half) + body->radius;
+        of[count++] = i;
+    }
+    noh_world_ask_touches(w, asked, count, answers);
+    for (uint32_t i = 0; i < count; i++) touches[of[i]] = answers[i];
+}
+
 static void touch_ground(const noh_world *w, const float origin[3], const noh_round_box *body, noh_contacts *contacts)
 {
+    const int asks = noh_world_asks(w);
+    noh_touches touches[8];
+    if (asks) ask_corners(w, origin, body, touches);
     for (uint32_t i = 0; i < 8; i++) {
         float corner[3], point[3], normal[3], height;
         if (!corner_of(&body->box, i, corner)) continue;
+        for (uint32_t k = 0; asks && k < touches[i].count; k++) {
+            const noh_plane *plane = &touches[i].at[k].plane;
+            noh_madd3(corner, -body->radius, plane->normal, point);
+            add(contacts, point, plane->normal, noh_dot3(point, plane->normal) - plane->distance);
+        }
         for (uint32_t k = 0; k < w->plane_count; k++) {
             const float *n = w->planes[k].normal;
             noh_madd3(corner, -body->radius, n, point);

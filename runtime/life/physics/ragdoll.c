@@ -8,6 +8,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "life/physics/shape_internal.h"
 
 #define STILL_STEPS 30u  /* half a second */
@@ -267,16 +268,18 @@ static void set_shape(noh_ragdolls *set, const noh_ragdolls_desc *desc)
 typedef struct layout {
     noh_ragdolls *set;
     noh_ragdoll_doll *dolls;
+    uint32_t *asks; /* noh_ragdolls_desc */
     float *scratch;
 } layout;
 
 /* Shared memory comes last: it may begin 16 bytes later, at a multiple of 32. */
-static layout carve(noh_arena *arena, uint32_t count)
+static layout carve(noh_arena *arena, uint32_t count, uint32_t asks)
 {
     layout l;
     l.set = noh_arena_carve(arena, sizeof *l.set, 16);
     l.dolls = noh_arena_carve(arena, count * sizeof *l.dolls, 16);
-    l.scratch = noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u, 16);
+    l.asks = noh_arena_carve(arena, sizeof *l.asks, 16);
+    l.scratch = noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS(asks) * sizeof(float) + 32u, 16);
     return l;
 }
 
@@ -290,14 +293,14 @@ size_t noh_ragdolls_size(const noh_ragdolls_desc *desc)
 {
     noh_arena arena = noh_arena_measure();
     if (!good_desc(desc)) return 0;
-    (void)carve(&arena, desc->count);
+    (void)carve(&arena, desc->count, desc->asks);
     return arena.used;
 }
 
 noh_ragdoll_doll *noh_ragdoll_dolls(noh_ragdolls *set)
 {
     noh_arena arena = noh_arena_over(set, SIZE_MAX);
-    return carve(&arena, set->count).dolls;
+    return carve(&arena, set->count, 0).dolls;
 }
 
 static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
@@ -309,8 +312,14 @@ static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 float *noh_ragdoll_scratch(noh_ragdolls *set)
 {
     noh_arena arena = noh_arena_over(set, SIZE_MAX);
-    uint8_t *scratch = (uint8_t *)carve(&arena, set->count).scratch;
+    uint8_t *scratch = (uint8_t *)carve(&arena, set->count, 0).scratch;
     return (float *)(void *)(scratch + (32u - (uintptr_t)scratch % 32u) % 32u);
+}
+
+static uint32_t *asks_of(noh_ragdolls *set)
+{
+    noh_arena arena = noh_arena_over(set, SIZE_MAX);
+    return carve(&arena, set->count, 0).asks;
 }
 
 /* ---- origins ---- */
@@ -358,6 +367,7 @@ noh_result noh_ragdolls_init(void *memory, size_t bytes, const noh_ragdolls_desc
     if (result) return result;
     memset(memory, 0, noh_ragdolls_size(desc));
     *set = noh_ragdolls_begin(memory, desc);
+    *asks_of(*set) = desc->asks ? 1u : 0u;
     return NOH_OK;
 }
 
@@ -727,13 +737,20 @@ static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
 
 uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks)
 {
-    return noh_ragdolls_step_with(set, world, ticks, noh_ragdoll_scratch(set));
+    return noh_ragdolls_step_with(set, world, ticks, noh_ragdoll_scratch(set), *asks_of(set));
 }
 
-uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch)
+uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch,
+                                uint32_t asks)
 {
     const uint32_t dropped = set->steps.dropped;
     const uint32_t steps = noh_steps_take(&set->steps, ticks, NOH_RAGDOLL_STEP_TICKS, NOH_RAGDOLL_STEPS_MAX);
+    noh_world quiet;
+    if (world && noh_world_asks(world) && !asks) { /* there is no room for answers */
+        quiet = *world;
+        quiet.physics = NULL;
+        world = &quiet;
+    }
     for (uint32_t i = 0; i < steps; i++) step_all(set, world, scratch);
     return set->steps.dropped - dropped;
 }

@@ -68,8 +68,11 @@ noh_result noh_ragdoll_rig_check(const noh_ragdoll_rig *rig, noh_error *error);
 #define NOH_RAGDOLL_LANES_MAX 8u
 #define NOH_RAGDOLL_LANE_FLOATS 52u                       /* per body in the shared memory, for each lane */
 #define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* per doll: its origin, and planes relative to it */
-#define NOH_RAGDOLL_SCRATCH_FLOATS \
-    ((NOH_RAGDOLL_BODIES_MAX * NOH_RAGDOLL_LANE_FLOATS + NOH_RAGDOLL_PLACE_FLOATS) * NOH_RAGDOLL_LANES_MAX)
+#define NOH_RAGDOLL_TOUCH_FLOATS (5u * NOH_TOUCHES_MAX)   /* per body: what a world that is asked has answered */
+#define NOH_RAGDOLL_SCRATCH_FLOATS(asks)                                                              \
+    ((NOH_RAGDOLL_BODIES_MAX * (NOH_RAGDOLL_LANE_FLOATS + ((asks) ? NOH_RAGDOLL_TOUCH_FLOATS : 0u)) + \
+      NOH_RAGDOLL_PLACE_FLOATS) *                                                                     \
+     NOH_RAGDOLL_LANES_MAX)
 
 /* A body of a doll. Lanes have these floats in the same order. */
 typedef struct noh_ragdoll_state {
@@ -132,9 +135,15 @@ struct noh_ragdolls {
 #endif
 
 /* 1/60 s.
- * shapes  dolls[count], all awake; scratch[NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes */
+ * shapes  dolls[count], all awake; scratch[NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; the larger one if the
+ *         world asks */
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                       uint32_t count, float *scratch);
+
+/* Ask what the bodies of a doll touch during the next 1/60 s.
+ * shapes  touches[body_count] */
+void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, const noh_ragdoll_doll *doll,
+                     noh_touches *touches);
 
 /* A set without the memory that its dolls share, which a stage stores apart from its state. It can be used like any
  * other, but stepped only by noh_ragdolls_step_with.
@@ -142,8 +151,10 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
 size_t noh_ragdolls_state_size(uint32_t count);
 noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
 
-/* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; undefined before and after */
-uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch);
+/* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS(asks)], aligned to 32 bytes; undefined before and after
+ * asks     0: the physics of the world is not asked */
+uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch,
+                                uint32_t asks);
 
 /* Variants of the public functions with positions relative to `origin`, a point of the bodies' space. */
 noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],

@@ -13,6 +13,7 @@
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/low_life.h"
 #include "noh/base.h"
@@ -20,9 +21,10 @@
 
 #define TURN_BACK_SPEED 2.0f /* radians per second at which joints that begin beyond their limits return */
 #define AT_ONCE 1e3f
-#define DOWN 0.7f    /* a direction steeper than 45 degrees */
-#define NO_WAY 1e12f /* larger than any box */
-#define POINTS 3u    /* contact points of a body with the world: its two ends, and one between */
+#define DOWN 0.7f      /* a direction steeper than 45 degrees */
+#define NO_WAY 1e12f   /* larger than any box */
+#define NEAR_END 0.99f /* along a capsule, where its end begins */
+#define POINTS 3u      /* contact points of a body with the world: its two ends, and one between */
 
 typedef struct lane_body {
     lane3 p;
@@ -50,6 +52,15 @@ typedef struct lane_world {
 } lane_world;
 NOH_STATIC_ASSERT(sizeof(lane_world) == NOH_RAGDOLL_PLACE_FLOATS * sizeof(lanes), lane_world);
 NOH_STATIC_ASSERT(NOH_LANES <= NOH_RAGDOLL_LANES_MAX, lane_count);
+
+/* Planes that the world has answered: three for each end and two for what is between, as contact points are numbered.
+ * A plane that is missing is far below. */
+#define END_TOUCHES 3u
+typedef struct lane_touch {
+    lane3 normal;
+    lanes distance, at;
+} lane_touch;
+NOH_STATIC_ASSERT(sizeof(lane_touch) * NOH_TOUCHES_MAX == NOH_RAGDOLL_TOUCH_FLOATS * sizeof(lanes), lane_touch);
 
 /* ---- dolls in and out ---- */
 
@@ -87,6 +98,30 @@ static void load_place(const noh_world *world, const noh_ragdoll_doll *doll, flo
     to = (float *)(void *)place->plane_distances;
     for (uint32_t i = 0; world && i < world->plane_count; i++) {
         to[i * NOH_LANES + lane] = noh_plane_distance(&world->planes[i], doll->origin);
+    }
+}
+
+/* A touch in a lane; NULL: none. */
+static void load_touch(const noh_touch *touch, float half, lane_touch *out, uint32_t lane)
+{
+    float *to = (float *)(void *)out;
+    for (uint32_t k = 0; k < 3; k++) to[k * NOH_LANES + lane] = touch ? touch->plane.normal[k] : k == 1 ? 1.0f : 0.0f;
+    to[3 * NOH_LANES + lane] = touch ? touch->plane.distance : -NO_WAY;
+    to[4 * NOH_LANES + lane] = touch ? touch->along * half : 0.0f;
+}
+
+/* out: [NOH_TOUCHES_MAX] of one body. Which come first counts, where there are too many at one contact point. */
+static void load_touches(const noh_touches *touches, float half, lane_touch *out, uint32_t lane)
+{
+    static const uint32_t first[POINTS + 1u] = { 0, END_TOUCHES, 2u * END_TOUCHES, NOH_TOUCHES_MAX };
+    for (uint32_t point = 0; point < POINTS; point++) {
+        uint32_t to = first[point];
+        for (uint32_t i = 0; i < touches->count && to < first[point + 1u]; i++) {
+            const float along = touches->at[i].along;
+            const uint32_t own = along > NEAR_END ? 0u : along < -NEAR_END ? 1u : 2u;
+            if (own == point) load_touch(&touches->at[i], half, &out[to++], lane);
+        }
+        while (to < first[point + 1u]) load_touch(NULL, half, &out[to++], lane);
     }
 }
 
@@ -587,13 +622,33 @@ static void touch_boxes(lane_body *b, const noh_ragdoll_constants *c, const noh_
     }
 }
 
-static inline void solve_world(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world,
-                               const lane_world *place)
+/* Like planes of the world, in the order in which ends meet those. */
+static void touch_asked(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world, const lane_world *place,
+                        const lane_touch *touches)
 {
+    for (uint32_t i = 0; i < NOH_TOUCHES_MAX; i++) {
+        const uint32_t point = i >= 2u * END_TOUCHES ? 2u : i % 2u;
+        const lane_touch *t = &touches[point == 2u ? i : i / 2u + point * END_TOUCHES];
+        const lanes far = lanes_add(t->distance, lanes_set(c->radius));
+        const lanes depth = lanes_sub(lane3_dot(lane3_madd(b->p, t->at, b->z), t->normal), far);
+        touch(b, c, point, t->at, t->normal, depth, world, place->push_out);
+    }
+}
+
+/* touches: [NOH_TOUCHES_MAX] of this body; NULL: the world is not asked */
+static inline void solve_world(lane_body *b, const noh_ragdoll_constants *c, const noh_world *world,
+                               const lane_world *place, const lane_touch *touches)
+{
+    if (touches) touch_asked(b, c, world, place, touches);
     touch_planes(b, c, world, place);
     if (world->field) touch_field(b, c, world, place);
     touch_capsules(b, c, world, place);
     touch_boxes(b, c, world, place);
+}
+
+static inline const lane_touch *touches_of(const lane_touch *touches, uint32_t body)
+{
+    return touches ? touches + body * NOH_TOUCHES_MAX : NULL;
 }
 
 /* ---- bodies of a doll against each other ---- */
@@ -685,7 +740,7 @@ static inline void rub_joint(const joint *j, float seconds)
 }
 
 static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies,
-                    float seconds)
+                    const lane_touch *touches, float seconds)
 {
     const lanes h = lanes_set(seconds);
     for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, seconds, shape->speed_max);
@@ -695,7 +750,9 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
         solve_joint(&j, h);
     }
     place->root = bodies[0].p;
-    for (uint32_t i = 0; world && i < shape->body_count; i++) solve_world(&bodies[i], &shape->bodies[i], world, place);
+    for (uint32_t i = 0; world && i < shape->body_count; i++) {
+        solve_world(&bodies[i], &shape->bodies[i], world, place, touches_of(touches, i));
+    }
     for (uint32_t i = 0; i < shape->body_count; i++) {
         take_velocity(&bodies[i], lanes_set(1.0f / seconds));
         if (world) bounce(&bodies[i], &shape->bodies[i], world->restitution, seconds);
@@ -707,19 +764,20 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
 }
 
 static inline void settle_world(const noh_ragdoll_shape *shape, const noh_world *world, const lane_world *place,
-                                lane_body *b, uint32_t body)
+                                const lane_touch *touches, lane_body *b, uint32_t body)
 {
     noh_ragdoll_constants thinner = shape->bodies[body];
     const float most = 0.5f * thinner.radius;
     thinner.radius -= shape->slack < most ? shape->slack : most;
     for (uint32_t i = 0; i < POINTS; i++) b->pushed[i] = lanes_set(0.0f);
-    solve_world(b, &thinner, world, place);
+    solve_world(b, &thinner, world, place, touches_of(touches, body));
 }
 
 /* Reduce the remaining errors without changing velocities: joints once more, then their anchors from the last body to
  * the first, opposite to the order within a substep; otherwise separations caused by the ground would last as long as
  * it pushes. The world comes last, but only beyond its slack: a full correction would separate joints again. */
-static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies)
+static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies,
+                          const lane_touch *touches)
 {
     for (uint32_t i = 0; i < shape->body_count; i++) {
         bodies[i].p_before = bodies[i].p;
@@ -735,7 +793,7 @@ static inline void settle(const noh_ragdoll_shape *shape, const noh_world *world
     }
     place->root = bodies[0].p;
     for (uint32_t i = 0; i < shape->body_count; i++) {
-        if (world) settle_world(shape, world, place, &bodies[i], i);
+        if (world) settle_world(shape, world, place, touches, &bodies[i], i);
         bodies[i].q = lane4_normalize(bodies[i].q);
     }
 }
@@ -750,11 +808,26 @@ static void send_held(lane_body *b, lanes per_second)
     b->w = lane3_choose(held, w, b->w);
 }
 
+/* Ask what the bodies of dolls touch, doll after doll. Lanes without a doll repeat the last one. */
+static void ask(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls, uint32_t count,
+                lane_touch *touches)
+{
+    noh_touches answers[NOH_RAGDOLL_BODIES_MAX];
+    for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
+        if (lane < count) noh_ragdoll_ask(shape, world, dolls[lane], answers);
+        for (uint32_t i = 0; i < shape->body_count; i++) {
+            load_touches(&answers[i], shape->bodies[i].half, touches + i * NOH_TOUCHES_MAX, lane);
+        }
+    }
+}
+
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
                       uint32_t count, float *scratch)
 {
+    const int asks = world && noh_world_asks(world);
     lane_body *bodies = (lane_body *)(void *)scratch;
     lane_world *place = (lane_world *)(void *)(bodies + NOH_RAGDOLL_BODIES_MAX);
+    lane_touch *touches = asks ? (lane_touch *)(void *)(place + 1) : NULL;
     const float seconds = 1.0f / (60.0f * (float)shape->substeps);
     for (uint32_t first = 0; first < count; first += NOH_LANES) {
         const uint32_t lanes_used = count - first < NOH_LANES ? count - first : NOH_LANES;
@@ -763,10 +836,11 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
             load_doll(shape, doll, bodies, lane);
             load_place(world, doll, seconds, place, lane);
         }
+        if (asks) ask(shape, world, dolls + first, lanes_used, touches);
         place->push_out = lanes_set(NOH_PUSH_OUT_SPEED * seconds);
         for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));
-        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, place, bodies, seconds);
-        settle(shape, world, place, bodies);
+        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, place, bodies, touches, seconds);
+        settle(shape, world, place, bodies, touches);
         for (uint32_t lane = 0; lane < lanes_used; lane++) store_doll(shape, dolls[first + lane], bodies, lane);
     }
 }

@@ -6,8 +6,11 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/shape_internal.h"
+
+#define REACH_LEAST 0.05f /* metres: a body at rest that something pulls moves less within 1/60 s */
 
 static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 {
@@ -139,6 +142,41 @@ static float in_capsules(const noh_world *world, const float origin[3], const fl
     return deepest;
 }
 
+/* How deep a body is in what it touches by the answers of a world. */
+static float in_asked(const noh_touches *touches, const noh_ragdoll_constants *c, const noh_ragdoll_state *s,
+                      const float axis[3])
+{
+    float deepest = 0.0f;
+    for (uint32_t i = 0; i < touches->count; i++) {
+        const noh_touch *t = &touches->at[i];
+        float point[3];
+        noh_madd3(s->position, t->along * c->half, axis, point);
+        deepest = larger(deepest, t->plane.distance + c->radius - noh_dot3(point, t->plane.normal));
+    }
+    return deepest;
+}
+
+/* Within its reach lies what the ends of a body get to within 1/60 s, and as far again for what joints pull. */
+void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, const noh_ragdoll_doll *doll,
+                     noh_touches *touches)
+{
+    static const float z[3] = { 0.0f, 0.0f, 1.0f };
+    noh_world_body asked[NOH_RAGDOLL_BODIES_MAX];
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        const noh_ragdoll_constants *c = &shape->bodies[i];
+        const noh_ragdoll_state *s = &doll->bodies[i];
+        noh_world_body *a = &asked[i];
+        float axis[3];
+        noh_quat_rotate(s->rotation, z, axis);
+        memcpy(a->origin, doll->origin, sizeof a->origin);
+        noh_madd3(s->position, -c->half, axis, a->capsule.from);
+        noh_madd3(s->position, c->half, axis, a->capsule.to);
+        a->capsule.radius = c->radius;
+        a->reach = (noh_length3(s->velocity) + c->half * noh_length3(s->spin)) / 30.0f + REACH_LEAST;
+    }
+    noh_world_ask_touches(world, asked, shape->body_count, touches);
+}
+
 /* ---- all ---- */
 
 static float energy_of(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, const float axis[3], float height)
@@ -153,7 +191,10 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
     NOH_ASSERT(doll < set->count);
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
     const noh_ragdoll_doll *d = doll_of(set, doll);
+    noh_touches touches[NOH_RAGDOLL_BODIES_MAX];
+    const int asks = world && noh_world_asks(world);
     memset(m, 0, sizeof *m);
+    if (asks) noh_ragdoll_ask(&set->shape, world, d, touches);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
         const noh_ragdoll_constants *c = &set->shape.bodies[i];
         const noh_ragdoll_state *s = &d->bodies[i];
@@ -167,6 +208,7 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
             m->penetration = larger(m->penetration, in_ground(world, d->origin, to, c->radius));
             m->penetration = larger(m->penetration, in_capsules(world, d->origin, from, to, c->radius));
         }
+        if (asks) m->penetration = larger(m->penetration, in_asked(&touches[i], c, s, axis));
         if (i) {
             const joint j = { c, &d->bodies[c->parent], s };
             const float apart = separation(&j);

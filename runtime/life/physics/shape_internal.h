@@ -8,6 +8,13 @@
 extern "C" {
 #endif
 
+int noh_obb_contains(const noh_obb *box, const float point[3]);
+
+/* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of
+ * 1e-6 of the sides where edges are parallel and their product vanishes. Boxes closer than that margin may count as
+ * overlapping. */
+int noh_obb_overlap(const noh_obb *a, const noh_obb *b);
+
 /* Get the point of a box nearest to a point: the point itself if it is inside. */
 void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3]);
 

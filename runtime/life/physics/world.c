@@ -6,6 +6,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/world_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "life/physics/shape_internal.h"
 
 #define NO_HIT 1e30f
@@ -62,6 +63,9 @@ noh_result noh_world_check(const noh_world *w, noh_error *error)
     }
     if (w->field && !good_field(w->field)) {
         return noh_fail(error, NOH_ERR_ARG, "a height field has no area, or a number that is not finite", 0, 0);
+    }
+    if (w->physics && (!w->physics->rays || !w->physics->touches)) {
+        return noh_fail(error, NOH_ERR_ARG, "the physics of a world lacks its function `rays` or `touches`", 0, 0);
     }
     if (!is_size(w->friction))
         return noh_fail(error, NOH_ERR_ARG, "friction of a world is below 0 or not finite", 0, 0);
@@ -243,9 +247,17 @@ static float ray_shapes(const noh_world *w, const float origin[3], const noh_ray
     return nearest;
 }
 
+static int ask_ray(const noh_world *w, const float origin[3], const noh_ray *ray, noh_world_hit *hit)
+{
+    noh_world_ray asked = { { origin[0], origin[1], origin[2] }, *ray };
+    noh_world_ask_rays(w, &asked, 1, hit);
+    return hit->distance > 0.0f;
+}
+
 int noh_world_ground_below(const noh_world *w, const float origin[3], const float at[3], float top, float *height)
 {
     const noh_ray down = { { at[0], top, at[2] }, { 0.0f, -1.0f, 0.0f }, NO_HIT };
+    noh_world_hit hit;
     float found = top - ray_shapes(w, origin, &down), y;
     for (uint32_t i = 0; i < w->plane_count; i++) {
         const float *n = w->planes[i].normal;
@@ -256,17 +268,20 @@ int noh_world_ground_below(const noh_world *w, const float origin[3], const floa
     if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &y, NULL) && y <= top && y > found) {
         found = y;
     }
+    if (ask_ray(w, origin, &down, &hit) && top - hit.distance > found) found = top - hit.distance;
     *height = found;
     return found > -1e29f;
 }
 
 float noh_world_wall_ahead(const noh_world *w, const float origin[3], const noh_ray *ray)
 {
+    noh_world_hit hit;
     float nearest = ray_shapes(w, origin, ray);
     for (uint32_t i = 0; i < w->plane_count; i++) {
         const float *n = w->planes[i].normal, towards = -noh_dot3(n, ray->direction);
         const float over = noh_dot3(n, ray->from) - noh_plane_distance(&w->planes[i], origin);
         if (n[1] < STEEP && towards > 1e-3f && over > 0.0f && over < nearest * towards) nearest = over / towards;
     }
+    if (ask_ray(w, origin, ray, &hit) && hit.normal[1] < STEEP && hit.distance < nearest) nearest = hit.distance;
     return nearest;
 }

@@ -158,18 +158,24 @@ static void carry(const noh_foot *f, const leg_now *n, const float point[3], flo
     out[2] += f->moved[1];
 }
 
-/* Add the ground under a point of a sole to the result. */
-static void take_ground(const step *s, const noh_foot *f, const float at[3], const float ahead[2], under *u)
+/* The ray on which the ground under a point of a sole is looked for. */
+static noh_ray ray_down(const step *s, const noh_foot *f, const float at[3], const float ahead[2])
 {
     const float high = f->height > s->floor ? f->height : s->floor, top = high + REACH_UP * s->leg;
-    const float from[3] = { at[0] + ahead[0], top, at[2] + ahead[1] };
-    float normal[3];
-    const float distance = noh_ground_below(s->ground, from, top - s->floor + REACH_DOWN * s->leg, normal);
-    if (distance < 0.0f) return;
-    const float need = top - distance - at[1];
+    const noh_ray ray = { { at[0] + ahead[0], top, at[2] + ahead[1] },
+                          { 0.0f, -1.0f, 0.0f },
+                          top - s->floor + REACH_DOWN * s->leg };
+    return ray;
+}
+
+/* Add the ground under a point of a sole to the result. height: of the point */
+static void take_ground(const noh_ray *ray, const noh_world_hit *hit, float height, under *u)
+{
+    if (hit->distance < 0.0f) return;
+    const float need = ray->from[1] - hit->distance - height;
     u->need = need > u->need ? need : u->need;
     u->has_ground = 1;
-    if (normal[1] > LEVEL_MIN) noh_madd3(u->normal, 1.0f, normal, u->normal);
+    if (hit->normal[1] > LEVEL_MIN) noh_madd3(u->normal, 1.0f, hit->normal, u->normal);
 }
 
 /* The ground under a sole that is `ahead` of its place: under its six points, or also between them, where edges of
@@ -177,19 +183,21 @@ static void take_ground(const step *s, const noh_foot *f, const float at[3], con
 static under look_down(const step *s, const noh_foot *f, const leg_now *n, const float ahead[2], int rows)
 {
     under u = { -1e30f, { 0.0f, 0.0f, 0.0f }, 0 };
-    float at[NOH_FEET_POINTS][3];
-    for (int i = 0; i < (int)NOH_FEET_POINTS; i++) {
-        carry(f, n, n->points[i], at[i]);
-        take_ground(s, f, at[i], ahead, &u);
-    }
-    for (int i = 0; i < (int)NOH_FEET_POINTS - 2; i++) {
+    float at[NOH_GROUND_RAYS_MAX][3];
+    noh_ray rays[NOH_GROUND_RAYS_MAX];
+    noh_world_hit hits[NOH_GROUND_RAYS_MAX];
+    uint32_t count = NOH_FEET_POINTS;
+    for (uint32_t i = 0; i < NOH_FEET_POINTS; i++) carry(f, n, n->points[i], at[i]);
+    for (uint32_t i = 0; i < NOH_FEET_POINTS - 2u; i++) {
         for (int row = 1; row < rows; row++) {
-            float way[3], between[3];
-            noh_sub3(at[i + 2], at[i], way);
-            noh_madd3(at[i], (float)row / (float)rows, way, between);
-            take_ground(s, f, between, ahead, &u);
+            float way[3];
+            noh_sub3(at[i + 2u], at[i], way);
+            noh_madd3(at[i], (float)row / (float)rows, way, at[count++]);
         }
     }
+    for (uint32_t i = 0; i < count; i++) rays[i] = ray_down(s, f, at[i], ahead);
+    noh_ground_below_all(s->ground, rays, count, hits);
+    for (uint32_t i = 0; i < count; i++) take_ground(&rays[i], &hits[i], at[i][1], &u);
     noh_normalize3(u.normal, up);
     return u;
 }

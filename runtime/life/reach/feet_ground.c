@@ -5,6 +5,8 @@
 #include "noh/low_life.h"
 #include "life/physics/vector_internal.h"
 #include "life/physics/shape_internal.h"
+#include "life/physics/world_ask_internal.h"
+#include "life/reach/feet_internal.h"
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
 
@@ -69,20 +71,46 @@ static void take_field(nearest *n, const noh_ray *ray, const noh_field *f)
     if (ray->from[1] - height <= ray->distance_max) take(n, ray->from[1] - height, normal);
 }
 
+/* The nearest ground of a world's own shapes. */
+static nearest look_at_shapes(const noh_world *w, const noh_ray *ray)
+{
+    nearest n = { -1.0f, { 0.0f, 1.0f, 0.0f } };
+    for (uint32_t i = 0; i < w->plane_count; i++) take_plane(&n, ray, &w->planes[i]);
+    for (uint32_t i = 0; i < w->box_count; i++) take_box(&n, ray, &w->boxes[i]);
+    for (uint32_t i = 0; i < w->capsule_count; i++) take_capsule(&n, ray, &w->capsules[i]);
+    if (w->field) take_field(&n, ray, w->field);
+    return n;
+}
+
+void noh_ground_below_all(const noh_ground *ground, const noh_ray *rays, uint32_t count, noh_world_hit *hits)
+{
+    noh_world_ray asked[NOH_GROUND_RAYS_MAX];
+    const noh_world *w = ground->world;
+    NOH_ASSERT(count <= NOH_GROUND_RAYS_MAX);
+    for (uint32_t i = 0; i < count; i++) {
+        hits[i] = (noh_world_hit){ -1.0f, { 0.0f, 1.0f, 0.0f } };
+        if (!ground->below) continue;
+        const float depth = rays[i].distance_max;
+        const float distance = ground->below(ground->user, rays[i].from, depth, hits[i].normal);
+        hits[i].distance = distance >= 0.0f && distance <= depth ? distance : -1.0f;
+    }
+    if (ground->below || !w || !count) return;
+    for (uint32_t i = 0; i < count; i++) asked[i] = (noh_world_ray){ { 0.0f, 0.0f, 0.0f }, rays[i] };
+    noh_world_ask_rays(w, asked, count, hits);
+    for (uint32_t i = 0; i < count; i++) {
+        nearest n = look_at_shapes(w, &rays[i]);
+        take(&n, hits[i].distance, hits[i].normal);
+        hits[i].distance = n.distance;
+        memcpy(hits[i].normal, n.normal, sizeof n.normal);
+    }
+}
+
 float noh_ground_below(const noh_ground *ground, const float from[3], float depth, float normal[3])
 {
     const noh_ray ray = { { from[0], from[1], from[2] }, { 0.0f, -1.0f, 0.0f }, depth };
-    nearest n = { -1.0f, { 0.0f, 1.0f, 0.0f } };
-    const noh_world *w = ground->world;
+    noh_world_hit hit;
     NOH_ASSERT(depth >= 0.0f);
-    if (ground->below) {
-        const float distance = ground->below(ground->user, from, depth, normal);
-        return distance >= 0.0f && distance <= depth ? distance : -1.0f;
-    }
-    for (uint32_t i = 0; w && i < w->plane_count; i++) take_plane(&n, &ray, &w->planes[i]);
-    for (uint32_t i = 0; w && i < w->box_count; i++) take_box(&n, &ray, &w->boxes[i]);
-    for (uint32_t i = 0; w && i < w->capsule_count; i++) take_capsule(&n, &ray, &w->capsules[i]);
-    if (w && w->field) take_field(&n, &ray, w->field);
-    memcpy(normal, n.normal, sizeof n.normal);
-    return n.distance;
+    noh_ground_below_all(ground, &ray, 1, &hit);
+    memcpy(normal, hit.normal, sizeof hit.normal);
+    return hit.distance;
 }

@@ -49,6 +49,15 @@ typedef struct noh_feet_place {
 void noh_feet_step(noh_feet *feet, const noh_feet_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
                    const noh_feet_place *place, const noh_ground *ground, float seconds, int cut);
 
+/* ---- the ground ---- */
+
+#define NOH_GROUND_RAYS_MAX 18u /* of one sole: below its points and between them */
+
+/* noh_ground_below for rays that go straight down; one question to the physics of the ground's world.
+ * shapes  rays[count] with direction 0, -1, 0; hits[count]: distance below 0: no ground
+ * ranges  count 0..NOH_GROUND_RAYS_MAX */
+void noh_ground_below_all(const noh_ground *ground, const noh_ray *rays, uint32_t count, noh_world_hit *hits);
+
 /* ---- feet ---- */
 
 /* Move the origin of the world: all positions p become p - by. */

@@ -46,6 +46,12 @@ static uint32_t standing_legs(const noh_modifier_work *w, const noh_feet_rig *ri
     return side_of(w, rig->legs[0].foot) > side_of(w, rig->legs[1].foot) ? bits : bits >> 1 | (bits & 1u) << 1;
 }
 
+/* Whether the jobs of its stage may ask a world: one that answers a single thread is not asked by several. */
+static int may_ask(const noh_modifier_work *w, const noh_world *world)
+{
+    return !world || !world->physics || world->physics->threads || w->stage->desc.job_count == 1u;
+}
+
 void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet *f, float seconds, int cut)
 {
     const home_ground from = { &f->ground, w->home };
@@ -53,6 +59,7 @@ void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet
     const int is_home = w->home[0] == 0.0 && w->home[1] == 0.0 && w->home[2] == 0.0;
     noh_feet_place place;
     if (noh_modifier_home_moved(w)) noh_feet_shift(feet, w->home_moved);
+    if (!may_ask(w, f->ground.world)) return;
     memcpy(place.position, w->near_place, sizeof place.position);
     memcpy(place.rotation, w->place.rotation, sizeof place.rotation);
     place.scale = w->place.scale;

@@ -18,6 +18,7 @@
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
 /* ---- made ---- */
@@ -40,10 +41,15 @@ static uint32_t hash(const noh_kind_desc *d, const void *desc)
     return ((const noh_kind_ragdoll *)desc)->count;
 }
 
-static void *carve(noh_arena *arena)
+static uint32_t asks(const noh_kind_ragdoll *desc)
+{
+    return desc->world && noh_world_asks(desc->world) ? 1u : 0u;
+}
+
+static void *carve(noh_arena *arena, const noh_kind_ragdoll *desc)
 {
     (void)noh_arena_carve(arena, sizeof(noh_stage_ragdoll_kind), 16);
-    return noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS * sizeof(float) + 32u, 16);
+    return noh_arena_carve(arena, NOH_RAGDOLL_SCRATCH_FLOATS(asks(desc)) * sizeof(float) + 32u, 16);
 }
 
 static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_stage_needs *n, noh_module_needs *needs,
@@ -51,7 +57,7 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
 {
     noh_arena arena = noh_arena_measure();
     (void)d, (void)n, (void)error;
-    (void)carve(&arena);
+    (void)carve(&arena, desc);
     needs->kind_bytes = arena.used;
     needs->actor_bytes = sizeof(noh_stage_body);
     needs->pool_bytes = noh_ragdolls_state_size(((const noh_kind_ragdoll *)desc)->count);
@@ -99,11 +105,12 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     r->world = from->world;
     r->count = from->count;
     r->dolls = k->modules[NOH_SLOT_BODY].pool;
-    scratch = carve(&arena);
+    scratch = carve(&arena, from);
     r->scratch = (float *)(void *)(scratch + (32u - (uintptr_t)scratch % 32u) % 32u);
     dolls.rig = &r->rig;
     dolls.count = from->count;
     dolls.substeps = from->substeps;
+    dolls.asks = r->asks = asks(from);
     (void)noh_ragdolls_begin(r->dolls, &dolls);
     return NOH_OK;
 }
@@ -261,7 +268,7 @@ static void step(noh_stage_kind *k, uint32_t ticks)
 {
     const noh_stage_ragdoll_kind *r = noh_stage_ragdoll_kind_of(k);
     tell_dolls(k);
-    (void)noh_ragdolls_step_with(r->dolls, r->world, ticks, r->scratch);
+    (void)noh_ragdolls_step_with(r->dolls, r->world, ticks, r->scratch, r->asks);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive) continue;

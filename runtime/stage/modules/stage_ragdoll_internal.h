@@ -72,8 +72,9 @@ typedef struct noh_stage_ragdoll_kind {
     noh_feet_rig legs;
     noh_stage_parts parts;
     uint32_t count;      /* of `dolls` */
+    uint32_t asks;       /* 1: there is room for answers of the physics of `world` */
     noh_ragdolls *dolls; /* state of all actors together: of those that fall at once */
-    float *scratch;      /* [NOH_RAGDOLL_SCRATCH_FLOATS] aligned to 32 */
+    float *scratch;      /* [NOH_RAGDOLL_SCRATCH_FLOATS(asks)] aligned to 32 */
 } noh_stage_ragdoll_kind;
 
 /* NULL: the kind has no ragdolls. */

@@ -31,7 +31,7 @@ static void the_nearest_obstacle_is_the_ground(void **state)
     const noh_plane planes[2] = { { { 0.0f, 1.0f, 0.0f }, -1.0f }, { { 1.0f, 0.0f, 0.0f }, -50.0f } };
     const noh_obb box = { { 0.0f, 0.0f, 0.0f }, { 1.0f, 0.5f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
     const noh_capsule ball = { { 5.0f, 0.0f, 0.0f }, { 5.0f, 0.0f, 0.0f }, 1.0f };
-    noh_world w = { planes, &ball, &box, 2, 1, 1, &field, 0.0f, 0.0f };
+    noh_world w = { planes, &ball, &box, 2, 1, 1, &field, 0.0f, 0.0f, NULL };
     float n[3];
     (void)state;
     assert_true(fabsf(below(&w, 0.2f, 2.0f, 0.1f, 9.0f, n) - 1.5f) < 1e-6f && n[1] > 0.9999f);
@@ -174,7 +174,7 @@ static void each_foot_has_its_own_ground(void **state)
     static stood s;
     const noh_plane floor = { { 0.0f, 1.0f, 0.0f }, 0.0f };
     const noh_obb block = { { 5.0f, 0.0f, 0.0f }, { 5.0f, 0.2f, 5.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
-    const noh_world w = { &floor, NULL, &block, 1, 0, 1, NULL, 0.0f, 0.0f };
+    const noh_world w = { &floor, NULL, &block, 1, 0, 1, NULL, 0.0f, 0.0f, NULL };
     const noh_ground ground = { &w, NULL, NULL };
     float p[3];
     (void)state;

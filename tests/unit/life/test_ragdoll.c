@@ -111,7 +111,7 @@ static noh_ragdoll_rig figure_rig(void)
 
 static noh_ragdolls *made(const noh_ragdoll_rig *rig, uint32_t count, uint32_t substeps)
 {
-    const noh_ragdolls_desc desc = { rig, count, substeps };
+    const noh_ragdolls_desc desc = { rig, count, substeps, 0 };
     noh_ragdolls *set;
     void *memory = malloc(noh_ragdolls_size(&desc));
     assert_int_equal(noh_ragdolls_init(memory, noh_ragdolls_size(&desc), &desc, &set, NULL), NOH_OK);
@@ -538,7 +538,7 @@ static uint32_t hash_by(step_dolls step, const noh_ragdoll_rig *rig)
     const noh_capsule post = { { 0.2f, 0.0f, 0.1f }, { 0.2f, 1.5f, 0.1f }, 0.2f };
     const noh_obb box = { { -0.3f, 0.4f, 0.0f }, { 0.3f, 0.4f, 0.5f }, { 0.0f, 0.38268343f, 0.0f, 0.92387953f } };
     const noh_field field = { heights, 4, 4, { -6.0f, 0.1f, -6.0f }, 4.0f, 1.0f };
-    const noh_world world = { &ground, &post, &box, 1, 1, 1, &field, 0.6f, 0.3f };
+    const noh_world world = { &ground, &post, &box, 1, 1, 1, &field, 0.6f, 0.3f, NULL };
     noh_ragdolls *set = thrown_set(rig, 8);
     noh_ragdoll_doll *dolls[8];
     for (uint32_t d = 0; d < 8; d++) {
@@ -571,7 +571,7 @@ static void every_width_gives_the_same_bits(void **state)
 static void a_copy_goes_on(void **state)
 {
     const noh_ragdoll_rig rig = figure_rig();
-    const noh_ragdolls_desc desc = { &rig, 5, 10 };
+    const noh_ragdolls_desc desc = { &rig, 5, 10, 0 };
     const noh_world world = ground_world(0.6f);
     (void)state;
     noh_ragdolls *set = thrown_set(&rig, 5), *alone = thrown_set(&rig, 1);
@@ -963,7 +963,7 @@ static void a_ball_bounces(void **state)
 static void bad_rigs_are_refused(void **state)
 {
     noh_ragdoll_rig rig = figure_rig();
-    noh_ragdolls_desc desc = { &rig, 1, 10 };
+    noh_ragdolls_desc desc = { &rig, 1, 10, 0 };
     noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
     noh_error error;
     (void)state;

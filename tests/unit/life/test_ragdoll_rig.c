@@ -47,7 +47,7 @@ static void zero_is_the_bind_pose(void **state)
         skin_asset_open(&a, assets[i], NULL);
         const noh_ragdoll_source s = source_of(&a.pack);
         const noh_ragdoll_rig rig = rig_of(&s);
-        const noh_ragdolls_desc desc = { &rig, 1, 10 };
+        const noh_ragdolls_desc desc = { &rig, 1, 10, 0 };
         noh_ragdoll_measures m;
         noh_ragdolls *set;
         void *memory = malloc(noh_ragdolls_size(&desc));
@@ -246,7 +246,7 @@ static fall let_fall(const noh_ragdoll_rig *rig, float scale, int steps)
 {
     const noh_plane floor = { { 0.0f, 1.0f, 0.0f }, 0.0f };
     const noh_world world = { .planes = &floor, .plane_count = 1, .friction = 0.6f };
-    const noh_ragdolls_desc desc = { rig, DOLLS, 10 };
+    const noh_ragdolls_desc desc = { rig, DOLLS, 10, 0 };
     fall f = { .asleep = 0.0f };
     noh_ragdolls *set;
     void *memory = malloc(noh_ragdolls_size(&desc));

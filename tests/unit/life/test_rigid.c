@@ -2,6 +2,7 @@
  * every kind of obstacle; overlaps; the same far away and in any pieces of time; point masses.
  * cross: slow, minutes of flight */
 #include "life/physics/rigid_internal.h"
+#include "life/physics/shape_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"

@@ -120,7 +120,7 @@ static void throw_doll(drop_scene *s, uint32_t doll, uint32_t *state)
 int drop_scene_open(drop_scene *s, const pack_file *file, uint32_t dolls, double seconds, uint32_t substeps,
                     uint32_t seed)
 {
-    const noh_ragdolls_desc desc = { &s->rig, dolls, substeps };
+    const noh_ragdolls_desc desc = { &s->rig, dolls, substeps, 0 };
     noh_error error = { NOH_OK, "", 0, 0 };
     uint32_t state = seed * 2654435761u + 0x9e3779b9u;
     int status;
