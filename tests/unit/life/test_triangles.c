@@ -150,7 +150,7 @@ static void rays_enter_the_first_front(void **state)
     const noh_world world = { .physics = &physics };
     uint32_t hits = 0;
     (void)state;
-    for (int i = 0; i < 4000; i++) {
+    for (int i = 0; i < 2500; i++) {
         noh_world_ray r = { { 1.0f, -2.0f, 3.0f }, { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, 30.0f } };
         noh_world_hit hit;
         double margin;
@@ -169,7 +169,7 @@ static void rays_enter_the_first_front(void **state)
             fail_msg("ray %d: %g, not %g", i, (double)hit.distance, far);
         hits += far > 0.0;
     }
-    assert_true(hits > 500);
+    assert_true(hits > 300);
     free(memory);
 }
 
@@ -182,7 +182,7 @@ static void balls_touch_the_nearest(void **state)
     const noh_world world = { .physics = &physics };
     uint32_t touched = 0, alone = 0;
     (void)state;
-    for (int i = 0; i < 6000; i++) {
+    for (int i = 0; i < 3500; i++) {
         noh_world_body body = { { 2.0f, 1.0f, -1.0f }, { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, 0.1f }, 0.15f };
         noh_touches t;
         float nearest = 1e9f;
@@ -209,7 +209,7 @@ static void balls_touch_the_nearest(void **state)
         if (fabs((double)nearest - brute) > 2e-5) fail_msg("ball %d: %g, not %g", i, (double)nearest, brute);
         touched++;
     }
-    assert_true(touched > 300 && alone > 300);
+    assert_true(touched > 150 && alone > 150);
     free(memory);
 }
 
@@ -281,6 +281,69 @@ static void bodies_rest_on_triangles(void **state)
     }
 }
 
+/* Pairs of bodies thrown down at 5 to 30 m/s end on the terrain and in no lump. */
+static void nothing_falls_through(void **state)
+{
+    static const float still[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    const noh_triangles_desc triangles = lay_lumps();
+    noh_world_physics physics;
+    void *tree = made(&triangles, &physics), *memory;
+    const noh_world world = { .friction = 0.8f, .physics = &physics };
+    noh_ragdoll_rig rig;
+    const noh_ragdolls_desc desc = { &rig, 48, 10, 1 };
+    noh_ragdolls *set;
+    float deepest = 0.0f;
+    (void)state;
+    memset(&rig, 0, sizeof rig);
+    rig.body_count = 2;
+    for (uint32_t i = 0; i < 2; i++) {
+        rig.bodies[i] = (noh_ragdoll_body){
+            i ? 0 : NOH_NONE,          0, 0.15f, 0.06f, 5.0f, 0.06f, 0.01f, { 0.0f, 0.0f, 0.4f * (float)i },
+            { 0.0f, 0.0f, 0.0f, 1.0f }
+        };
+        rig.joints[i].flags = NOH_RAGDOLL_LOOSE;
+        rig.joints[i].anchor[2] = 0.2f;
+        memcpy(rig.joints[i].frame, still, sizeof still);
+    }
+    memory = malloc(noh_ragdolls_size(&desc));
+    assert_int_equal(noh_ragdolls_init(memory, noh_ragdolls_size(&desc), &desc, &set, NULL), NOH_OK);
+    for (uint32_t d = 0; d < 48; d++) {
+        noh_ragdoll_pose poses[2];
+        noh_ragdoll_motion motions[2];
+        memset(motions, 0, sizeof motions);
+        noh_ragdoll_bodies(set, d, poses);
+        for (uint32_t i = 0; i < 2; i++) {
+            poses[i].position[0] += -2.0f + 0.5f * (float)(d % 8u);
+            poses[i].position[1] += 9.0f;
+            poses[i].position[2] += -2.0f + 0.7f * (float)(d / 8u);
+            motions[i].velocity[1] = -5.0f * (float)(d % 6u + 1u);
+            motions[i].spin[0] = (float)d * 0.1f;
+        }
+        assert_int_equal(noh_ragdoll_place(set, d, poses, motions, NULL), NOH_OK);
+    }
+    for (int f = 0; f < 200; f++) {
+        noh_ragdolls_step(set, &world, NOH_RAGDOLL_STEP_TICKS);
+        for (uint32_t d = 0; d < 48; d++) {
+            noh_ragdoll_pose poses[2];
+            noh_ragdoll_bodies(set, d, poses);
+            for (int i = 0; i < 2; i++) { /* some go over its rim */
+                const float *at = poses[i].position, rim = 0.5f * CELL * (float)SIDE - 0.6f;
+                if (fabsf(at[0]) < rim && fabsf(at[2]) < rim && at[1] < 0.0f && at[1] > -1.0f)
+                    fail_msg("%u, frame %d", d, f);
+            }
+        }
+    }
+    for (uint32_t d = 0; d < 48; d++) {
+        noh_ragdoll_measures m;
+        noh_ragdoll_measure(set, d, &world, &m);
+        deepest = fmaxf(deepest, m.penetration);
+    }
+    print_message("the deepest body is %.1f mm inside\n", 1e3 * (double)deepest);
+    assert_true(deepest < 0.01f);
+    free(memory);
+    free(tree);
+}
+
 static void bad_triangles_are_refused(void **state)
 {
     noh_triangles_desc desc = lay_terrain(0.1f, 0.0f, 0.0f);
@@ -301,9 +364,13 @@ static void bad_triangles_are_refused(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(rays_enter_the_first_front),       cmocka_unit_test(balls_touch_the_nearest),
-    cmocka_unit_test(edges_count_where_they_stick_out), cmocka_unit_test(who_is_behind_is_led_out),
-    cmocka_unit_test(bodies_rest_on_triangles),         cmocka_unit_test(bad_triangles_are_refused),
+    cmocka_unit_test(rays_enter_the_first_front),
+    cmocka_unit_test(balls_touch_the_nearest),
+    cmocka_unit_test(edges_count_where_they_stick_out),
+    cmocka_unit_test(who_is_behind_is_led_out),
+    cmocka_unit_test(nothing_falls_through),
+    cmocka_unit_test(bodies_rest_on_triangles),
+    cmocka_unit_test(bad_triangles_are_refused),
 };
 
 TEST_MAIN(tests, NULL, NULL)
