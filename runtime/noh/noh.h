@@ -90,7 +90,8 @@ typedef struct noh_lod_settings {
  *            noh_stage_list_draws, noh_actor_detail_of, noh_stage_pick
  *   frame    noh_stage_frame; or its pieces noh_stage_step, noh_stage_frame_begin or noh_stage_frame_between,
  *            noh_stage_jobs, noh_stage_job, noh_stage_frame_end; noh_stage_events
- *   levels   noh_stage_load_level, noh_stage_drop_level
+ *   levels   noh_stage_load_level
+ *   kinds    noh_stage_set_kind
  *   state    noh_stage_state, noh_stage_set_state, noh_stage_hash
  *
  * noh_gl.h draws a stage. A program that does not name noh_stage_on_gl links no GL code: a server can step and pose
@@ -203,6 +204,14 @@ typedef struct noh_kind_desc {
     uint32_t cover_count; /* most sets of garments worn at one time, 0..255, whose hidden triangles (noh build --wear)
                            * are left out of its meshes, at the bytes of their indices for each. An actor with another
                            * set is drawn whole. Without GPU, and for meshes with `finer`, none. Default (0) none */
+    /* 1: its index is a slot: noh_stage_set_kind takes the kind out while the stage runs, and puts others in. The plan
+     * reserves room for the largest of this kind and `others`, keeps it whole under bounds, and the slot shares no clips
+     * with other kinds. Only of a stage without `gpu`. Default (0): the kind stays */
+    int changes;
+    int absent;                         /* with `changes`: 1: the slot is empty after init; this kind only sizes it */
+    const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes, absent and others are
+                                         * ignored. Read by plans, not kept. Default (NULL) none */
+    uint32_t other_count;
 } noh_kind_desc;
 
 struct noh_gl_light_desc;
@@ -277,6 +286,15 @@ typedef struct noh_kind_clips {
     uint32_t asked; /* cached segments that it was computed for */
 } noh_kind_clips;
 
+/* What the slot of a kind that changes has room for: the largest of each, over all kinds that it was planned for. */
+typedef struct noh_kind_room {
+    uint64_t actor_count, joint_count, skin_joint_count; /* of the skeleton; of the largest skin */
+    uint64_t state_bytes, kind_bytes;                    /* in the state; of the rest of the kind, with its clips */
+    uint64_t view_bytes;                                 /* of its clips' views, for each job */
+    uint64_t scratch_bytes, module_scratch_bytes;        /* for each job, shared by all kinds */
+    uint64_t pick_bytes, inertia_bytes;                  /* shared by all kinds */
+} noh_kind_room;
+
 /* The plan of a kind. */
 typedef struct noh_kind_plan {
     uint32_t mesh_count, level_count, finest_level;
@@ -284,6 +302,7 @@ typedef struct noh_kind_plan {
     uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
     noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
+    noh_kind_room room; /* of a kind that changes; otherwise 0 */
 } noh_kind_plan;
 
 /* A reduction made to keep a bound. */
@@ -295,7 +314,7 @@ typedef struct noh_concession {
     uint64_t cpu_bytes, gpu_bytes; /* bytes saved */
 } noh_concession;
 
-/* Plain data, 8 KiB, that can be printed, compared and stored with the build. */
+/* Plain data, 10 KiB, that can be printed, compared and stored with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
     uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts */
@@ -784,17 +803,27 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
  * plan, and they fade in. Memory was reserved at init. Kinds of the same `mesh` and `finer` share their levels: loading
  * them for one kind loads them for all. Picking uses the levels of `mesh`. Loading the same pack again is no error.
  * pack    `finer`, or any pack with the same levels. The pack and its bytes must stay valid until the levels are
- *         dropped or the stage is deleted: faces and noh_stage_restore read them
+ *         dropped or the stage is deleted: faces and noh_stage_restore read them. NULL: drop the levels that were
+ *         loaded or are loading: from the next frame on their actors are drawn coarser, without a fade. The pack is no
+ *         longer read; its GPU memory stays reserved, as planned. Until the next frame noh_actor_mesh_at may still
+ *         return these levels
  * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no `finer`, or the plan none of its
  *         levels; DATA a mesh of the kind was not stripped from its mesh in `pack`, or `pack` has too few levels
  *         (where: the mesh). Nothing has then changed */
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
 
-/* Drop the levels that noh_stage_load_level loaded or is still loading: from the next frame on their actors are drawn
- * coarser, without a fade. The pack is no longer read. Its GPU memory stays reserved, as planned. Until the next frame
- * noh_actor_mesh_at may still return these levels.
- * errors  ARG kind, or called during a frame or a step */
-noh_result noh_stage_drop_level(noh_stage *stage, uint32_t kind, noh_error *error);
+/* ---- kinds that change ---- */
+
+/* Put a kind into an empty slot (noh_kind_desc.changes), or empty the slot. Everything else stays where it is, and what
+ * runs goes on with the same bits; the kind then equals one that was there from init. The state holds which kinds are
+ * in the slots, and is restored only where they are the same. Ids of its former actors stay gone.
+ * kind    the index of the slot
+ * desc    as in noh_stage_desc.kinds; any kind that fits, planned for or not. NULL: empty the slot. No actor may be of
+ *         its kind, and no hair, walkers or other objects that were made for it may be used any more
+ * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
+ *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
+ *         where: what there is); as noh_stage_init. The slot is then as it was */
+noh_result noh_stage_set_kind(noh_stage *stage, uint32_t kind, const noh_kind_desc *desc, noh_error *error);
 
 /* ---- state ---- */
 

@@ -166,7 +166,7 @@ static void load(act *a, const noh_pack packs[FEW])
 
 static void drop(act *a)
 {
-    for (uint32_t k = 0; k < FEW; k++) assert_int_equal(noh_stage_drop_level(a->c.stage, k, NULL), NOH_OK);
+    for (uint32_t k = 0; k < FEW; k++) assert_int_equal(noh_stage_load_level(a->c.stage, k, NULL, NULL), NOH_OK);
 }
 
 static void lose(gpu *g)
@@ -432,7 +432,7 @@ static void frames_make_nothing(void **state)
                 loaded++;
             }
             if (test_random_below(&r, 60) == 0) {
-                assert_int_equal(noh_stage_drop_level(a.c.stage, kind, NULL), NOH_OK);
+                assert_int_equal(noh_stage_load_level(a.c.stage, kind, NULL, NULL), NOH_OK);
                 dropped++;
             }
             frame(&a, f, test_random_below(&r, 10) == 0);
@@ -485,7 +485,7 @@ static void kinds_share_their_levels(void **state)
     } while (noh_stage_stats_of(a.c.stage)->loading);
     frame(&a, 1, 1);
     assert_int_equal(finest_shown(&a), 0);
-    assert_int_equal(noh_stage_drop_level(a.c.stage, 1, NULL), NOH_OK);
+    assert_int_equal(noh_stage_load_level(a.c.stage, 1, NULL, NULL), NOH_OK);
     frame(&a, 2, 0);
     assert_int_equal(finest_shown(&a), coarse);
     close_act(&a);
@@ -539,11 +539,11 @@ static void other_packs_are_refused(void **state)
         expect_refused(&a, &none, NOH_ERR_DATA);
         assert_int_equal(noh_stage_load_level(a.c.stage, TUBES, &a.c.packs[TUBES], &error), NOH_ERR_UNSUPPORTED);
         assert_int_equal(noh_stage_load_level(a.c.stage, 9, &a.c.packs[MASKS], &error), NOH_ERR_ARG);
-        assert_int_equal(noh_stage_drop_level(a.c.stage, 9, &error), NOH_ERR_ARG);
-        assert_int_equal(noh_stage_drop_level(a.c.stage, TUBES, &error), NOH_OK);
+        assert_int_equal(noh_stage_load_level(a.c.stage, 9, NULL, &error), NOH_ERR_ARG);
+        assert_int_equal(noh_stage_load_level(a.c.stage, TUBES, NULL, &error), NOH_OK);
         assert_int_equal(noh_stage_frame_begin(a.c.stage, NULL, 0, NULL), NOH_OK);
         assert_int_equal(noh_stage_load_level(a.c.stage, MASKS, &a.c.packs[MASKS], &error), NOH_ERR_ARG);
-        assert_int_equal(noh_stage_drop_level(a.c.stage, MASKS, &error), NOH_ERR_ARG);
+        assert_int_equal(noh_stage_load_level(a.c.stage, MASKS, NULL, &error), NOH_ERR_ARG);
         assert_int_equal(noh_stage_frame_end(a.c.stage, NULL), NOH_OK);
     }
     free(shorter.bytes);

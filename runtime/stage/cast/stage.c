@@ -12,20 +12,19 @@
 
 /* ---- actors, all free ---- */
 
-static void open_actors(noh_stage *s, uint32_t kind)
+void noh_stage_open_actors(noh_stage *s, uint32_t kind)
 {
     noh_stage_kind *k = &s->kinds[kind];
     noh_stage_free *f = &s->head->kinds[kind];
-    k->actors = s->actors + k->first_actor;
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
-        k->actors[i].generation = 1;
+        if (!k->actors[i].generation) k->actors[i].generation = 1;
         k->actors[i].next_free = i + 1u < k->desc->actor_count ? i + 2u : 0;
     }
     f->first = 1;
     f->last = k->desc->actor_count;
 }
 
-static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error)
+noh_result noh_stage_open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error)
 {
     noh_stage_kind *k = &s->kinds[kind];
     uint32_t levels[NOH_LOD_LEVELS_MAX], slots[NOH_LOD_LEVELS_MAX];
@@ -36,22 +35,46 @@ static noh_result open_pools(noh_stage *s, uint32_t kind, void *memory, noh_erro
 
 /* ---- jobs ---- */
 
-static noh_result open_views(noh_stage *s, const noh_stage_blocks *b, noh_error *error)
+static size_t aligned(size_t bytes)
 {
-    noh_result result = NOH_OK;
-    for (uint32_t j = 0; j < s->desc.job_count && result == NOH_OK; j++) {
-        uint8_t *at = b->views + j * b->views_bytes;
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
+static void open_jobs(noh_stage *s, const noh_stage_blocks *b)
+{
+    for (uint32_t j = 0; j < s->desc.job_count; j++) {
         memset(&s->jobs[j], 0, sizeof s->jobs[j]);
         s->jobs[j].scratch = b->scratch + j * b->scratch_bytes;
         s->jobs[j].matrices = b->matrices + j * b->matrices_floats;
         s->jobs[j].wearer = b->wearers + j * (size_t)b->wearer_joints;
         s->jobs[j].module_scratch = b->module_scratch_bytes ? b->module_scratch + j * b->module_scratch_bytes : NULL;
-        for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
-            if (s->kinds[i].bank && s->kinds[i].bank_kind == i) {
-                const size_t bytes = noh_clip_bank_view_size(s->kinds[i].bank);
-                result = noh_clip_bank_view_init(at, bytes, s->kinds[i].bank, &s->jobs[j].views[i], error);
-                at += (bytes + 15u) & ~(size_t)15u;
-            }
+    }
+}
+
+noh_result noh_stage_open_views(noh_stage *s, uint32_t kind, uint8_t *at, size_t stride, noh_error *error)
+{
+    const noh_stage_kind *k = &s->kinds[kind];
+    noh_result result = NOH_OK;
+    for (uint32_t j = 0; j < s->desc.job_count && result == NOH_OK && k->bank && k->bank_kind == kind; j++) {
+        result = noh_clip_bank_view_init(at + j * stride, noh_clip_bank_view_size(k->bank), k->bank,
+                                         &s->jobs[j].views[kind], error);
+    }
+    return result;
+}
+
+/* The views of each kind's clips lie one after another. */
+static noh_result open_all_views(noh_stage *s, const noh_stage_blocks *b, noh_error *error)
+{
+    uint8_t *at = b->views;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
+        const noh_stage_kind *k = &s->kinds[i];
+        if (s->slots && s->slots->of[i].own) {
+            s->slots->of[i].views = at;
+            at += (size_t)s->plan->kinds[i].room.view_bytes;
+        } else if (k->bank && k->bank_kind == i) {
+            result = noh_stage_open_views(s, i, at, b->views_bytes, error);
+            at += aligned(noh_clip_bank_view_size(k->bank));
         }
     }
     return result;
@@ -65,9 +88,13 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     memset(s, 0, sizeof *s);
     s->desc = noh_stage_desc_filled(desc);
     noh_stage_desc_by_plan(&s->desc, plan);
-    s->plan = plan;
+    s->slots = b->slots;
+    if (s->slots) s->slots->plan = *plan;
+    if (s->slots) s->slots->views_bytes = b->views_bytes;
+    s->plan = s->slots ? &s->slots->plan : plan;
     s->kinds = b->kinds;
     s->kind_descs = b->kind_descs;
+    memset(s->kind_descs, 0, desc->kind_count * sizeof *s->kind_descs);
     s->head = b->head;
     s->state = (uint8_t *)b->head;
     s->state_bytes = b->state_bytes;
@@ -87,7 +114,9 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         s->kinds[i].desc = &s->kind_descs[i];
         s->kinds[i].first_actor = s->actor_count;
-        s->actor_count += desc->kinds[i].actor_count;
+        s->kinds[i].actors = s->actors + s->actor_count;
+        s->actor_count += desc->kinds[i].changes ? (uint32_t)plan->kinds[i].room.actor_count
+                                                 : desc->kinds[i].actor_count;
     }
 }
 
@@ -99,9 +128,10 @@ static noh_result open_kinds(noh_stage *s, const noh_stage_desc *desc, const noh
     s->head->magic = NOH_STAGE_MAGIC;
     s->head->hash = s->plan->hash;
     for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
-        result = noh_stage_open_kind(s, desc, i, b, error);
-        if (result == NOH_OK) result = open_pools(s, i, b->pools[i], error);
-        if (result == NOH_OK) open_actors(s, i);
+        if (desc->kinds[i].changes) continue;
+        result = noh_stage_open_kind(s, desc, i, &b->of[i], error);
+        if (result == NOH_OK) result = noh_stage_open_pools(s, i, b->of[i].pools, error);
+        if (result == NOH_OK) noh_stage_open_actors(s, i);
     }
     return result;
 }
@@ -112,10 +142,12 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     noh_stage *s = b->stage;
     noh_result result;
     adopt(desc, plan, b);
+    open_jobs(s, b);
     result = open_kinds(s, desc, b, error);
     s->desc.kinds = s->kind_descs;
-    if (result == NOH_OK) noh_stage_open_worn(s);
-    if (result == NOH_OK) result = open_views(s, b, error);
+    if (result == NOH_OK) result = open_all_views(s, b, error);
+    if (result == NOH_OK) noh_stage_open_worn(s, NOH_NONE);
+    if (result == NOH_OK && s->slots) result = noh_stage_open_slots(s, desc, error);
     if (result == NOH_OK) {
         result = noh_schedule_init(b->schedule, noh_schedule_size(s->actor_count), s->actor_count, &s->schedule, error);
     }
@@ -135,6 +167,7 @@ static noh_result check_clips(const noh_stage_desc *desc, const noh_stage_plan *
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         const uint32_t owner = noh_stage_bank_kind(desc, i);
         noh_kind_clips clips = plan->kinds[owner].clips;
+        if (desc->kinds[i].changes) continue; /* measured when it comes */
         if (owner == i) result = noh_stage_measure_clips(desc, plan, i, &clips, error);
         if (result == NOH_OK && memcmp(&clips, &plan->kinds[i].clips, sizeof clips) != 0) {
             result = of_another_desc(plan, error);

@@ -29,7 +29,7 @@ noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index)
 noh_stage_kind *noh_stage_kind_of(const noh_stage *s, uint32_t index)
 {
     uint32_t k = 0;
-    while (index - s->kinds[k].first_actor >= s->kinds[k].desc->actor_count) k++;
+    while (k + 1u < s->desc.kind_count && index >= s->kinds[k + 1u].first_actor) k++;
     return &s->kinds[k];
 }
 
@@ -265,6 +265,7 @@ static noh_result make_character(noh_stage_kind *k, uint32_t index, int64_t cloc
 static const char *cannot_spawn(const noh_stage *s, uint32_t kind)
 {
     if (kind >= s->desc.kind_count) return "no such kind";
+    if (!s->kinds[kind].pools) return "the slot of the kind is empty: noh_stage_set_kind fills it";
     return s->phase != NOH_STAGE_IDLE ? "cannot spawn during a step or a frame" : NULL;
 }
 

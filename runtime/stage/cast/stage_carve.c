@@ -219,12 +219,23 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 /* What the other functions need to know of all kinds together. */
 typedef struct widest {
     size_t scratch_bytes, module_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
-    uint32_t skin_joints, wearer_joints, actors;
+    uint32_t skin_joints, wearer_joints, actors, slot_count;
 } widest;
 
 static size_t aligned(size_t bytes)
 {
     return (bytes + 15u) & ~(size_t)15u;
+}
+
+static int is_wearer(const noh_stage_desc *desc, uint32_t kind)
+{
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        const noh_kind_desc *d = &desc->kinds[i];
+        uint32_t worn_by = d->worn_by;
+        for (uint32_t o = 0; d->changes && o < d->other_count; o++) worn_by |= d->others[o].worn_by;
+        if (worn_by >> kind & 1u) return 1;
+    }
+    return 0;
 }
 
 static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const noh_stage_needs *n)
@@ -234,12 +245,26 @@ static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const
     if (n->pick_bytes > most->pick_bytes) most->pick_bytes = n->pick_bytes;
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
-    for (uint32_t i = 0; i < desc->kind_count; i++) {
-        if (desc->kinds[i].worn_by >> kind & 1u && n->shape.joint_count > most->wearer_joints)
-            most->wearer_joints = n->shape.joint_count;
-    }
+    if (n->shape.joint_count > most->wearer_joints && is_wearer(desc, kind)) most->wearer_joints = n->shape.joint_count;
     most->views_bytes += aligned(n->view_bytes);
     most->actors += desc->kinds[kind].actor_count;
+}
+
+static size_t larger(size_t a, uint64_t b)
+{
+    return a > b ? a : (size_t)b;
+}
+
+static void widen_by_room(widest *most, const noh_stage_desc *desc, uint32_t kind, const noh_kind_room *room)
+{
+    most->scratch_bytes = larger(most->scratch_bytes, room->scratch_bytes);
+    most->module_scratch_bytes = larger(most->module_scratch_bytes, room->module_scratch_bytes);
+    most->pick_bytes = larger(most->pick_bytes, room->pick_bytes);
+    most->inertia_bytes = larger(most->inertia_bytes, room->inertia_bytes);
+    most->skin_joints = (uint32_t)larger(most->skin_joints, room->skin_joint_count);
+    if (is_wearer(desc, kind)) most->wearer_joints = (uint32_t)larger(most->wearer_joints, room->joint_count);
+    most->views_bytes += (size_t)room->view_bytes;
+    most->actors += (uint32_t)room->actor_count;
 }
 
 static void carve_state(noh_arena *arena, const noh_kind_desc *d, const noh_stage_needs *n, noh_stage_kind *k,
@@ -288,6 +313,7 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     b->stage = CARVE(arena, 1, noh_stage);
     b->kinds = CARVE(arena, filled->kind_count, noh_stage_kind);
     b->kind_descs = CARVE(arena, filled->kind_count, noh_kind_desc);
+    if (most->slot_count) b->slots = CARVE(arena, 1, noh_stage_slots);
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
     b->by_distance = CARVE(arena, filled->sort_blended ? most->actors : 0, noh_stage_far);
@@ -320,7 +346,7 @@ static NOH_NEVER_INLINE void measure_state(noh_arena *arena, const noh_stage_des
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, i);
     noh_stage_kind kind;
-    carve_state(arena, &d, n, &kind, &b->pools[i]);
+    carve_state(arena, &d, n, &kind, &b->of[i].pools);
 }
 
 /* States of modules that are listed by themselves. */
@@ -350,7 +376,8 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
     size_t from = arena->used;
     memset(most, 0, sizeof *most);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        most->actors += desc->kinds[i].actor_count;
+        most->actors += desc->kinds[i].changes ? (uint32_t)plan->kinds[i].room.actor_count : desc->kinds[i].actor_count;
+        most->slot_count += desc->kinds[i].changes != 0;
     }
     b->head = CARVE(arena, 1, noh_stage_head);
     b->actors = CARVE(arena, most->actors, noh_stage_actor);
@@ -358,7 +385,14 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
     add(list, "actors", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         noh_stage_needs needs;
-        const noh_result result = noh_stage_measure_kind(desc, plan, i, &needs, error);
+        noh_result result;
+        if (desc->kinds[i].changes) {
+            (void)noh_arena_carve(arena, (size_t)plan->kinds[i].room.state_bytes, 16);
+            widen_by_room(most, desc, i, &plan->kinds[i].room);
+            add(list, "characters", i, arena, &from);
+            continue;
+        }
+        result = noh_stage_measure_kind(desc, plan, i, &needs, error);
         if (result != NOH_OK) {
             return result;
         }
@@ -395,7 +429,7 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
     size_t from = arena->used;
     memset(k, 0, sizeof *k);
     carve_shared(arena, &d, &plan->kinds[i], n, k);
-    b->lods[i] = noh_arena_carve(arena, n->lod_bytes, 16);
+    b->of[i].lod = noh_arena_carve(arena, n->lod_bytes, 16);
     carve_frame(arena, &d, n, k);
     add(list, "kind", i, arena, &from);
     for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
@@ -405,9 +439,72 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
         k->modules[slot].shared = noh_arena_carve(arena, n->modules[slot].kind_bytes, 16);
         if (m.type->kind_name) add(list, m.type->kind_name, i, arena, &from);
     }
-    b->banks[i] = noh_arena_carve(arena, n->bank_bytes, 16);
+    b->of[i].bank = noh_arena_carve(arena, n->bank_bytes, 16);
     add(list, "clips", i, arena, &from);
     if (*state) point_at_state(desc, n, i, state, k);
+}
+
+/* ---- slots ---- */
+
+/* Not inlined: a copy of all blocks lies on the stack. */
+NOH_NEVER_INLINE void noh_stage_room(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
+                                     const noh_stage_needs *n, noh_kind_room *room)
+{
+    noh_stage_blocks none;
+    noh_arena state = noh_arena_measure(), own = noh_arena_measure();
+    uint8_t *at = NULL;
+    memset(&none, 0, sizeof none);
+    measure_state(&state, desc, kind, n, &none);
+    carve_kind(&own, desc, plan, kind, n, &none, NULL, &at);
+    room->actor_count = desc->kinds[kind].actor_count;
+    room->joint_count = n->shape.joint_count;
+    room->skin_joint_count = n->skin_joints;
+    room->state_bytes = aligned(state.used);
+    room->kind_bytes = aligned(own.used);
+    room->view_bytes = aligned(n->view_bytes);
+    room->scratch_bytes = aligned(n->scratch_bytes);
+    room->module_scratch_bytes = aligned(n->module_scratch_bytes);
+    room->pick_bytes = n->pick_bytes;
+    room->inertia_bytes = n->inertia_bytes;
+}
+
+/* Not inlined, as above. */
+NOH_NEVER_INLINE noh_result noh_stage_carve_slot(const noh_stage *s, uint32_t kind, noh_stage_kind_blocks *out,
+                                                 noh_error *error)
+{
+    const noh_kind_desc d = noh_stage_kind_desc(&s->desc, kind);
+    noh_arena own = noh_arena_over(s->slots->of[kind].own, (size_t)s->plan->kinds[kind].room.kind_bytes);
+    noh_arena state = noh_arena_over(s->slots->of[kind].state, (size_t)s->plan->kinds[kind].room.state_bytes);
+    uint8_t *at = s->slots->of[kind].state;
+    noh_stage_kind k = s->kinds[kind];
+    noh_stage_needs needs;
+    noh_stage_blocks b;
+    const noh_result result = noh_stage_measure_kind(&s->desc, s->plan, kind, &needs, error);
+    if (result != NOH_OK) {
+        return result;
+    }
+    memset(&b, 0, sizeof b);
+    b.kinds = s->kinds;
+    carve_kind(&own, &s->desc, s->plan, kind, &needs, &b, NULL, &at);
+    s->kinds[kind].desc = k.desc;
+    s->kinds[kind].plan = k.plan;
+    s->kinds[kind].first_actor = k.first_actor;
+    s->kinds[kind].actors = k.actors;
+    carve_state(&state, &d, &needs, &k, &b.of[kind].pools); /* for where the pools lie */
+    *out = b.of[kind];
+    return NOH_OK;
+}
+
+static void carve_slots_room(noh_arena *arena, uint32_t kind, const noh_kind_room *room, noh_stage_blocks *b,
+                             noh_stage_list *list, uint8_t **state)
+{
+    size_t from = arena->used;
+    uint8_t *own = noh_arena_carve(arena, (size_t)room->kind_bytes, 16);
+    add(list, "kind", kind, arena, &from);
+    if (!*state) return;
+    b->slots->of[kind].own = own;
+    b->slots->of[kind].state = *state;
+    *state += room->state_bytes;
 }
 
 noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
@@ -424,6 +521,7 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
     state = b->actors ? (uint8_t *)b->actors + aligned(most.actors * sizeof *b->actors) : NULL;
     from = arena->used;
     carve_stage(arena, &filled, &most, b);
+    if (b->slots) memset(b->slots, 0, sizeof *b->slots);
     add(list, "stage", NOH_NONE, arena, &from);
     b->events = CARVE(arena, filled.event_count, noh_stage_event);
     add(list, "events", NOH_NONE, arena, &from);
@@ -431,6 +529,10 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
     add(list, "jobs", NOH_NONE, arena, &from);
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         noh_stage_needs needs;
+        if (desc->kinds[i].changes) {
+            carve_slots_room(arena, i, &plan->kinds[i].room, b, list, &state);
+            continue;
+        }
         result = noh_stage_measure_kind(desc, plan, i, &needs, error);
         if (result == NOH_OK) carve_kind(arena, desc, plan, i, &needs, b, list, &state);
     }

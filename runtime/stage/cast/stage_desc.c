@@ -35,9 +35,9 @@ uint32_t noh_stage_controller_flags(const noh_kind_desc *kind)
     return NOH_CONTROLLER_COVERS | (kind->inertia ? NOH_CONTROLLER_INERTIAL : 0u);
 }
 
-noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
+static noh_kind_desc filled_kind(const noh_kind_desc *kind)
 {
-    noh_kind_desc d = desc->kinds[kind];
+    noh_kind_desc d = *kind;
     if (!d.name) d.name = "";
     if (!d.visible_max) d.visible_max = d.actor_count;
     if (!d.layers) {
@@ -52,12 +52,26 @@ noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
     return d;
 }
 
+noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind)
+{
+    return filled_kind(&desc->kinds[kind]);
+}
+
+uint32_t noh_stage_slot_actors(const noh_kind_desc *kind)
+{
+    uint32_t most = kind->actor_count;
+    for (uint32_t i = 0; kind->changes && i < kind->other_count; i++) {
+        if (kind->others[i].actor_count > most) most = kind->others[i].actor_count;
+    }
+    return most;
+}
+
 noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc)
 {
     noh_stage_desc d = *desc;
     uint32_t actors = 0;
     for (uint32_t i = 0; i < d.kind_count; i++) {
-        actors += d.kinds[i].actor_count;
+        actors += noh_stage_slot_actors(&d.kinds[i]);
     }
     if (!d.height_px) d.height_px = 1080;
     if (!d.job_count) d.job_count = 1;
@@ -184,9 +198,8 @@ static const char *bad_layer(const noh_layer_desc *layer)
                                                      : NULL;
 }
 
-static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
+static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
 {
-    const noh_kind_desc *d = &desc->kinds[number];
     noh_kind_desc filled;
     if (!d->mesh) return "mesh of a kind is NULL";
     if (d->actor_count == 0 || d->actor_count > NOH_STAGE_ACTORS_MAX)
@@ -210,9 +223,9 @@ static const char *bad_kind(const noh_stage_desc *desc, uint32_t number)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
     if (d->cover_count > 255u) return "cover_count of a kind is above 255";
-    if (noh_stage_bad_worn(desc, number)) return noh_stage_bad_worn(desc, number);
+    if (noh_stage_bad_worn(desc, d)) return noh_stage_bad_worn(desc, d);
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
-    filled = noh_stage_kind_desc(desc, number);
+    filled = filled_kind(d);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->runs[NOH_CHUNK_SKELETON].count)
         return "skeleton of a kind is not in the mesh's pack";
     if (noh_stage_bad_modules(&filled)) return noh_stage_bad_modules(&filled);
@@ -227,25 +240,49 @@ static const char *bad_desc(const noh_stage_desc *d)
     return d->event_count > NOH_STEP_EVENTS_MAX ? "event_count of a stage is above NOH_STEP_EVENTS_MAX" : NULL;
 }
 
+noh_result noh_stage_check_kind(const noh_stage_desc *desc, const noh_kind_desc *d, uint32_t number, noh_error *error)
+{
+    const char *what = bad_kind(desc, d);
+    noh_kind_desc kind;
+    if (what) {
+        return noh_fail(error, NOH_ERR_ARG, what, number, 0);
+    }
+    kind = filled_kind(d);
+    if (noh_stage_items(&kind, NULL) > NOH_STAGE_MESHES_MAX) {
+        return noh_fail(error, NOH_ERR_LIMIT, "a kind draws more meshes than NOH_STAGE_MESHES_MAX", number,
+                        noh_stage_items(&kind, NULL));
+    }
+    return NOH_OK;
+}
+
+static const char *bad_slot(const noh_kind_desc *d)
+{
+    if (!d->changes && (d->absent || d->other_count)) return "absent or others of a kind, and changes is 0";
+    return !d->others && d->other_count ? "others of a kind is NULL, and other_count is not 0" : NULL;
+}
+
 noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error)
 {
     const char *what = bad_desc(desc);
+    noh_result result = NOH_OK;
     uint64_t actors = 0;
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     }
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        noh_kind_desc kind;
-        what = bad_kind(desc, i);
+        const noh_kind_desc *kind = &desc->kinds[i];
+        what = bad_slot(kind);
         if (what) {
             return noh_fail(error, NOH_ERR_ARG, what, i, 0);
         }
-        kind = noh_stage_kind_desc(desc, i);
-        if (noh_stage_items(&kind, NULL) > NOH_STAGE_MESHES_MAX) {
-            return noh_fail(error, NOH_ERR_LIMIT, "a kind draws more meshes than NOH_STAGE_MESHES_MAX", i,
-                            noh_stage_items(&kind, NULL));
+        result = noh_stage_check_kind(desc, kind, i, error);
+        for (uint32_t o = 0; o < kind->other_count && result == NOH_OK; o++) {
+            result = noh_stage_check_kind(desc, &kind->others[o], i, error);
         }
-        actors += kind.actor_count;
+        if (result != NOH_OK) {
+            return result;
+        }
+        actors += noh_stage_slot_actors(kind);
     }
     if (actors > NOH_STAGE_ACTORS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "a stage has more actors than NOH_STAGE_ACTORS_MAX", 0, actors);
@@ -275,9 +312,15 @@ static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
 {
-    const noh_kind_desc own = noh_stage_kind_desc(desc, kind);
+    noh_kind_desc own;
+    if (desc->kinds[kind].changes) {
+        return kind;
+    }
+    own = noh_stage_kind_desc(desc, kind);
     for (uint32_t i = 0; i < kind; i++) {
-        const noh_kind_desc other = noh_stage_kind_desc(desc, i);
+        noh_kind_desc other;
+        if (desc->kinds[i].changes) continue;
+        other = noh_stage_kind_desc(desc, i);
         if (other.mesh->bytes == own.mesh->bytes && other.skeleton == own.skeleton && same_clips(&own, &other) &&
             same_play(&own, &other)) {
             return i;

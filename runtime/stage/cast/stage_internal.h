@@ -6,6 +6,7 @@
  *   stage_plan.c     bytes, and what is given up to keep a bound
  *   stage.c          made in its block, and deleted
  *   stage_kind.c     what the actors of a kind share
+ *   stage_slot.c     kinds that come and go
  *   stage_layers.c   layers and their masks
  *   stage_names.c    clips, layers, floats and joints by name
  *   stage_actor.c    actors come and go, and stand somewhere
@@ -180,7 +181,8 @@ typedef struct noh_stage_still {
 } noh_stage_still;
 
 typedef struct noh_stage_kind {
-    noh_kind_desc *desc; /* defaults filled in; `layers`, `modifiers` and modules are empty afterwards */
+    /* Defaults filled in; `layers`, `modifiers` and modules are empty afterwards. actor_count 0: an empty slot */
+    noh_kind_desc *desc;
     const noh_kind_plan *plan;
     uint32_t first_actor;
     uint32_t bank_kind; /* the kind whose bank it shares: itself, or an earlier one */
@@ -225,6 +227,20 @@ typedef struct noh_stage_kind {
     /* where each run begins in `order`. A run has one level and one number of influences; the last one fades */
     uint32_t runs[NOH_LOD_LEVELS_MAX * 4u + 2u];
 } noh_stage_kind;
+
+/* Where kinds that change lie. */
+typedef struct noh_stage_slot {
+    uint8_t *state, *own; /* [room.state_bytes], [room.kind_bytes] of the plan; NULL: the kind stays */
+    uint8_t *views;       /* of the first job */
+    uint32_t hash;        /* of the kind that is there; 0: none */
+} noh_stage_slot;
+
+/* Of a stage in which a kind changes. */
+typedef struct noh_stage_slots {
+    noh_stage_plan plan; /* of the kinds that are there */
+    size_t views_bytes;  /* from the views of a job to the next job's */
+    noh_stage_slot of[NOH_STAGE_KINDS_MAX];
+} noh_stage_slots;
 
 /* ---- a frame ---- */
 
@@ -285,12 +301,13 @@ typedef struct noh_view_planes {
 } noh_view_planes;
 
 struct noh_stage {
-    noh_stage_desc desc;       /* defaults filled in; `kinds` are those below */
-    noh_kind_desc *kind_descs; /* [desc.kind_count] */
-    const noh_stage_plan *plan;
-    noh_stage_kind *kinds;  /* [desc.kind_count] */
-    uint32_t actor_count;   /* of all kinds */
-    uint32_t wearer_joints; /* of the largest kind that wears something; 0: none does */
+    noh_stage_desc desc;        /* defaults filled in; `kinds` are those below */
+    noh_kind_desc *kind_descs;  /* [desc.kind_count] */
+    const noh_stage_plan *plan; /* with slots: slots->plan */
+    noh_stage_slots *slots;     /* NULL: no kind changes */
+    noh_stage_kind *kinds;      /* [desc.kind_count] */
+    uint32_t actor_count;       /* of all kinds */
+    uint32_t wearer_joints;     /* of the largest kind that wears something; 0: none does */
     /* state */
     noh_stage_head *head;
     uint8_t *state;
@@ -310,7 +327,7 @@ struct noh_stage {
     int source_begun;                      /* by a callback of this step */
     noh_stage_event_fn on_key;
     void *on_key_user;
-    noh_stage_far *by_distance; /* [actor_count] with desc.sort_blended: while a pass is sorted */
+    noh_stage_far *by_distance;                /* [actor_count] with desc.sort_blended: while a pass is sorted */
     noh_stage_view views[NOH_STAGE_VIEWS_MAX]; /* less `origin`, as everything is that a frame makes */
     float origin[3];                           /* of the last frame: noh_view_origin */
     double shifted[3];                         /* by all noh_stage_shift_origin so far */
@@ -372,6 +389,10 @@ uint32_t noh_stage_hash_levels(const noh_mesh *mesh, uint32_t level);
 void noh_stage_open_load(const noh_stage *s, const noh_stage_desc *desc, uint32_t kind);
 void noh_stage_load_piece(noh_stage *s); /* in a frame, after all else was handed over */
 noh_result noh_stage_check_desc(const noh_stage_desc *desc, noh_error *error);
+/* As the kind with this number. */
+noh_result noh_stage_check_kind(const noh_stage_desc *desc, const noh_kind_desc *d, uint32_t number, noh_error *error);
+/* The most actors that a kind, or what takes its slot, has by its desc. */
+uint32_t noh_stage_slot_actors(const noh_kind_desc *kind);
 noh_stage_desc noh_stage_desc_filled(const noh_stage_desc *desc);
 uint32_t noh_stage_layer_tracks(const noh_layer_desc *layer);
 uint32_t noh_stage_track_count(const noh_kind_desc *kind);
@@ -413,11 +434,19 @@ noh_result noh_stage_measure_clips(const noh_stage_desc *desc, const noh_stage_p
 noh_result noh_stage_measure_kind(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind,
                                   noh_stage_needs *needs, noh_error *error);
 
+/* The plan of a kind before anything is given up; with `needs`. */
+noh_result noh_stage_plan_kind(const noh_stage_desc *desc, uint32_t kind, noh_stage_plan *plan, noh_stage_needs *needs,
+                               noh_error *error);
+uint32_t noh_stage_mix(uint32_t hash, uint64_t value);
+/* Of what the meaning of a kind's state depends on, continued. */
+uint32_t noh_stage_hash_kind(uint32_t hash, const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
+
 /* Where everything lies; what an arena that only measures gives is NULL. */
 typedef struct noh_stage_blocks {
     noh_stage *stage;
     noh_stage_kind *kinds;
     noh_kind_desc *kind_descs;
+    noh_stage_slots *slots;
     noh_stage_head *head;
     size_t state_bytes;
     noh_stage_actor *actors;
@@ -435,8 +464,12 @@ typedef struct noh_stage_blocks {
     noh_transform *wearers; /* of all jobs */
     uint32_t wearer_joints;
     void *pick_scratch, *inertia_scratch, *schedule;
-    void *banks[NOH_STAGE_KINDS_MAX], *lods[NOH_STAGE_KINDS_MAX], *pools[NOH_STAGE_KINDS_MAX];
+    struct noh_stage_kind_blocks {
+        void *bank, *lod, *pools;
+    } of[NOH_STAGE_KINDS_MAX];
 } noh_stage_blocks;
+
+typedef struct noh_stage_kind_blocks noh_stage_kind_blocks;
 
 /* Lay a stage out, without what draws it. parts[capacity] receives the bytes by part (capacity 0: not wanted); *count
  * how many there are. */
@@ -452,9 +485,24 @@ void noh_stage_add_part(noh_stage_list *list, const char *what, uint32_t kind, u
 void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan); /* without what the plan gave up */
 uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *slots); /* returns how many */
 
+/* ---- slots ---- */
+
+/* What a kind takes, and where it lies in its slot. Not state: from `own`, state: from `state`. */
+void noh_stage_room(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind, const noh_stage_needs *needs,
+                    noh_kind_room *room);
+noh_result noh_stage_carve_slot(const noh_stage *s, uint32_t kind, noh_stage_kind_blocks *blocks, noh_error *error);
+/* In plan->kinds: the room of each slot. kinds[0] is used meanwhile. */
+noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, noh_stage_plan *plan, noh_error *error);
+/* At init, once all kinds that stay are there: all slots, with what is not absent. */
+noh_result noh_stage_open_slots(noh_stage *s, const noh_stage_desc *desc, noh_error *error);
+noh_result noh_stage_open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error);
+void noh_stage_open_actors(noh_stage *s, uint32_t kind);
+/* at: of the first job, `stride` bytes before the next job's */
+noh_result noh_stage_open_views(noh_stage *s, uint32_t kind, uint8_t *at, size_t stride, noh_error *error);
+
 noh_character_desc noh_stage_character_desc(const noh_stage_kind *kind, uint32_t instance);
-noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
-                               noh_error *error);
+noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind,
+                               const noh_stage_kind_blocks *blocks, noh_error *error);
 noh_result noh_stage_open_layers(noh_stage_kind *k, uint32_t kind, noh_error *error);
 
 /* An actor that is there, and its kind; NULL: gone. */
@@ -490,9 +538,9 @@ noh_result noh_stage_actor_sphere(const noh_stage *stage, noh_actor actor, float
 
 /* What an actor is worn by; NULL: it is not worn. */
 noh_stage_actor *noh_stage_wearer_of(const noh_stage *s, const noh_stage_actor *a, noh_stage_kind **kind);
-const char *noh_stage_bad_worn(const noh_stage_desc *desc, uint32_t kind);
+const char *noh_stage_bad_worn(const noh_stage_desc *desc, const noh_kind_desc *kind);
 size_t noh_stage_worn_maps(const noh_kind_desc *kind); /* how many maps it has */
-void noh_stage_open_worn(noh_stage *s);                /* once all kinds are there */
+void noh_stage_open_worn(noh_stage *s, uint32_t kind); /* once all kinds are there: for a kind, or NOH_NONE: for all */
 int noh_stage_can_wear(const noh_stage_kind *garment, uint32_t wearer_kind);
 /* Whether a joint of the garment follows one of the wearer. */
 int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_stage_kind *wearer);

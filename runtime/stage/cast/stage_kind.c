@@ -231,8 +231,8 @@ static noh_result open_bounds(noh_stage *s, noh_stage_kind *k, noh_error *error)
     return result;
 }
 
-noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind, const noh_stage_blocks *blocks,
-                               noh_error *error)
+noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_t kind,
+                               const noh_stage_kind_blocks *blocks, noh_error *error)
 {
     static const noh_module none;
     noh_stage_kind *k = &s->kinds[kind];
@@ -240,7 +240,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     noh_result result = noh_stage_measure_kind(desc, s->plan, kind, &needs, error);
     *k->desc = noh_stage_kind_desc(desc, kind);
     k->plan = &s->plan->kinds[kind];
-    if (result == NOH_OK) result = open_clips(s, desc, kind, blocks->banks[kind], &needs, error);
+    if (result == NOH_OK) result = open_clips(s, desc, kind, blocks->bank, &needs, error);
     if (result != NOH_OK) {
         return result;
     }
@@ -250,8 +250,7 @@ noh_result noh_stage_open_kind(noh_stage *s, const noh_stage_desc *desc, uint32_
     noh_stage_open_correctives(k, needs.corrective_count);
     noh_stage_open_weight_rules(k, needs.weight_rule_count);
     result = noh_stage_open_layers(k, kind, error);
-    if (result == NOH_OK) result = open_lod(s, k, blocks->lods[kind], needs.lod_bytes, error);
-    s->jobs[0].scratch = blocks->scratch;
+    if (result == NOH_OK) result = open_lod(s, k, blocks->lod, needs.lod_bytes, error);
     if (result == NOH_OK) result = open_bounds(s, k, error);
     if (result == NOH_OK) result = noh_stage_init_modules(k, error);
     k->desc->modifiers = NULL;

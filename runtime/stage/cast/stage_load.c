@@ -82,8 +82,8 @@ static int same_bytes(const noh_pack *a, const noh_pack *b)
 
 uint32_t noh_stage_load_kind(const noh_stage_desc *desc, uint32_t kind)
 {
-    uint32_t i = 0;
-    while (i < kind && !(same_bytes(desc->kinds[i].mesh, desc->kinds[kind].mesh) &&
+    uint32_t i = desc->kinds[kind].changes ? kind : 0;
+    while (i < kind && !(!desc->kinds[i].changes && same_bytes(desc->kinds[i].mesh, desc->kinds[kind].mesh) &&
                          same_bytes(desc->kinds[i].finer, desc->kinds[kind].finer))) {
         i++;
     }
@@ -184,13 +184,27 @@ static int brings_any(const noh_stage *s, uint32_t load_kind)
     return 0;
 }
 
+static void drop(noh_stage *s, uint32_t kind)
+{
+    if (s->kinds[kind].finer.kind != NOH_NONE) {
+        noh_stage_kind *of = &s->kinds[s->kinds[kind].finer.kind];
+        if (of->finer.state == NOH_STAGE_LOADED) set_first(s, s->kinds[kind].finer.kind, 0);
+        of->finer.state = NOH_STAGE_DROPPED;
+        of->finer.from = NULL;
+    }
+}
+
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error)
 {
     noh_result result;
     noh_stage_kind *of;
     uint32_t none = 0;
-    NOH_ASSERT(stage && pack);
+    NOH_ASSERT(stage);
     result = check_call(stage, kind, error);
+    if (result == NOH_OK && !pack) {
+        drop(stage, kind);
+        return NOH_OK;
+    }
     if (result == NOH_OK &&
         (stage->kinds[kind].finer.kind == NOH_NONE || !brings_any(stage, stage->kinds[kind].finer.kind))) {
         result = noh_fail(error, NOH_ERR_UNSUPPORTED, "a kind has no finer levels in the plan: see noh_kind_desc.finer",
@@ -209,24 +223,10 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
         }
     }
     if (result == NOH_OK) {
-        (void)noh_stage_drop_level(stage, kind, NULL);
+        drop(stage, kind);
         of->finer.from = pack;
         of->finer.state = NOH_STAGE_LOADING;
         if (stage->gpu) (void)stage->desc.gpu->load(stage, stage->kinds[kind].finer.kind, 1, &none);
-    }
-    return result;
-}
-
-noh_result noh_stage_drop_level(noh_stage *stage, uint32_t kind, noh_error *error)
-{
-    noh_result result;
-    NOH_ASSERT(stage);
-    result = check_call(stage, kind, error);
-    if (result == NOH_OK && stage->kinds[kind].finer.kind != NOH_NONE) {
-        noh_stage_kind *of = &stage->kinds[stage->kinds[kind].finer.kind];
-        if (of->finer.state == NOH_STAGE_LOADED) set_first(stage, stage->kinds[kind].finer.kind, 0);
-        of->finer.state = NOH_STAGE_DROPPED;
-        of->finer.from = NULL;
     }
     return result;
 }

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
 #include "noh/base.h"
 #include "noh/low_core.h"
 #include "noh/low_stage.h"
@@ -170,7 +171,7 @@ static noh_result give_up_segments(const planner *p, uint32_t share, noh_error *
         for (uint32_t i = 0; i < p->desc->kind_count; i++) {
             noh_kind_plan *k = &p->plan->kinds[i];
             const uint32_t least = share ? k->segment_count / share : NOH_CLIP_CACHE_SEGMENTS_MIN;
-            if (noh_stage_bank_kind(p->desc, i) == i && k->cached_segment_count > least &&
+            if (noh_stage_bank_kind(p->desc, i) == i && !p->desc->kinds[i].changes && k->cached_segment_count > least &&
                 k->cached_segment_count > NOH_CLIP_CACHE_SEGMENTS_MIN &&
                 (!most || k->cached_segment_count > most->cached_segment_count)) {
                 most = k;
@@ -206,7 +207,7 @@ static int drop_slots(const planner *p, uint32_t kind, uint32_t *level_out)
 {
     const noh_kind_desc d = noh_stage_kind_desc(p->desc, kind);
     noh_kind_plan *k = &p->plan->kinds[kind];
-    for (uint32_t l = k->finest_level; l + 1u < k->level_count; l++) {
+    for (uint32_t l = k->finest_level; l + 1u < k->level_count && !d.changes; l++) {
         const uint32_t keep = promised(&d, k, l), have = k->levels[l].slot_count;
         uint32_t move = have > keep ? (have - keep + 2u) / 3u : 0;
         if (move == have && move && l == k->finest_level && !keep) move--; /* one stays: somebody is always near */
@@ -247,8 +248,8 @@ static void drop_with_others(const planner *p, uint32_t kind)
     const uint32_t level = p->plan->kinds[kind].finest_level;
     for (uint32_t i = 0; i < p->desc->kind_count; i++) {
         noh_kind_plan *k = &p->plan->kinds[i];
-        if (p->desc->kinds[i].mesh->bytes == p->desc->kinds[kind].mesh->bytes && k->finest_level <= level &&
-            k->finest_level + 1u < k->level_count) {
+        if (!p->desc->kinds[i].changes && p->desc->kinds[i].mesh->bytes == p->desc->kinds[kind].mesh->bytes &&
+            k->finest_level <= level && k->finest_level + 1u < k->level_count) {
             drop_finest(k);
         }
     }
@@ -263,7 +264,7 @@ static noh_result give_up_finest(const planner *p, noh_error *error)
         uint32_t kind = 0;
         for (uint32_t i = 0; i < p->desc->kind_count; i++) {
             noh_kind_plan *k = &p->plan->kinds[i];
-            if (k->finest_level + 1u < k->level_count &&
+            if (!p->desc->kinds[i].changes && k->finest_level + 1u < k->level_count &&
                 (!best || k->levels[k->finest_level + 1u].error_m < best->levels[best->finest_level + 1u].error_m)) {
                 best = k;
                 kind = i;
@@ -384,7 +385,7 @@ static noh_result give_back(const planner *p, noh_error *error)
         noh_kind_plan *k = &p->plan->kinds[i];
         const uint32_t now = k->cached_segment_count;
         noh_kind_clips most;
-        if (noh_stage_bank_kind(p->desc, i) != i) continue;
+        if (noh_stage_bank_kind(p->desc, i) != i || p->desc->kinds[i].changes) continue;
         k->cached_segment_count = 0;
         result = noh_stage_measure_clips(p->desc, p->plan, i, &most, error);
         k->cached_segment_count = now;
@@ -412,28 +413,34 @@ static void state_losses(const planner *p)
 
 /* ---- making a plan ---- */
 
-static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
+noh_result noh_stage_plan_kind(const noh_stage_desc *desc, uint32_t kind, noh_stage_plan *plan, noh_stage_needs *needs,
+                               noh_error *error)
 {
-    noh_kind_plan *k = &p->plan->kinds[kind];
-    const noh_kind_desc d = noh_stage_kind_desc(p->desc, kind);
-    const uint32_t owner = noh_stage_bank_kind(p->desc, kind);
-    noh_stage_needs needs;
-    noh_result result = noh_stage_find_levels(p->desc, kind, k, error);
+    noh_kind_plan *k = &plan->kinds[kind];
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    const uint32_t owner = noh_stage_bank_kind(desc, kind);
+    noh_result result = noh_stage_find_levels(desc, kind, k, error);
     if (result != NOH_OK) {
         return result;
     }
-    noh_stage_share_slots(p->desc, kind, k);
-    k->clips = p->plan->kinds[owner].clips;
-    if (owner == kind) result = noh_stage_measure_clips(p->desc, p->plan, kind, &k->clips, error);
-    if (result == NOH_OK) result = noh_stage_measure_kind(p->desc, p->plan, kind, &needs, error);
+    noh_stage_share_slots(desc, kind, k);
+    k->clips = plan->kinds[owner].clips;
+    if (owner == kind) result = noh_stage_measure_clips(desc, plan, kind, &k->clips, error);
+    if (result == NOH_OK) result = noh_stage_measure_kind(desc, plan, kind, needs, error);
     if (result == NOH_OK) {
         k->track_count = noh_stage_track_count(&d);
-        k->joint_count = needs.shape.joint_count;
-        k->float_count = needs.float_count;
-        k->segment_count = needs.segment_count;
-        k->cached_segment_count = needs.cached_segment_count;
+        k->joint_count = needs->shape.joint_count;
+        k->float_count = needs->float_count;
+        k->segment_count = needs->segment_count;
+        k->cached_segment_count = needs->cached_segment_count;
     }
     return result;
+}
+
+NOH_NEVER_INLINE static noh_result begin(const planner *p, uint32_t kind, noh_error *error)
+{
+    noh_stage_needs needs;
+    return noh_stage_plan_kind(p->desc, kind, p->plan, &needs, error);
 }
 
 /* Kinds of the same clips have one bank, whose number is kept with the first of them. */
@@ -479,7 +486,7 @@ static uint64_t count_packs(const noh_stage_desc *desc)
     return bytes;
 }
 
-static uint32_t mix(uint32_t hash, uint64_t value)
+uint32_t noh_stage_mix(uint32_t hash, uint64_t value)
 {
     for (int i = 0; i < 8; i++) {
         hash = (hash ^ (uint32_t)(value >> 8 * i & 255u)) * 16777619u;
@@ -487,28 +494,43 @@ static uint32_t mix(uint32_t hash, uint64_t value)
     return hash;
 }
 
-/* Of what the layout and the meaning of a state depend on. */
+uint32_t noh_stage_hash_kind(uint32_t hash, const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
+{
+    const noh_kind_plan *k = &plan->kinds[kind];
+    const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
+    const uint64_t values[] = { d.actor_count,
+                                d.visible_max,
+                                d.held_float_count,
+                                d.mesh->byte_count,
+                                d.texture_set_count,
+                                k->level_count,
+                                k->finest_level,
+                                k->track_count,
+                                k->joint_count,
+                                k->float_count,
+                                k->segment_count,
+                                noh_stage_hash_module(&d, NOH_SLOT_SOURCE),
+                                d.modifier_count,
+                                noh_stage_hash_module(&d, NOH_SLOT_FACE),
+                                noh_stage_hash_module(&d, NOH_SLOT_BODY) };
+    for (uint32_t i = 0; i < sizeof values / sizeof *values; i++) hash = noh_stage_mix(hash, values[i]);
+    if (d.springs.type) hash = noh_stage_mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
+    if (d.match.type) hash = noh_stage_mix(hash, noh_stage_hash_module(&d, NOH_SLOT_MATCH));
+    if (d.weight_rules) hash = noh_stage_mix(hash, 2);
+    if (d.worn_by) hash = noh_stage_mix(hash, (uint64_t)d.worn_by << 32);
+    for (uint32_t p = 0; p < d.modifier_count; p++) hash = noh_stage_mix(hash, d.modifiers[p].state_bytes);
+    for (uint32_t l = 0; l < k->level_count; l++) hash = noh_stage_mix(hash, k->levels[l].slot_count);
+    return hash;
+}
+
+/* Of what the layout and the meaning of a state depend on. What is in slots is in the hash of the state. */
 static uint32_t hash_plan(const noh_stage_desc *desc, const noh_stage_plan *plan)
 {
-    uint32_t hash = mix(2166136261u, plan->state_bytes);
+    uint32_t hash = noh_stage_mix(2166136261u, plan->state_bytes);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        const noh_kind_plan *k = &plan->kinds[i];
-        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
-        hash = mix(mix(mix(mix(hash, d.actor_count), d.visible_max), d.held_float_count), d.mesh->byte_count);
-        hash = mix(hash, d.texture_set_count);
-        hash = mix(mix(mix(hash, k->level_count), k->finest_level), k->track_count);
-        hash = mix(mix(mix(hash, k->joint_count), k->float_count), k->segment_count);
-        hash = mix(mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SOURCE)), d.modifier_count);
-        hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_FACE));
-        hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_BODY));
-        if (d.springs.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
-        if (d.match.type) hash = mix(hash, noh_stage_hash_module(&d, NOH_SLOT_MATCH));
-        if (d.weight_rules) hash = mix(hash, 2);
-        if (d.worn_by) hash = mix(hash, (uint64_t)d.worn_by << 32);
-        for (uint32_t p = 0; p < d.modifier_count; p++) hash = mix(hash, d.modifiers[p].state_bytes);
-        for (uint32_t l = 0; l < k->level_count; l++) {
-            hash = mix(hash, k->levels[l].slot_count);
-        }
+        const noh_kind_room *room = &plan->kinds[i].room;
+        hash = desc->kinds[i].changes ? noh_stage_mix(noh_stage_mix(hash, room->actor_count), room->state_bytes)
+                                      : noh_stage_hash_kind(hash, desc, plan, i);
     }
     return hash;
 }
@@ -547,6 +569,7 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     filled = noh_stage_desc_filled(desc);
     memset(plan, 0, sizeof *plan);
     plan->halves = desc->halves > 0;
+    result = noh_stage_plan_rooms(&filled, plan, error);
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         result = begin(&p, i, error);
     }

@@ -279,7 +279,7 @@ static void count_levels(noh_stage *s)
         stats->actors += s->head->kinds[i].count;
         stats->seen += k->runs[runs + 1u];
         stats->fading += k->runs[runs + 1u] - k->runs[runs];
-        add_slots(stats, noh_lod_pools_stats_of(k->pools));
+        if (k->pools) add_slots(stats, noh_lod_pools_stats_of(k->pools));
         for (uint32_t p = 0; p < k->runs[runs + 1u]; p++) {
             stats->at_level[s->shown[k->first_actor + k->order[p]].level]++;
         }
@@ -292,6 +292,7 @@ void noh_stage_share(noh_stage *s)
 {
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
+        if (!k->pools) continue; /* an empty slot */
         ask(s, k);
         for (uint32_t a = 0; a < k->desc->actor_count; a++) {
             s->shown[k->first_actor + a].slot.left_out = 0;

@@ -134,6 +134,22 @@ static noh_result check_modules(const reader *r, const noh_stage_kind *k, uint32
     return noh_stage_check_modules(k, index, r->s->state, r->state, error);
 }
 
+/* What a slot has beyond the actors of its kind: their generations, and nothing else. */
+static const char *bad_rest(const reader *r, uint32_t kind)
+{
+    const noh_stage *s = r->s;
+    const uint32_t end = kind + 1u < s->desc.kind_count ? s->kinds[kind + 1u].first_actor : s->actor_count;
+    const noh_stage_actor *actors = in_copy(r, s->actors);
+    for (uint32_t i = s->kinds[kind].first_actor + s->kinds[kind].desc->actor_count; i < end; i++) {
+        noh_stage_actor nobody;
+        memset(&nobody, 0, sizeof nobody);
+        nobody.generation = actors[i].generation;
+        if (nobody.generation > 0xffffu || memcmp(&nobody, &actors[i], sizeof nobody) != 0)
+            return "state: an actor where the slot of a kind has none";
+    }
+    return NULL;
+}
+
 static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
 {
     const noh_stage_kind *k = &r->s->kinds[kind];
@@ -152,7 +168,8 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
     if (result == NOH_OK) what = noh_stage_check_pools(k, r->s->state, r->state);
     if (what) return noh_fail(error, NOH_ERR_DATA, what, kind, 0);
     what = result == NOH_OK ? bad_list(r, k, &head->kinds[kind]) : NULL;
-    if (!what && result == NOH_OK) {
+    if (!what && result == NOH_OK) what = bad_rest(r, kind);
+    if (!what && result == NOH_OK && k->pools) {
         return noh_lod_pools_check(in_copy(r, k->pools), k->pools, error);
     }
     return what ? noh_fail(error, NOH_ERR_DATA, what, kind, 0) : result;
@@ -169,8 +186,9 @@ static noh_result check_state(const noh_stage *s, const void *state, size_t byte
     if ((uintptr_t)state % NOH_MEMORY_ALIGN) {
         return noh_fail(error, NOH_ERR_ARG, "a state is misaligned", 0, 0);
     }
-    if (bytes != s->state_bytes || head->magic != NOH_STAGE_MAGIC || head->hash != s->plan->hash) {
-        return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan", 0, s->state_bytes);
+    if (bytes != s->state_bytes || head->magic != NOH_STAGE_MAGIC || head->hash != s->head->hash) {
+        return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan and these kinds in its slots", 0,
+                        s->state_bytes);
     }
     for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
         result = check_kind(&r, i, error);

@@ -21,9 +21,9 @@
 
 /* ---- kinds ---- */
 
-const char *noh_stage_bad_worn(const noh_stage_desc *desc, uint32_t kind)
+const char *noh_stage_bad_worn(const noh_stage_desc *desc, const noh_kind_desc *kind)
 {
-    const uint32_t worn_by = desc->kinds[kind].worn_by;
+    const uint32_t worn_by = kind->worn_by;
     if (worn_by >> desc->kind_count) return "worn_by of a kind has a bit of a kind that does not exist";
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         if (worn_by >> i & 1u && desc->kinds[i].worn_by)
@@ -98,13 +98,13 @@ static void map_floats(const noh_stage_kind *k, const noh_stage_kind *wearer, ui
     }
 }
 
-void noh_stage_open_worn(noh_stage *s)
+void noh_stage_open_worn(noh_stage *s, uint32_t kind)
 {
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
         for (uint32_t w = 0; w < s->desc.kind_count; w++) {
             uint16_t *map;
-            if (!noh_stage_can_wear(k, w)) continue;
+            if (!noh_stage_can_wear(k, w) || (kind != NOH_NONE && kind != i && kind != w)) continue;
             map = map_of(s, k, &s->kinds[w]);
             map_joints(k, &s->kinds[w], map);
             map_floats(k, &s->kinds[w], map + k->skeleton.joint_count);
