@@ -174,6 +174,31 @@ static void plans_by_text_and_in_c_are_equal_byte_by_byte(void **state)
     }
 }
 
+/* Kinds for slots: their order in the text is free, and they take no index. */
+static void others_size_the_slots_of_their_kinds(void **state)
+{
+    stage_desc_file *f = read_text("kind a\nmesh puppet.noh\nactor_count 2\nchanges 1\nabsent 1\n"
+                                   "kind b\nmesh \"a mask.noh\"\nactor_count 5\nchanges 1\n"
+                                   "kind c\nmesh \"a mask.noh\"\nactor_count 3\nother_of a\nlayer x\n"
+                                   "kind d\nmesh puppet.noh\nactor_count 1\n"
+                                   "kind e\nmesh puppet.noh\nactor_count 9\nother_of a\n");
+    const noh_kind_desc *k = f->kinds;
+    noh_stage_plan plan;
+    noh_error error = { NOH_OK, "", 0, 0 };
+    (void)state;
+    assert_int_equal(f->desc.kind_count, 3);
+    assert_string_equal(k[2].name, "d");
+    assert_true(k[0].changes && k[0].absent && k[1].changes && !k[1].absent && !k[2].changes);
+    assert_true(k[0].other_count == 2 && k[1].other_count == 0 && k[2].other_count == 0);
+    assert_string_equal(k[0].others[0].name, "c");
+    assert_string_equal(k[0].others[0].layers[0].name, "x");
+    assert_string_equal(k[0].others[1].name, "e");
+    if (noh_stage_plan_make(&f->desc, NULL, &plan, &error) != NOH_OK) fail_msg("%s", error.what);
+    assert_int_equal(plan.kinds[0].room.actor_count, 9);
+    assert_true(plan.kinds[0].room.kind_bytes > plan.kinds[1].room.kind_bytes);
+    stage_desc_file_free(f);
+}
+
 /* ---- what is wrong ---- */
 
 static void refused(const char *text, size_t size, const char *line, const char *what)
@@ -235,6 +260,8 @@ static void bad_lines_are_told_by_number(void **state)
         { HERO "layer a joints= joints=\n", ":3", "joints= is given twice for this layer" },
         { HERO "layer a\nlayer a\n", ":4", "the layer 'a' is given twice" },
         { "kind \"a\nmesh b\"\n", ":1", "a quote is not closed" },
+        { HERO "changes 1\nactor_count 1\nkind b\nother_of her\n", ":6", "did you mean 'hero'?" },
+        { HERO "actor_count 1\nkind b\nother_of hero\n", ":5", "add a line 'changes 1'" },
     };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(rows); i++) {
@@ -316,6 +343,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(settings_arrive_in_their_fields),
     cmocka_unit_test(a_file_named_in_two_ways_is_opened_once),
     cmocka_unit_test(plans_by_text_and_in_c_are_equal_byte_by_byte),
+    cmocka_unit_test(others_size_the_slots_of_their_kinds),
     cmocka_unit_test(bad_lines_are_told_by_number),
     cmocka_unit_test(too_many_of_a_thing_are_refused),
     cmocka_unit_test(packs_that_do_not_open_are_named_with_their_line),

@@ -289,6 +289,7 @@ typedef enum setting_kind {
     SET_MESH,
     SET_CLIPS,
     SET_FINER,
+    SET_OTHER_OF,
     SET_GRAPHS,
     SET_FACE,
     SET_RAGDOLLS,
@@ -329,6 +330,9 @@ static const setting settings[] = {
     { "root_axes", SET_ROOT, 1, 0, 0, 0, 0 },
     { "layer", SET_LAYER, 1, 1, 0, 0, 0 },
     { "finer", SET_FINER, 1, 0, 0, 0, 0 },
+    { "changes", SET_FLAG, 1, 0, offsetof(noh_kind_desc, changes), 0, 1 },
+    { "absent", SET_FLAG, 1, 0, offsetof(noh_kind_desc, absent), 0, 1 },
+    { "other_of", SET_OTHER_OF, 1, 0, 0, 0, 0 },
     { "graphs", SET_GRAPHS, 1, 0, 0, 0, 0 },
     { "face", SET_FACE, 1, 0, 0, 0, 0 },
     { "ragdolls", SET_RAGDOLLS, 1, 0, 0, 1, NOH_RAGDOLLS_MAX },
@@ -387,6 +391,25 @@ static int set_face(reader *r)
     return 0;
 }
 
+/* This kind takes the slot of an earlier one, which changes, and has no index of its own. */
+static int set_other_of(reader *r, const char *name)
+{
+    const stage_desc_file *f = r->file;
+    const char *names[NOH_STAGE_KINDS_MAX];
+    uint32_t count = 0;
+    for (uint32_t i = 0; &f->kinds[i] != r->kind; i++) {
+        if (f->slot_of[i]) continue;
+        names[count++] = f->kinds[i].name;
+        if (strcmp(f->kinds[i].name, name) != 0) continue;
+        if (!f->kinds[i].changes)
+            return fail_at(r, r->line, "the kind '%.60s' stays: add a line 'changes 1' to it", name);
+        r->file->slot_of[r->kind - f->kinds] = 1u + i;
+        return 0;
+    }
+    return fail_at(r, r->line, "no kind before this one has a slot and the name '%.60s'%s", name,
+                   hint_of(name, names, count).text);
+}
+
 static int set(reader *r, const setting *s)
 {
     char *text = r->words[1].text;
@@ -397,6 +420,7 @@ static int set(reader *r, const setting *s)
     case SET_CLIPS: return add_clips(r, text);
     case SET_LAYER: return add_layer(r);
     case SET_FINER: return pack_beside(r, text, &r->kind->finer);
+    case SET_OTHER_OF: return set_other_of(r, text);
     case SET_GRAPHS: r->kind->graphs = noh_graph_module(text); return 0;
     case SET_FACE: return set_face(r);
     default: return set_number(r, s, text);
@@ -499,6 +523,27 @@ static int read_line(reader *r)
     return unknown_key(r);
 }
 
+/* Move the kinds that take slots of others out of the list. What they point to stays. */
+static void sort_kinds(stage_desc_file *f)
+{
+    const uint32_t count = f->desc.kind_count;
+    uint32_t others = 0, kinds = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        noh_kind_desc *k = &f->kinds[i];
+        if (f->slot_of[i]) continue;
+        for (uint32_t o = i + 1u; o < count; o++) {
+            if (f->slot_of[o] != 1u + i) continue;
+            if (!k->other_count++) k->others = &f->others[others];
+            f->others[others++] = f->kinds[o];
+        }
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        if (!f->slot_of[i]) f->kinds[kinds++] = f->kinds[i];
+    }
+    f->desc.kind_count = kinds;
+    f->desc.kinds = f->kinds;
+}
+
 /* ---- the file ---- */
 
 static int read_all(reader *r)
@@ -520,7 +565,7 @@ static int read_all(reader *r)
     }
     if (!status) status = end_kind(r);
     if (!status && !f->desc.kind_count) status = tool_fail(r->path, "the file has no kind: add a line 'kind NAME'");
-    f->desc.kinds = f->kinds;
+    sort_kinds(f);
     return status;
 }
 

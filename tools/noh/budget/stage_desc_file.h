@@ -15,6 +15,8 @@
 typedef struct stage_desc_file {
     noh_stage_desc desc; /* gpu and morph_path are the caller's to set */
     noh_kind_desc kinds[NOH_STAGE_KINDS_MAX];
+    noh_kind_desc others[NOH_STAGE_KINDS_MAX]; /* of kinds that change */
+    uint32_t slot_of[NOH_STAGE_KINDS_MAX];     /* of each kind in the text: 1 + the kind whose slot it takes; 0: none */
     noh_layer_desc layers[NOH_STAGE_KINDS_MAX][NOH_LAYERS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     noh_kind_ragdoll ragdolls[NOH_STAGE_KINDS_MAX];
