@@ -149,7 +149,9 @@ static noh_result check_wearers(const noh_stage *s, uint32_t kind, const noh_sta
 static noh_result open_slot(noh_stage *s, uint32_t kind, noh_error *error)
 {
     noh_stage_kind_blocks blocks;
-    noh_result result = noh_stage_carve_slot(s, kind, &blocks, error);
+    noh_result result;
+    memset(s->slots->of[kind].state, 0, (size_t)s->plan->kinds[kind].room.state_bytes); /* a state came with anything */
+    result = noh_stage_carve_slot(s, kind, &blocks, error);
     if (result == NOH_OK) result = noh_stage_open_kind(s, &s->desc, kind, &blocks, error);
     if (result == NOH_OK) result = noh_stage_open_pools(s, kind, blocks.pools, error);
     if (result == NOH_OK)

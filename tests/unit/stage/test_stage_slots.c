@@ -6,7 +6,7 @@
 #include "stage/cast/stage_internal.h"
 
 #define SLOTS 2u      /* kinds 1 and 2; kind 0 stays */
-#define CANDIDATES 4u /* that a slot was planned for */
+#define CANDIDATES 5u /* that a slot was planned for */
 #define PLAYERS 3u    /* actors of kind 0 */
 
 static noh_error said;
@@ -16,12 +16,15 @@ typedef struct show {
     noh_kind_desc candidates[CANDIDATES];
 } show;
 
+static const noh_kind_ragdoll dolls = { .count = 2 };
+static const noh_kind_face alive = { .face = { .eyes = { { 0.035f, 1.55f, 0.11f }, { -0.035f, 1.55f, 0.11f } } } };
+
 /* Opened once for all tests. */
 static cast packs;
 static noh_file coat;
 static noh_pack coat_pack;
 
-/* Masks that speak, tubes without clips, puppets with springs, coats with springs. */
+/* Masks that speak, tubes without clips, puppets with springs, coats with springs, puppets with all other modules. */
 static void open_show(show *w)
 {
     w->c = packs;
@@ -37,6 +40,10 @@ static void open_show(show *w)
     w->candidates[3].actor_count = PLAYERS;
     w->candidates[3].worn_by = 1u << PUPPETS;
     w->candidates[3].springs = noh_springs_module();
+    w->candidates[4] = w->candidates[2];
+    w->candidates[4].graphs = noh_graph_module("moves");
+    w->candidates[4].ragdoll = noh_ragdoll_module(&dolls);
+    w->candidates[4].face = noh_face_module(&alive);
     w->c.kinds[0].actor_count = PLAYERS;
     w->c.desc.job_count = 3;
 }
@@ -96,7 +103,7 @@ static void expect_same_shown(const noh_stage *a, noh_actor actor_a, const noh_s
     assert_memory_equal(noh_actor_floats(a, actor_a), noh_actor_floats(b, actor_b), ka->float_count * sizeof(float));
 }
 
-static const char *const clip_of[CANDIDATES] = { "speak", NULL, "dance", NULL };
+static const char *const clip_of[CANDIDATES] = { "speak", NULL, "dance", NULL, "bow" };
 
 /* Of each candidate: a stage that had it at init, and one without slots. */
 static void a_kind_that_comes_equals_one_that_was_there(void **state)
@@ -128,8 +135,10 @@ static void a_kind_that_comes_equals_one_that_was_there(void **state)
             if (i == 0) put(s[0], 1, &late.candidates[which]);
             for (uint32_t n = 0; n < 2; n++) last[i] = enter(s[i], 1, n, clip_of[which]);
             if (which == 3) assert_int_equal(noh_actor_wear(s[i], last[i], first[i], &said), NOH_OK);
+            if (which == 4) assert_int_equal(noh_actor_play_graph(s[i], last[i], 0, "moves", NULL, &said), NOH_OK);
+            if (which == 4) assert_int_equal(noh_actor_fall(s[i], last[i], &said), NOH_OK);
         }
-        for (uint32_t f = 12; f < 48; f++) {
+        for (uint32_t f = 12; f < 40; f++) {
             for (uint32_t i = 0; i < 3; i++) frame(s[i], f);
             assert_true(noh_stage_hash(s[0]) == noh_stage_hash(s[1]));
             expect_same_shown(s[0], last[0], s[2], last[2]);
@@ -228,7 +237,7 @@ static void any_order_leaves_what_runs_alone(void **state)
         actors[i] = enter(w.c.stage, 0, i, i ? "walk" : "dance");
         alone[i] = enter(quiet.c.stage, 0, i, i ? "walk" : "dance");
     }
-    for (uint32_t round = 0; round < 100; round++) {
+    for (uint32_t round = 0; round < 80; round++) {
         for (uint32_t i = 0; i < SLOTS; i++) {
             const uint32_t before = slots[i].holds;
             act(&w, w.c.stage, 1u + i, &slots[i], &r);
@@ -243,7 +252,7 @@ static void any_order_leaves_what_runs_alone(void **state)
             for (uint32_t f = 0; f < 4; f++) frame(quiet.c.stage, f);
         }
     }
-    assert_true(filled > 10u && emptied > 10u);
+    assert_true(filled > 8u && emptied > 8u);
     close_show(&w), close_show(&quiet);
 }
 
@@ -345,6 +354,26 @@ static void fields_of_slots_are_checked(void **state)
     close_show(&w);
 }
 
+/* Whatever a state has where an empty slot keeps nothing: the kind that comes begins as ever. */
+static void bytes_of_empty_slots_are_not_believed(void **state)
+{
+    size_t bytes;
+    uint8_t *copy;
+    show w, clean;
+    (void)state;
+    open_show(&w), open_show(&clean);
+    make_slots(&w), make_slots(&clean);
+    copy = test_aligned(noh_stage_state(w.c.stage, &bytes), w.c.plan.state_bytes);
+    memset(copy + (w.c.stage->slots->of[1].state - w.c.stage->state), 0xff, w.c.plan.kinds[1].room.state_bytes);
+    assert_int_equal(noh_stage_set_state(w.c.stage, copy, bytes, &said), NOH_OK);
+    put(w.c.stage, 1, &w.candidates[4]), put(clean.c.stage, 1, &clean.candidates[4]);
+    (void)enter(w.c.stage, 1, 0, "bow"), (void)enter(clean.c.stage, 1, 0, "bow");
+    frame(w.c.stage, 0), frame(clean.c.stage, 0);
+    assert_true(noh_stage_hash(w.c.stage) == noh_stage_hash(clean.c.stage));
+    free(copy);
+    close_show(&w), close_show(&clean);
+}
+
 /* Bits of a state flipped, in slots and in what they leave free. */
 static void a_damaged_state_does_no_harm(void **state)
 {
@@ -410,6 +439,7 @@ int main(void)
         cmocka_unit_test(the_plan_has_every_byte),
         cmocka_unit_test(what_does_not_fit_is_refused),
         cmocka_unit_test(fields_of_slots_are_checked),
+        cmocka_unit_test(bytes_of_empty_slots_are_not_believed),
         cmocka_unit_test(a_damaged_state_does_no_harm),
     };
     return cmocka_run_group_tests(tests, open_packs, close_packs);

@@ -246,7 +246,7 @@ const char *const help_formats_text[] = {
     "     inertia 0|1                                 transitions may use inertialization (0)",
     "     graphs \"NAME...\"                            animation graphs its actors may play; NAME*: all that start with NAME",
     "     finer PACK                                  the pack with the finer levels, if mesh has only coarse ones",
-    "     changes 0|1                                 the kind has a slot: the game may replace it (0; --without-gpu)",
+    "     changes 0|1                                 the kind has a slot: the game may replace it (0; needs --no-gpu)",
     "     absent 0|1                                  its slot is empty at first (0)",
     "     other_of NAME                               this kind only sizes the slot of a kind that changes",
     "     face joints | face X Y Z X Y Z              live faces: eyes by joints, or the centres of the left and right eye",
