@@ -12,7 +12,8 @@
  *   NOH_HAIR          defined: it is hair
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read
- *   NOH_COLORS        defined: targets colour four regions of a map */
+ *   NOH_COLORS        defined: targets colour four regions of a map
+ *   NOH_COMPLEXION    defined: instances have complexions (common_complexion.glsl) */
 #ifndef NOH_DEPTH_ONLY
 uniform vec3 noh_f0;       /* reflectance of non-metals at normal incidence; limited to noh_f90 */
 uniform float noh_f90;     /* and at grazing angles */
@@ -128,6 +129,10 @@ vec3 noh_strand(vec3 position, vec3 normal, vec2 uv)
 }
 #endif
 
+#ifdef NOH_COMPLEXION
+vec3 noh_complexioned(vec3 albedo, vec3 normal); /* common_complexion.glsl */
+#endif
+
 /* base: from noh_base; normal, tangent: of noh_vertex, filtered */
 noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, vec2 uv)
 {
@@ -136,6 +141,9 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.position = position;
     s.view = normalize(noh_camera - position);
     s.albedo = base.rgb;
+#ifdef NOH_COMPLEXION
+    s.albedo = noh_complexioned(s.albedo, normalize(normal));
+#endif
 #ifdef NOH_COLORS
     vec4 colored = noh_color_weights(uv);
     s.albedo = noh_colored(s.albedo, colored);

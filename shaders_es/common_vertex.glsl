@@ -169,7 +169,8 @@ ivec4 noh_tile_row()
 }
 
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-uniform int noh_blends; /* bits: 1: the material blends: the tint's alpha applies; 2: its colour does not */
+uniform int noh_blends; /* bits: 1: the material blends: the tint's alpha applies; 2: its colour does not;
+                         * 4 times the part of a complexion that it shows */
 
 /* Decode a tint of 8-bit sRGB and alpha. */
 vec4 noh_tint_of(ivec4 row)
@@ -227,6 +228,12 @@ noh_vertex noh_fetch()
     noh_wrinkle_vertex(v.uv);
 #endif
 #ifndef NOH_DEPTH_ONLY
+#ifdef NOH_COMPLEXION
+    noh_complexion_vertex(noh_blends >> 2);
+#ifdef NOH_SKIN
+    noh_freckles_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
+#endif
+#endif
 #if defined(NOH_COLORS) && defined(NOH_CROWD)
     noh_v_colors = noh_crowd_row(5);
 #endif

@@ -439,6 +439,7 @@ int noh_ear_next(noh_ear *ear, noh_ear_frame *frame);
  *   noh_identity_random   make a person from a seed
  *   noh_identity_bind     adjust blinks so that the person's lids close
  *   noh_actor_set_identity  (modules.h) give an actor an identity
+ *   noh_complexion_random make the colours of a person's skin, hair and eyes from a seed
  *
  * A person is one vector of weights. Deltas of expressions are added to the person's face as to the rest face, so all
  * people share the targets of one mesh, and nothing is copied per person.
@@ -513,6 +514,21 @@ void noh_identity_random(const noh_identity *identity, uint32_t seed, float amou
  * shapes  weights[target_count] of the person; links[link_count] as made by noh_face_recipe_bind for the same
  *         targets */
 void noh_identity_bind(const noh_identity *identity, const float *weights, noh_face_link *links, uint32_t link_count);
+
+/* Make the colours of a person, as noh_appearance.user of a stage with NOH_USER_COMPLEXION: what a head's own colours
+ * change by, 0 by nothing. Each float holds three bytes, b0 + 256 b1 + 65536 b2; signed bytes are two's complement:
+ *   user[0]  melanin, in 32nds of optical density, signed; blood, in 64ths, signed; freckles, in 255ths of all
+ *   user[1]  of hair: melanin in 32nds, red in 64ths, signed; of lips: blood in 64ths, signed
+ *   user[2]  the iris: square roots of linear red, green, blue, in 255ths
+ *   user[3]  how much of that colour the iris takes, in 255ths; which freckles, 0..255; of brows: melanin beyond hair's,
+ *            in 32nds, signed
+ * The material's surface says what is skin, eye or hair; hair and brows are also found by its name. Seeds are drawn for
+ * a head of light skin and brown hair.
+ * ranges   amount 0..1: of the changes; 1: natural variation
+ * source   Tsumura et al., "Independent-component analysis of skin color image", JOSA A 16, 1999: melanin and
+ *          haemoglobin as densities that add; Jimenez et al., "A practical appearance model for dynamic facial color",
+ *          2010 */
+void noh_complexion_random(uint32_t seed, float amount, float user[4]);
 
 /* ======== speech from phones ========
  * Mouth shapes of speech from timed phones.

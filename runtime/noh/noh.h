@@ -248,8 +248,8 @@ typedef struct noh_stage_desc {
                            * LOD tables, no programs that fade or use fewer influences */
     noh_shading shading; /* default (0) NOH_SHADING_FULL */
     int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
-    int user_values; /* 1: your own shaders read noh_appearance.user: 16 bytes more on the CPU and the GPU for each mesh
-                           * of a visible actor */
+    int user_values; /* 1: your own shaders read noh_appearance.user, NOH_USER_COMPLEXION: the library's draw it: 16 bytes
+                           * more on the CPU and the GPU for each mesh of a visible actor */
     int motion; /* 1: your own shaders read where a vertex was in the last frame (noh_clip_before), for motion vectors:
                            * palettes take twice the bytes on the GPU and three times on the CPU, accumulators twice */
     int sort_blended; /* 1: blended meshes of all actors are drawn from far to near, one actor after another, at 8 bytes
@@ -469,6 +469,8 @@ noh_result noh_actor_place_between(const noh_stage *stage, noh_actor actor, floa
  * errors  NOT_FOUND */
 noh_result noh_actor_cut(noh_stage *stage, noh_actor actor, noh_error *error);
 
+#define NOH_USER_COMPLEXION 2 /* noh_stage_desc.user_values: of noh_complexion_random (face.h) */
+
 /* An actor's appearance. All zeros: visible, with a shadow, within the stage's error, in its own colours. */
 typedef struct noh_appearance {
     uint8_t hidden;         /* 1: neither drawn nor picked; clocks and callback keys go on */
@@ -483,7 +485,7 @@ typedef struct noh_appearance {
     uint32_t texture_set; /* 0: its kind's own textures; else noh_kind_desc.texture_sets[texture_set - 1] */
     uint8_t wrinkle_models; /* NOH_WRINKLE_BY_* (format.h); 0: as its materials have them */
     uint8_t reserved[3];    /* 0 */
-    float user[4];          /* noh_user() in your own vertex shaders, with noh_stage_desc.user_values */
+    float user[4];          /* noh_user() in vertex shaders, with noh_stage_desc.user_values: yours, or a complexion */
 } noh_appearance;
 
 /* Set an actor's appearance.

@@ -5,6 +5,8 @@
 
 #include "convert/model/model_build.h"
 #include "gpu/canvas.h"
+#include "noh/face.h"
+#include "noh/format.h"
 #include "null.h"
 #include "support/lit_quad.h"
 #include "support/skin_asset.h"
@@ -40,7 +42,8 @@ static const uint8_t *texel_of(const noh_appearance *look)
     return look->texture_set == 2 ? cloth[1][0] : cloth[0][look->texture_set];
 }
 
-static uint8_t *quad_pack(uint32_t which, int alpha, uint8_t tint, size_t *count)
+/* values: of the surface; NULL: plain, unlit */
+static uint8_t *quad_pack(uint32_t which, int alpha, uint8_t tint, uint32_t surface, const float *values, size_t *count)
 {
     const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
     model *m = test_model(&desc);
@@ -51,7 +54,10 @@ static uint8_t *quad_pack(uint32_t which, int alpha, uint8_t tint, size_t *count
     m->material_count = 1;
     material->name = model_string("cloth");
     for (int i = 0; i < 4; i++) material->base_color[i] = 1.0f;
-    material->unlit = material->double_sided = 1;
+    material->unlit = values == NULL;
+    material->double_sided = 1;
+    material->surface = surface;
+    if (values) memcpy(material->surface_values, values, sizeof material->surface_values);
     material->alpha = (model_alpha)alpha;
     material->tint = tint;
     material->alpha_cutoff = 0.9f;
@@ -70,6 +76,7 @@ static uint8_t *quad_pack(uint32_t which, int alpha, uint8_t tint, size_t *count
         m->meshes[0].position[3 * v] = v % 2 ? 0.4f : -0.4f;
         m->meshes[0].position[3 * v + 1] = v / 2 ? 0.4f : -0.4f;
         m->meshes[0].position[3 * v + 2] = 0.0f;
+        for (uint32_t i = 0; i < 3 && values; i++) m->meshes[0].normal[3 * v + i] = i == 2 ? 1.0f : 0.0f;
     }
     bytes = test_pack_of(m, count, NULL);
     model_free(m);
@@ -90,12 +97,12 @@ typedef struct wardrobe {
     noh_stage_view view;
 } wardrobe;
 
-static void wardrobe_open(wardrobe *w, int alpha, uint8_t tint)
+static void wardrobe_open_as(wardrobe *w, int alpha, uint8_t tint, uint32_t surface, const float *values)
 {
     memset(w, 0, sizeof *w);
     for (uint32_t i = 0; i < 2; i++) {
         size_t count;
-        w->bytes[i] = quad_pack(i, alpha, tint, &count);
+        w->bytes[i] = quad_pack(i, alpha, tint, surface, values, &count);
         w->packs[i] = test_open(w->bytes[i], count);
     }
     w->sets[0] = (noh_texture_set){ .name = "red", .suffix = "_red" };
@@ -107,6 +114,11 @@ static void wardrobe_open(wardrobe *w, int alpha, uint8_t tint)
     w->desc.kinds = &w->kind;
     w->desc.kind_count = 1;
     w->desc.gpu = &noh_stage_on_gl;
+}
+
+static void wardrobe_open(wardrobe *w, int alpha, uint8_t tint)
+{
+    wardrobe_open_as(w, alpha, tint, NOH_SURFACE_PLAIN, NULL);
 }
 
 static void wardrobe_make(wardrobe *w, gpu *g)
@@ -341,6 +353,208 @@ static void own_shaders_are_given_user_values(void **state)
     fixture_expect_no_errors();
 }
 
+/* ---- complexions ---- */
+
+static double smooth(double from, double to, double x)
+{
+    const double t = fmin(fmax((x - from) / (to - from), 0.0), 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+static double signed_byte(float three, uint32_t which)
+{
+    return (double)(int8_t)((uint32_t)three >> 8u * which & 255u);
+}
+
+/* The densities of face.h, on linear colour. */
+static void skin_of(const float user[4], const double own[3], double out[3])
+{
+    static const double melanin[3] = { 1.0, 1.35, 1.85 }, blood[3] = { 0.15, 1.0, 0.85 }, rest[3] = { .05, .08, .11 };
+    const double red = log(own[0] / own[1]), yellow = log(own[1] / own[2]);
+    const double lips = smooth(0.5, 0.9, 1.047 * red - 0.733 * yellow);
+    const double m = signed_byte(user[0], 0) / 32.0 * (1.0 - 0.4 * lips);
+    const double b = signed_byte(user[0], 1) / 64.0 + signed_byte(user[1], 2) / 64.0 * lips;
+    const double is_skin = smooth(0.0, 0.2, red + yellow);
+    for (int i = 0; i < 3; i++) {
+        const double through = rest[i] + (1.0 - rest[i]) * exp(-m * melanin[i]);
+        out[i] = fmin(own[i] * (1.0 - is_skin + is_skin * through * exp(-b * blood[i])), 1.0);
+    }
+}
+
+static void iris_of(const float user[4], const double own[3], double out[3])
+{
+    const double light = 0.2126 * own[0] + 0.7152 * own[1] + 0.0722 * own[2];
+    const double share = (double)((uint32_t)user[3] & 255u) / 255.0;
+    for (int i = 0; i < 3; i++) {
+        const double root = (double)((uint32_t)user[2] >> 8 * i & 255u) / 255.0;
+        out[i] = own[i] * (1.0 - share) + share * root * root * 1.6 * light / (light + 0.06);
+    }
+}
+
+static void hair_of(const float user[4], const double own[3], double out[3])
+{
+    static const double eumelanin[3] = { 0.60, 1.0, 1.97 }, pheomelanin[3] = { 0.47, 1.0, 2.63 };
+    const double m = signed_byte(user[1], 0) / 32.0, red = signed_byte(user[1], 1) / 64.0;
+    for (int i = 0; i < 3; i++) {
+        out[i] = pow(own[i], exp(fmin(m, 0.0))) * exp(-fmax(m, 0.0) * eumelanin[i] - red * pheomelanin[i]);
+    }
+}
+
+static void none_of(const float user[4], const double own[3], double out[3])
+{
+    (void)user;
+    memcpy(out, own, 3 * sizeof *own);
+}
+
+static const struct {
+    const char *what;
+    uint32_t surface;
+    float values[4];
+    void (*should)(const float user[4], const double own[3], double out[3]);
+} parts[] = {
+    { "skin", NOH_SURFACE_SKIN, { 1000.0f }, skin_of },
+    { "an iris", NOH_SURFACE_EYE, { 0.0f, 0.0f, 1.0f, 0.3f }, iris_of },
+    { "the white of an eye", NOH_SURFACE_EYE, { 0.0f, 0.0f, -1.0f, 0.3f }, none_of },
+    { "an eye without an iris", NOH_SURFACE_EYE, { 0.0f }, none_of },
+    { "hair", NOH_SURFACE_HAIR, { 0.0f }, hair_of },
+    { "teeth", NOH_SURFACE_TEETH, { 0.0f }, none_of },
+    { "cloth", NOH_SURFACE_PLAIN, { 0.0f }, none_of },
+};
+
+/* Without freckles, which have a test of their own; the first actor has no complexion. */
+static noh_appearance complexion_of(uint32_t actor)
+{
+    noh_appearance look = { .pixels = 1e-4f, .texture_set = looks[actor].texture_set };
+    if (!actor) return look;
+    noh_complexion_random(actor * 7u, 1.0f, look.user);
+    look.user[0] = (float)((uint32_t)look.user[0] & 0xffffu);
+    return look;
+}
+
+/* ways: 0 a crowd in one draw, 1 each alone, 2 each alone in the phone tier. users: 0 none, 1 zeros, 2 complexions */
+static void draw_complexions(gpu *g, uint32_t part, uint32_t way, int users, const noh_gl_shader_desc *desc,
+                             wardrobe *w, uint32_t *rgba)
+{
+    canvas to;
+    noh_stage_shader *shader = NULL;
+    void *memory = NULL;
+    wardrobe_open_as(w, MODEL_ALPHA_OPAQUE, MODEL_TINT_OFF, parts[part].surface, parts[part].values);
+    w->apart = way > 0;
+    w->desc.shading = way == 2 ? NOH_SHADING_PHONE : NOH_SHADING_FULL;
+    w->desc.without_depth = 1; /* the albedo is of colour passes alone */
+    w->desc.user_values = users ? NOH_USER_COMPLEXION : 0;
+    wardrobe_make(w, g);
+    for (uint32_t a = 0; a < ACTORS; a++) {
+        noh_appearance look = complexion_of(a);
+        if (users < 2) memset(look.user, 0, sizeof look.user);
+        assert_int_equal(noh_actor_set_appearance(w->stage, w->actors[a], &look, NULL), NOH_OK);
+    }
+    assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
+    if (desc) {
+        const size_t bytes = noh_stage_shader_size(w->stage);
+        memory = test_aligned(NULL, bytes);
+        static char log[4096];
+        if (noh_stage_shader_create(w->stage, memory, bytes, desc, log, sizeof log, &shader, &said))
+            fail_msg("%s: %s", said.what, log);
+    }
+    draw(w, &to, shader, rgba);
+    if (shader) noh_stage_shader_delete(shader);
+    free(memory);
+    canvas_close(&to);
+}
+
+static void complexions_are_the_densities_of_each_part(void **state)
+{
+    static const char fragment[] =
+        "in vec3 v_world; in vec3 v_normal; in vec2 v_uv; centroid in vec4 v_color;\n"
+        "layout(location = 0) out vec4 o_color;\n"
+        "void main() {\n"
+        "    noh_surface s = noh_surface_of(noh_base(v_uv, v_color), v_world, v_normal, vec4(0.0), v_uv);\n"
+        "    noh_fade();\n"
+        "    o_color = vec4(s.albedo, 1.0);\n"
+        "}\n";
+    const noh_gl_shader_desc desc = { .name = "albedo", .fragment = fragment };
+    static uint32_t rgba[PIXELS];
+    (void)state;
+    for (uint32_t i = 0; i < TEST_COUNT(parts) * 3u; i++) {
+        const uint32_t part = i / 3u;
+        int changed = 0;
+        wardrobe w;
+        draw_complexions(fixture_gpu(), part, i % 3u, 2, &desc, &w, rgba);
+        for (uint32_t a = 0; a < ACTORS; a++) {
+            const noh_appearance look = complexion_of(a);
+            const uint8_t *texel = texel_of(&look), *pixel = middle_of(&w, rgba, a);
+            double own[3], want[3];
+            for (int c = 0; c < 3; c++) own[c] = decoded(texel[c]);
+            if (a)
+                parts[part].should(look.user, own, want);
+            else
+                none_of(look.user, own, want);
+            for (int c = 0; c < 3; c++) {
+                changed |= abs(pixel[c] - texel[c]) > 8;
+                if (fabs(pixel[c] - encoded(want[c])) > 1.6)
+                    fail_msg("%s, way %u, actor %u, channel %d: %u for %g", parts[part].what, i % 3u, a, c, pixel[c],
+                             encoded(want[c]));
+            }
+        }
+        assert_int_equal(changed, parts[part].should != none_of);
+        wardrobe_close(&w);
+    }
+    fixture_expect_no_errors();
+}
+
+/* A complexion of zeros is the picture of a stage without complexions, lit, to the bit; others are not; a crowd is the
+ * picture of its actors alone. */
+static void no_complexion_is_no_change(void **state)
+{
+    static uint32_t rgba[4][PIXELS];
+    (void)state;
+    for (uint32_t part = 0; part < TEST_COUNT(parts); part++) {
+        for (uint32_t i = 0; i < 4; i++) {
+            wardrobe w;
+            draw_complexions(fixture_gpu(), part, i == 3u, i < 2u ? (int)i : 2, NULL, &w, rgba[i]);
+            wardrobe_close(&w);
+        }
+        assert_memory_equal(rgba[0], rgba[1], sizeof rgba[0]);
+        assert_int_equal(memcmp(rgba[0], rgba[2], sizeof rgba[0]) != 0, parts[part].should != none_of);
+        assert_memory_equal(rgba[2], rgba[3], sizeof rgba[2]);
+    }
+    fixture_expect_no_errors();
+}
+
+/* Freckles darken spots and leave the skin between them as it is, to the bit. */
+static void freckles_are_spots(void **state)
+{
+    static const float values[4] = { 20.0f };
+    static uint32_t rgba[2][PIXELS];
+    uint32_t spots = 0, skin = 0;
+    (void)state;
+    for (uint32_t i = 0; i < 2; i++) {
+        noh_appearance look = { .pixels = 1e-4f, .user = { (float)(i * 255u << 16), 0.0f, 0.0f, (float)(9u << 8) } };
+        canvas to;
+        wardrobe w;
+        wardrobe_open_as(&w, MODEL_ALPHA_OPAQUE, MODEL_TINT_OFF, NOH_SURFACE_SKIN, values);
+        w.desc.user_values = NOH_USER_COMPLEXION;
+        wardrobe_make(&w, fixture_gpu());
+        for (uint32_t a = 0; a < ACTORS; a++) {
+            assert_int_equal(noh_actor_set_appearance(w.stage, w.actors[a], &look, NULL), NOH_OK);
+        }
+        assert_int_equal(canvas_open(&to, fixture_gpu(), WIDTH, HEIGHT), 0);
+        draw(&w, &to, NULL, rgba[i]);
+        canvas_close(&to);
+        wardrobe_close(&w);
+    }
+    for (uint32_t p = 0; p < PIXELS; p++) {
+        const uint8_t *before = (const uint8_t *)&rgba[0][p], *after = (const uint8_t *)&rgba[1][p];
+        for (int c = 0; c < 3; c++) assert_true(after[c] <= before[c]);
+        spots += after[1] + 4 < before[1];
+        skin += before[0] > 0 && memcmp(before, after, 3) == 0;
+    }
+    print_message("%u pixels of freckles, %u of skin\n", spots, skin);
+    assert_true(spots > 50 && skin > spots);
+    fixture_expect_no_errors();
+}
+
 /* ---- in every way of drawing ---- */
 
 /* Morphed and skinned copies with a tint: one by one with palettes in a block and in a texture, and as a crowd, the
@@ -570,6 +784,9 @@ int main(int argc, char **argv)
         cmocka_unit_test(actors_look_as_their_parts_drawn_by_hand),
         cmocka_unit_test(own_shaders_are_given_the_tint),
         cmocka_unit_test(own_shaders_are_given_user_values),
+        cmocka_unit_test(complexions_are_the_densities_of_each_part),
+        cmocka_unit_test(no_complexion_is_no_change),
+        cmocka_unit_test(freckles_are_spots),
         cmocka_unit_test(every_way_of_drawing_has_the_tint),
         cmocka_unit_test(sets_take_what_is_planned),
         cmocka_unit_test(textures_are_shared_between_kinds),

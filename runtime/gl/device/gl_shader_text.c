@@ -24,6 +24,7 @@ const char *noh_gl_shader_text(const char *name)
                   { "common_environment.glsl", noh_shader_common_environment_glsl },
                   { "common_wrinkle.glsl", noh_shader_common_wrinkle_glsl },
                   { "common_material.glsl", noh_shader_common_material_glsl },
+                  { "common_complexion.glsl", noh_shader_common_complexion_glsl },
                   { "common_scatter.glsl", noh_shader_common_scatter_glsl },
                   { "common_eye.glsl", noh_shader_common_eye_glsl },
                   { "common_light.glsl", noh_shader_common_light_glsl } };

@@ -7,6 +7,7 @@
  * nearly opaque, as along strands of hair, this core is drawn with the opaque surfaces and hides whatever is behind it;
  * only the fringe, thin and mostly of one colour, is blended in stored order. */
 #include "core/base/assert_internal.h"
+#include "core/base/name_internal.h"
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/draw/gl_light_internal.h"
 #include "gl/draw/gl_skin_internal.h"
@@ -482,13 +483,26 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
 /* Bits of the uniform noh_blends: how a tint applies. */
 #define TINT_ALPHA 1
 #define TINT_NO_COLOR 2
+#define COMPLEXION_SHIFT 2
+
+/* Which part of a complexion a material shows (common_complexion.glsl): by its surface, hair also by its name. */
+static GLint complexion_part(const noh_mesh *mesh, const noh_material *m)
+{
+    const char *name = noh_pack_string(mesh->pack, m->name);
+    if (m->surface == NOH_SURFACE_SKIN) return 1;
+    if (m->surface == NOH_SURFACE_EYE) return 2;
+    if (m->surface == NOH_SURFACE_TEETH || noh_name_has(name, "lash")) return 0;
+    if (noh_name_has(name, "brow")) return 4;
+    return m->surface == NOH_SURFACE_HAIR || (noh_name_has(name, "hair") && !noh_name_has(name, "chair")) ? 3 : 0;
+}
 
 static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,
                           draw_part part)
 {
     const noh_material *m = noh_mesh_material(&j->mesh->mesh, s);
     set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
-    j->r->gl->Uniform1i(v->u_blends, ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
+    const GLint shows = v->u_user >= 0 ? complexion_part(&j->mesh->mesh, m) << COMPLEXION_SHIFT : 0;
+    j->r->gl->Uniform1i(v->u_blends, shows | ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
                                          ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));
     if (j->r->shaders.bind) {
         j->r->shaders.bind(j->r->shaders.user, j->r->gl, v->program, m);

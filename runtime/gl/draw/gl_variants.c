@@ -216,6 +216,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_skin_glsl;
         pieces[count++] = noh_shader_common_face_glsl;
         pieces[count++] = noh_shader_common_transfer_glsl;
+        pieces[count++] = noh_shader_common_complexion_glsl;
         pieces[count++] = noh_shader_common_vertex_glsl;
     } else {
         pieces[count++] = noh_shader_common_fade_glsl;
@@ -225,6 +226,7 @@ static uint32_t prefix_pieces(GLenum stage, const char *pieces[PREFIX_PIECES_MAX
         pieces[count++] = noh_shader_common_environment_glsl;
         pieces[count++] = noh_shader_common_scatter_glsl;
         pieces[count++] = noh_shader_common_eye_glsl;
+        pieces[count++] = noh_shader_common_complexion_glsl;
         pieces[count++] = noh_shader_common_light_glsl;
     }
     pieces[count++] = own;

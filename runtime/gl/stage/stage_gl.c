@@ -339,13 +339,16 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
                                 const noh_gl_device *device, void *memory, size_t bytes, noh_gl_renderer *out,
                                 noh_error *error)
 {
+    static const noh_gl_shader_desc library = { .defines = NULL };
+    noh_gl_shader_desc complexions = own ? *own : library;
     noh_gl_renderer_desc d = renderer_desc(&s->desc, s->plan);
+    if (!complexions.defines) complexions.defines = "#define NOH_COMPLEXION\n";
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].morph) d.layers_uint = noh_gl_morph_binding_of(gl->models[i].morph, 0).is_uint;
     }
     d.meshes = gl->meshes;
     d.mesh_count = gl->model_count;
-    d.shaders = own;
+    d.shaders = s->desc.user_values == NOH_USER_COMPLEXION ? &complexions : own;
     return noh_gl_renderer_create(device, &d, memory, bytes, out, error);
 }
 

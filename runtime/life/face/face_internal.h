@@ -69,7 +69,8 @@ typedef enum noh_face_stream {
     NOH_FACE_SWAY,                      /* three: yaw, pitch, roll */
     NOH_FACE_DRIFT = NOH_FACE_SWAY + 3, /* three: x, y, z */
     NOH_FACE_BROWS = NOH_FACE_DRIFT + 3,
-    NOH_FACE_STAND = NOH_FACE_BROWS + 3 /* six, of bodies that stand */
+    NOH_FACE_STAND = NOH_FACE_BROWS + 3, /* six, of bodies that stand */
+    NOH_FACE_COMPLEXION = NOH_FACE_STAND + 6
 } noh_face_stream;
 
 float noh_face_uniform(uint32_t seed, uint32_t stream, uint32_t index); /* above 0, below 1 */

@@ -183,6 +183,47 @@ static void bad_descs_and_memory_are_refused(void **state)
     drop_people(&p);
 }
 
+/* ---- complexions ---- */
+
+static double byte_of(float three, uint32_t which)
+{
+    return (double)(int8_t)((uint32_t)three >> 8u * which & 255u);
+}
+
+/* Skin, hair and eyes belong together: the darker the skin, the darker the hair; blue eyes and freckles are of light
+ * skin. Seeds repeat; an amount of 0 changes no density. */
+static void complexions_are_of_one_piece(void **state)
+{
+    enum { PEOPLE = 4096 };
+    double sum[5] = { 0.0 }, blue_melanin = -100.0;
+    uint32_t freckled[2] = { 0 }, many[2] = { 0 }, blues = 0;
+    (void)state;
+    for (uint32_t seed = 0; seed < PEOPLE; seed++) {
+        float user[4], again[4], none[4];
+        noh_complexion_random(seed, 1.0f, user);
+        noh_complexion_random(seed, 1.0f, again);
+        noh_complexion_random(seed, 0.0f, none);
+        assert_memory_equal(user, again, sizeof user);
+        assert_true(none[0] == 0.0f && none[1] == 0.0f && ((uint32_t)none[3] & 0xff00ffu) == 0);
+        for (int i = 0; i < 4; i++) {
+            assert_true(user[i] >= 0.0f && user[i] < 16777216.0f && user[i] == (float)(uint32_t)user[i]);
+        }
+        const double melanin = byte_of(user[0], 0), hair = byte_of(user[1], 0);
+        const int dark = melanin > 12.0, is_blue = ((uint32_t)user[2] & 255u) + 20u < (uint32_t)user[2] >> 16;
+        sum[0] += melanin, sum[1] += hair, sum[2] += melanin * hair, sum[3] += melanin * melanin, sum[4] += hair * hair;
+        many[dark]++;
+        freckled[dark] += (uint32_t)user[0] >> 16 > 0;
+        blues += (uint32_t)is_blue;
+        if (is_blue) blue_melanin = fmax(blue_melanin, melanin);
+    }
+    const double covariance = sum[2] / PEOPLE - sum[0] / PEOPLE * sum[1] / PEOPLE;
+    const double spread = sqrt((sum[3] / PEOPLE - sum[0] * sum[0] / PEOPLE / PEOPLE) *
+                               (sum[4] / PEOPLE - sum[1] * sum[1] / PEOPLE / PEOPLE));
+    print_message("skin and hair correlate by %.2f; %u of %d with blue eyes\n", covariance / spread, blues, PEOPLE);
+    assert_true(covariance / spread > 0.6 && blues > PEOPLE / 20 && blue_melanin < 20.0);
+    assert_true(many[0] > PEOPLE / 4 && many[1] > PEOPLE / 4 && 8u * freckled[1] < freckled[0]);
+}
+
 /* ---- a head with 290 identity targets ---- */
 
 static byte_buffer head_pack;
@@ -509,6 +550,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(seeds_and_amounts_do_what_they_say),
         cmocka_unit_test(people_are_the_same_everywhere),
         cmocka_unit_test(bad_descs_and_memory_are_refused),
+        cmocka_unit_test(complexions_are_of_one_piece),
         cmocka_unit_test(a_head_is_grouped),
         cmocka_unit_test(lids_shut_on_all_people),
         cmocka_unit_test(people_share_the_deltas_of_expressions),

@@ -8,6 +8,8 @@
 #include "cli/message.h"
 #include "noh/base.h"
 #include "noh/clip.h"
+#include "noh/face.h"
+#include "noh/format.h"
 #include "noh/gl_device.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
@@ -56,6 +58,14 @@ static int find_skeleton(crowd *c, const pack_file *file)
     return found ? 0 : tool_fail(file->path, "a crowd needs a skinned mesh, and the pack has none");
 }
 
+int crowd_user_values(const noh_pack *pack)
+{
+    for (uint32_t i = 0; i < pack->material_count; i++) {
+        if (pack->materials[i].surface == NOH_SURFACE_SKIN) return NOH_USER_COMPLEXION;
+    }
+    return 0;
+}
+
 static void fill_desc(crowd *c, const pack_file *file)
 {
     const crowd_options *o = &c->options;
@@ -76,6 +86,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->desc.lod.pixels = o->pixels;
     c->desc.height_px = o->height;
     c->desc.update_budget_ns = o->budget_ns;
+    c->desc.user_values = o->complexions ? crowd_user_values(&file->pack) : 0;
     c->desc.gpu = &noh_stage_on_gl;
 }
 
@@ -141,8 +152,11 @@ static noh_result enter(crowd *c, uint32_t body, noh_error *error)
 {
     const noh_place place = place_of(body);
     const noh_clip_set *set = NULL;
+    noh_appearance look = { 0 };
     noh_actor *actor = &c->actors[body];
     noh_result result = noh_stage_spawn(c->stage, 0, &place, actor, error);
+    if (c->desc.user_values) noh_complexion_random(body, 1.0f, look.user);
+    if (!result) result = noh_actor_set_appearance(c->stage, *actor, &look, error);
     if (!result) {
         (void)noh_actor_controller(c->stage, *actor, &set);
         result = play(c, *actor, body, BODY, nth_clip(set, body, 1), set, error);

@@ -31,12 +31,16 @@ typedef struct crowd_options {
     uint32_t width, height;            /* of the view, pixels; default (0) 1280 x 720 */
     uint32_t near_count, middle_count; /* as in noh_kind_desc */
     noh_debug_view view;
-    int spots; /* 1: soft spots under the bodies */
+    int spots;       /* 1: soft spots under the bodies */
+    int complexions; /* 1: each body has a complexion of its own, in packs with skin */
 } crowd_options;
 
 typedef struct crowd_events {
     uint64_t count, sum; /* sum of hashes of body, key and time: equal for the same events in any order */
 } crowd_events;
+
+/* NOH_USER_COMPLEXION for a pack with skin, 0 for others: of noh_stage_desc.user_values. */
+int crowd_user_values(const noh_pack *pack);
 
 /* Do not move it: the stage points into it. */
 typedef struct crowd {

@@ -1,4 +1,6 @@
 #include "place_scene.h"
+#include "crowd_bodies.h"
+#include "noh/face.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -24,6 +26,7 @@ static void fill_desc(place_scene *s)
     s->desc.height_px = s->options->height;
     s->desc.light = &s->light.desc;
     s->desc.encode_srgb = s->options->encode_srgb;
+    s->desc.user_values = crowd_user_values(&s->file->pack);
     s->desc.gpu = &noh_stage_on_gl;
 }
 
@@ -97,6 +100,7 @@ static noh_appearance look_of(uint32_t person)
     memset(&look, 0, sizeof look);
     for (int i = 0; i < 3; i++) look.tint[i] = (uint8_t)(shade * (float)robe[i]);
     look.tint[3] = 255;
+    noh_complexion_random(person, 1.0f, look.user);
     return look;
 }
 

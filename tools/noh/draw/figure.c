@@ -180,6 +180,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     d->morph_path = (uint32_t)desc->path;
     d->morph_sums = desc->sums;
     d->shading = desc->shading;
+    d->user_values = desc->complexions ? NOH_USER_COMPLEXION : 0;
     d->light = desc->light && caps ? &desc->light->desc : NULL;
     d->without_transfer = desc->light && desc->light->without_transfer;
     d->without_depth = !d->light || !d->light->shadow_px;

@@ -82,9 +82,10 @@ typedef struct figure_desc {
     figure_body *body; /* NULL: it looks ahead and stands as in its clips. Must outlive the figure, at one address */
     int stands;        /* 1: it stands as noh_stand_modifier does */
     const noh_modifier *drivers; /* [NOH_STAGE_KINDS_MAX] one of each kind, after its clips; NULL: none */
-    int hair;          /* 1: with the pack's hair, if any */
-    float wind[3];     /* wind in the hair, as in noh_hair_carrier */
-    const figure_mark *marks; /* [mark_count] for figure_strike; NULL: none. Must stay */
+    int hair;                    /* 1: with the pack's hair, if any */
+    int complexions;             /* 1: noh_appearance.user is a complexion */
+    float wind[3];               /* wind in the hair, as in noh_hair_carrier */
+    const figure_mark *marks;    /* [mark_count] for figure_strike; NULL: none. Must stay */
     uint32_t mark_count;
     int grown;       /* 1: marks are grown as triangles */
     lighting *light; /* NULL: the plain renderer's own. Must outlive the figure, at one address */
@@ -99,10 +100,11 @@ typedef struct figure {
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     uint32_t faces_found; /* a bit for each kind */
     drawn_hair hair;
-    noh_kind_stand stands[NOH_STAGE_KINDS_MAX];                      /* of desc.stands */
-    noh_modifier rest_parts[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX]; /* of a kind: how it stands, its driver, the others */
-    noh_modifier hair_parts[NOH_MODIFIERS_MAX];                      /* of its kind: the others, then the hair */
-    uint32_t *nodes;                                                 /* of all kinds, one after another */
+    noh_kind_stand stands[NOH_STAGE_KINDS_MAX]; /* of desc.stands */
+    noh_modifier rest_parts[NOH_STAGE_KINDS_MAX]
+                           [NOH_MODIFIERS_MAX]; /* of a kind: how it stands, its driver, the others */
+    noh_modifier hair_parts[NOH_MODIFIERS_MAX]; /* of its kind: the others, then the hair */
+    uint32_t *nodes;                            /* of all kinds, one after another */
     noh_stage_plan plan;
     /* of an open figure */
     gpu *g; /* NULL: nothing is drawn */

@@ -413,7 +413,8 @@ static const option options[] = {
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, faces),
       .value = "N",
-      .what = "show N people, 1 to 1024, each from a seed and the mesh's identity targets (noh build --identity)",
+      .what =
+          "show N people, 1 to 1024, each from a seed: colours of skin, hair and eyes, and the mesh's identity targets (noh build --identity)",
       .example = "64",
       .excludes = "--clip --target --lods --bones" },
     { .name = "--seed",

@@ -20,6 +20,10 @@ static noh_result open_mesh(sheet_faces *s, noh_error *error)
         result = noh_identity_init(s->memory, bytes, scratch, working, &s->mesh, NULL, &s->identity, error);
     }
     free(scratch);
+    if (result == NOH_ERR_ARG) { /* no identity targets: people differ by their colours alone */
+        memset(&s->identity, 0, sizeof s->identity);
+        result = NOH_OK;
+    }
     if (result) sheet_faces_close(s);
     return result;
 }
@@ -32,9 +36,7 @@ int sheet_faces_open(sheet_faces *s, const pack_file *file)
     for (uint32_t i = 0; result && noh_pack_mesh_at(&file->pack, i, &s->mesh, NULL) == NOH_OK; i++) {
         if (s->mesh.header->target_count) result = open_mesh(s, &error);
     }
-    return !result ? 0
-                   : tool_fail(file->path, "%s (`noh build --identity FILE` adds them)",
-                               result == NOH_ERR_NOT_FOUND ? "no mesh has targets" : error.what);
+    return !result ? 0 : tool_fail(file->path, "%s", result == NOH_ERR_NOT_FOUND ? "no mesh has targets" : error.what);
 }
 
 void sheet_faces_close(sheet_faces *s)
@@ -71,14 +73,14 @@ const char *sheet_faces_name(uint32_t shown)
 
 static int add_expression(const sheet_faces *s, uint32_t shown)
 {
-    const uint32_t count = s->identity.target_count;
+    const uint32_t count = s->mesh.header->target_count;
     float channels[NOH_CHANNEL_COUNT] = { 0.0f };
     noh_face_link *links = malloc(LINKS_MAX * sizeof *links);
     uint32_t link_count;
     if (!links) return 1;
     link_count = noh_face_recipe_bind(NULL, 0, s->names, count, links, LINKS_MAX);
     link_count = link_count < LINKS_MAX ? link_count : LINKS_MAX;
-    noh_identity_bind(&s->identity, s->weights, links, link_count);
+    if (s->identity.target_count) noh_identity_bind(&s->identity, s->weights, links, link_count);
     for (uint32_t i = 0; i < expressions[shown].count; i++) channels[expressions[shown].channels[i]] = 1.0f;
     noh_face_apply(links, link_count, channels, s->weights);
     free(links);
@@ -87,11 +89,15 @@ static int add_expression(const sheet_faces *s, uint32_t shown)
 
 int sheet_faces_hold(const sheet_faces *s, figure *f, uint32_t seed, uint32_t shown)
 {
-    int status = 0;
-    memset(s->weights, 0, s->identity.target_count * sizeof *s->weights);
-    noh_identity_random(&s->identity, seed, 1.0f, s->weights);
+    const uint32_t count = s->mesh.header->target_count;
+    noh_appearance look = f->look;
+    int status;
+    memset(s->weights, 0, count * sizeof *s->weights);
+    if (s->identity.target_count) noh_identity_random(&s->identity, seed, 1.0f, s->weights);
     if (shown && add_expression(s, shown)) return tool_fail(f->desc.file->path, "out of memory");
-    for (uint32_t t = 0; t < s->identity.target_count && !status; t++) {
+    noh_complexion_random(seed, 1.0f, look.user);
+    status = figure_set_look(f, &look);
+    for (uint32_t t = 0; t < count && !status; t++) {
         if (s->weights[t] != 0.0f) status = figure_hold(f, s->names[t], (double)s->weights[t]);
     }
     return status;

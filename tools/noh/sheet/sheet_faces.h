@@ -16,7 +16,7 @@ typedef struct sheet_faces {
 
 #define SHEET_FACES_SHOWN 6u /* at rest, and five expressions */
 
-/* Of the first mesh that has identity targets. Prints an error and returns an exit code; 0 on success. */
+/* Of the first mesh that has targets; without identity targets, people differ by their colours alone. Prints an error and returns an exit code; 0 on success. */
 int sheet_faces_open(sheet_faces *s, const pack_file *file);
 void sheet_faces_close(sheet_faces *s);
 /* Hold the weights of the person of a seed, at rest (0) or with an expression (below SHEET_FACES_SHOWN). */

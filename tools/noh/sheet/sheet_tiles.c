@@ -199,6 +199,7 @@ void sheet_tiles_want(const sheet_tiles *t, figure_desc *desc)
 {
     desc->track_count = t->blend || t->to || t->clips.count < 2 ? 2u : (uint32_t)t->clips.count;
     desc->held_float_count = t->face_count || t->wrinkled ? FIGURE_HELD_ALL : 1u;
+    desc->complexions = t->face_count > 0;
     desc->inertia = t->inertia;
     desc->falls = t->push != NULL;
     desc->face_layer = t->clips.count > 1;
