@@ -246,13 +246,13 @@ static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_bo
 {
     memset(b->of.motions, 0, sizeof b->of.motions);
     if (b->doll) noh_ragdoll_motions(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->of.motions);
+    b->goals = noh_stage_breath_left(b, s->head->clock);
     b->doll = 0;
     b->state = NOH_BODY_STANDS;
     b->moves = NOH_MOVES_UP_BEGINS;
     b->rise_ticks = ticks;
     b->rise_clock = b->clocks[0] = s->head->clock;
     b->poses = 1;
-    b->goals = 0;
 }
 
 noh_result noh_actor_get_up(noh_stage *stage, noh_actor actor, const noh_get_up *how, uint32_t *ticks, noh_error *error)

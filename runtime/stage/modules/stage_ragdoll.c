@@ -184,6 +184,7 @@ static void show_doll(const noh_stage_kind *k, noh_stage_body *b, const noh_modi
     if (b->goals) noh_ragdoll_from_pose(&shared->fit, w->skeleton, w->local, &frame, b->bodies[1]);
     noh_stage_ragdoll_weights(k, b, weights);
     noh_ragdoll_to_pose(&shared->fit, w->skeleton, &frame, b->bodies[0], weights, w->local);
+    noh_stage_breathe_lying(k, b, w);
 }
 
 static void modify(noh_modifier_work *w)
@@ -200,6 +201,7 @@ static void modify(noh_modifier_work *w)
         noh_stage_run_get_up(k, b, w);
     }
     remember(k, b, w);
+    if (b->goals) noh_stage_breathe_out(k, b, w);
 }
 
 /* ---- time ---- */
@@ -273,6 +275,7 @@ static void step(noh_stage_kind *k, uint32_t ticks)
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive) continue;
         if (b->doll && b->moves == NOH_MOVES_BRACING) noh_stage_step_brace(r, b, ticks);
+        if (b->doll) noh_stage_step_lying(r, b, ticks);
         if (b->doll) follow_doll(k, b, &k->actors[i]);
         if (b->moves == NOH_MOVES_STAGGERING) noh_stage_step_stagger(k, &k->actors[i], b, ticks);
     }
@@ -370,6 +373,7 @@ noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage
     b->doll = doll;
     b->state = NOH_BODY_FALLS;
     b->moves = NOH_MOVES_BY_CLIPS;
+    b->rise_ticks = 0;
     b->goals = 0;
     b->poses = 0;
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
@@ -513,7 +517,7 @@ static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
 {
     if (b->doll > noh_stage_ragdoll_kind_of(k)->count || b->poses > 2u ||
         (b->poses == 2u && b->clocks[0] <= b->clocks[1]) || b->state > NOH_BODY_LIES ||
-        (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->dead > 1u || b->goals > 1u) {
+        (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->dead > 1u || (b->doll && b->goals > 1u)) {
         return "state: bad ragdoll of an actor";
     }
     for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {

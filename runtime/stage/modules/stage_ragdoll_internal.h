@@ -39,15 +39,15 @@ typedef struct noh_stage_body {
                                                          * it falls offset: from its first body to its place, metres */
     float hertz[NOH_RAGDOLL_BODIES_MAX], animated[NOH_RAGDOLL_BODIES_MAX]; /* noh_body_hold */
     uint32_t held;                                                         /* bit i: body i */
-    uint32_t rise_ticks;                                                   /* for how long it gets up */
-    int64_t rise_clock;                                                    /* since then */
-    int64_t clocks[2];                                                     /* of the two poses */
-    uint32_t doll;                                                         /* 1 + index in the kind's set; 0: none */
-    uint32_t poses;                                                        /* how many of the two there are */
-    uint8_t state;                                                         /* noh_body_state, of the first three */
-    uint8_t moves;                                                         /* noh_stage_moves */
+    uint32_t rise_ticks; /* for how long it gets up; while it falls: for how long it has rested */
+    int64_t rise_clock;  /* since then */
+    int64_t clocks[2];   /* of the two poses */
+    uint32_t doll;       /* 1 + index in the kind's set; 0: none */
+    uint32_t poses;      /* how many of the two there are */
+    uint8_t state;       /* noh_body_state, of the first three */
+    uint8_t moves;       /* noh_stage_moves */
     uint8_t dead;
-    uint8_t goals;   /* 1: bodies[1] is where its clips have them */
+    uint8_t goals;   /* in a fall 1: bodies[1] is where its clips have them; after one: its last breath, in 255ths */
     float origin[3]; /* world, metres: near to its bodies, so that floats have as many digits everywhere */
 } noh_stage_body;
 
@@ -96,6 +96,13 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
 /* A place as bodies that count from `origin` have it. */
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */
+/* ---- figures that lie breathe (stage_lie.c) ---- */
+
+void noh_stage_step_lying(const noh_stage_ragdoll_kind *shared, noh_stage_body *b, uint32_t ticks);
+void noh_stage_breathe_lying(const noh_stage_kind *k, const noh_stage_body *b, const noh_modifier_work *w);
+uint8_t noh_stage_breath_left(const noh_stage_body *b, int64_t clock); /* for noh_stage_body.goals as it gets up */
+void noh_stage_breathe_out(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w);
+
 void noh_stage_run_get_up(const noh_stage_kind *k, noh_stage_body *b, noh_modifier_work *w);
 
 /* ---- pushes ---- */

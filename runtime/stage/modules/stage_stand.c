@@ -23,7 +23,6 @@
 #define FORE_OUT 0.06f
 #define FORE_AHEAD 0.22f
 #define LOWERED 0.93f /* cosine to straight down: arms at least as low stay as they are */
-#define BREATH_TICKS SECONDS(4.0f)
 #define BREATH 0.022f /* radians */
 #define SHIFT 0.035f  /* of a leg, to each side */
 #define TILT 0.035f   /* radians, of the pelvis */
@@ -55,15 +54,6 @@ static float held(const noh_modifier_work *w, uint32_t stream, float period, flo
     const float part = (at - begins) / moves, s = part < 0.0f ? 0.0f : part > 1.0f ? 1.0f : part;
     const float from = key_of(seed, stream, index), to = key_of(seed, stream, index + 1u);
     return from + (to - from) * s * s * s * (10.0f - s * (15.0f - 6.0f * s));
-}
-
-/* 0 exhaled .. 1 inhaled. */
-static float breath_of(const noh_modifier_work *w)
-{
-    const uint32_t at = (uint32_t)((uint64_t)w->clock % BREATH_TICKS);
-    float sine, cosine;
-    noh_sin_cos_turn((uint32_t)(((uint64_t)at << 32) / BREATH_TICKS), &sine, &cosine);
-    return 0.5f - 0.5f * cosine;
 }
 
 /* ---- arms ---- */
@@ -126,7 +116,7 @@ static void shift_weight(const noh_modifier_work *w, const noh_feet_rig *rig, co
 static void move_trunk(const noh_modifier_work *w, const noh_gaze_rig *rig)
 {
     const noh_stage_kind *k = w->kind;
-    const float breath = BREATH * breath_of(w), yaw = TURN * held(w, YAW, 4.3f, 0.7f);
+    const float breath = BREATH * noh_stage_breath(w->clock), yaw = TURN * held(w, YAW, 4.3f, 0.7f);
     const float pitch = NOD * held(w, PITCH, 3.1f, 0.8f);
     if (!rig->joint_count || w->joint_count <= rig->last) return;
     if (rig->joint_count > 1u) turn_by(w, rig->joints[0], -breath, 0.0f, 0.0f);

@@ -8,6 +8,7 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
+#include "stage/modules/stage_ragdoll_internal.h"
 
 #include <math.h>
 #include <string.h>
@@ -335,6 +336,70 @@ static void who_lies_gets_up(void **state)
         assert_true(fabsf(place.position[1]) < 1e-4f);
         assert_true(at[1][5][1] > 0.8f && at[1][3][1] < 0.12f && at[1][3][1] > 0.03f);
         assert_true(hypotf(at[1][5][0] - lay[0], at[1][5][2] - lay[2]) < 0.7f);
+        close_cast(&c);
+    }
+}
+
+/* The bodies of the ragdoll, which breath must not touch. */
+static void bodies_of(const cast *c, noh_actor actor, noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX])
+{
+    noh_stage_kind *k;
+    const noh_stage_actor *a = noh_stage_actor_of(c->stage, actor, &k);
+    memcpy(bodies, noh_stage_body_of(k, noh_stage_index(k, a))->bodies[0], NOH_RAGDOLL_BODIES_MAX * sizeof *bodies);
+}
+
+/* On its back and on its front its chest rises and falls by millimetres, four seconds a breath, from the last step on
+ * without a leap, also as it gets up; what lies on the ground stays where it lies, and the ragdoll sleeps on. The dead
+ * do not breathe. */
+static void who_lies_breathes(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    (void)state;
+    for (uint32_t way = 0; way < 3; way++) {
+        noh_ragdoll_pose lay[NOH_RAGDOLL_BODIES_MAX], lies[NOH_RAGDOLL_BODIES_MAX];
+        float first[TEST_COUNT(tracked)][3], now[TEST_COUNT(tracked)][3], before[3], chest[3];
+        float low = 1e9f, high = -1e9f, slides = 0.0f, leap = 0.0f;
+        noh_actor actor;
+        cast c;
+        open_cast(&c, 1, &ragdoll, 1);
+        cast_make(&c, NULL);
+        actor = enter(&c, 0.0f);
+        run(&c, 40);
+        fall_with(&c, actor, way == 1 ? 60.0f : -90.0f);
+        assert_int_equal(noh_actor_stop(c.stage, actor, 0, 1, NULL), NOH_OK); /* shoulders have no bodies */
+        if (way == 2) assert_int_equal(noh_actor_kill(c.stage, actor, NULL), NOH_OK);
+        for (int f = 0; f < 480 && noh_actor_body(c.stage, actor) != NOH_BODY_LIES; f++) run(&c, 1);
+        bodies_of(&c, actor, lay);
+        track(&c, actor, first);
+        joint_at(&c, actor, "chest", before);
+        for (int f = 0; f < 480; f++) {
+            run(&c, 1);
+            track(&c, actor, now);
+            joint_at(&c, actor, "chest", chest);
+            for (size_t i = 0; i < TEST_COUNT(tracked); i++) slides = fmaxf(slides, distance(first[i], now[i]));
+            leap = fmaxf(leap, distance(before, chest));
+            low = fminf(low, chest[1]);
+            high = fmaxf(high, chest[1]);
+            memcpy(before, chest, sizeof before);
+        }
+        assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_LIES);
+        bodies_of(&c, actor, lies);
+        assert_memory_equal(lay, lies, sizeof lay);
+        print_message("way %u: the chest rises by %.2f mm, at most %.2f a frame; others slide by %.4f\n", way,
+                      1e3 * (double)(high - low), 1e3 * (double)leap, 1e3 * (double)slides);
+        assert_true(way == 2 ? high == low : high - low > 0.004f && high - low < 0.008f);
+        assert_true(leap < 0.0003f && slides < 1e-6f);
+        if (way < 2) {
+            for (int f = 0; f < 240 && high - before[1] > 0.0005f; f++) { /* at the top of a breath */
+                run(&c, 1);
+                joint_at(&c, actor, "chest", before);
+            }
+            assert_int_equal(noh_actor_get_up(c.stage, actor, &blend, NULL, &said), NOH_OK);
+            run(&c, 1);
+            joint_at(&c, actor, "chest", chest);
+            print_message("first frame of getting up: %.2f mm\n", 1e3 * (double)distance(before, chest));
+            assert_true(distance(before, chest) < 0.002f);
+        }
         close_cast(&c);
     }
 }
@@ -675,6 +740,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_hit_pushes),
     cmocka_unit_test(what_cannot_fall_is_told),
     cmocka_unit_test(who_lies_gets_up),
+    cmocka_unit_test(who_lies_breathes),
     cmocka_unit_test(a_push_is_over_when_it_stands_again),
     cmocka_unit_test(who_falls_gets_up_at_speed),
     cmocka_unit_test(without_a_clip_it_goes_on),
