@@ -29,6 +29,7 @@
 #define PAUSE_S 0.18f
 
 #define LIDS_SHUT 0.6f   /* by a clip: counts as a blink */
+#define LIDS_FOLLOW 0.4f /* of a blink, at the lowest look */
 #define CHEST_RAD 0.012f /* of a breath */
 #define REACH_MAX 1e5f   /* model units: what is further off is looked at as if it were there */
 #define NEAREST_M 0.06f
@@ -240,6 +241,17 @@ static void override_by_expressions(const noh_stage_kind *k, const noh_stage_fac
     }
 }
 
+/* Upper lids follow eyes that look down. Where no target is for that, or targets of looks are left out because joints
+ * turn the eyes, a blink in part does it. */
+static void follow_with_lids(const noh_stage_face_kind *k, int joints, const noh_face_pose *pose, float *channels)
+{
+    const float shut = LIDS_FOLLOW * pose->lids_down;
+    if (k->lids_follow || (k->looks_down && !joints)) return;
+    for (uint32_t c = NOH_CHANNEL_BLINK_LEFT; c <= NOH_CHANNEL_BLINK_RIGHT; c++) {
+        channels[c] += shut * (1.0f - channels[c]);
+    }
+}
+
 static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifier_work *w, const noh_face_pose *pose)
 {
     const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
@@ -252,7 +264,9 @@ static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifie
         says = two;
     }
     noh_face_channels(pose, &shared->desc, says, NOH_MOUTH_NONE, channels);
-    if (turns(w, &shared->eyes[0])) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    const int joints = turns(w, &shared->eyes[0]);
+    if (joints) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
+    follow_with_lids(shared, joints, pose, channels);
     override_by_expressions(k, shared, f, w, channels);
     noh_face_share(&shared->rules, float_of(w, shared->speech), float_of(w, shared->lips_shut), channels);
     share_lids(shared, f, w, channels);

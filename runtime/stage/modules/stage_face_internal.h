@@ -55,7 +55,10 @@ typedef struct noh_stage_face_kind {
                            * `target` the expression's float, `weight` a noh_override, or NOH_STAGE_WHOLE */
     uint32_t lids[NOH_IDENTITY_CLOSINGS]; /* floats that blinks move; NOH_NONE past the last */
     uint32_t shuts[2]; /* floats of targets that shut both eyes and that no channel moves; NOH_NONE: none */
-    uint32_t link_count, override_count;
+    uint32_t link_count;
+    uint16_t override_count;
+    uint8_t lids_follow; /* 1: some target is linked to NOH_CHANNEL_LIDS_DOWN */
+    uint8_t looks_down;  /* 1: some target is linked to looks down, and those move lids, too */
 } noh_stage_face_kind;
 
 /* NULL: the kind has no faces. */

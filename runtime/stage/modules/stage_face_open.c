@@ -406,7 +406,12 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
     f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
-    f->override_count = bind_overrides(k->desc->mesh, k, f->links + f->link_count);
+    f->override_count = (uint16_t)bind_overrides(k->desc->mesh, k, f->links + f->link_count);
+    for (uint32_t l = 0; l < f->link_count; l++) {
+        const uint32_t channel = f->links[l].channel;
+        f->lids_follow |= channel == NOH_CHANNEL_LIDS_DOWN;
+        f->looks_down |= channel == NOH_CHANNEL_EYES + 1u || channel == NOH_CHANNEL_EYES + 5u;
+    }
     find_lids(f);
     for (int i = 0; i < 2; i++) f->shuts[i] = find_in_kind(k, shutting[i], 0);
     open_turns(k, desc, f);

@@ -210,6 +210,68 @@ static void eyes_with_joints_turn(void **state)
     }
 }
 
+/* The float of a blink of one that looks down (or up) as far as it can, with the first rows of a recipe. */
+static float blink_looking(const noh_face_row *rows, uint32_t row_count, float height, int joints)
+{
+    const noh_face_recipe recipe = { "lids", rows, row_count, NULL }, *const recipes[1] = { &recipe };
+    const float point[3] = { 0.0f, height, 1.0f };
+    static float rest[12u * NOH_JOINTS_MAX];
+    noh_kind_face face = alive();
+    noh_actor actor;
+    float blink;
+    cast c;
+    face.flags = NOH_FACE_CALM;
+    face.recipes = recipes;
+    face.recipe_count = 1;
+    open_cast(&c, 1, &face, 1);
+    if (joints) {
+        noh_skeleton skeleton;
+        close_cast(&c);
+        cast_open(&c);
+        (void)noh_pack_skeleton_at(&c.packs[TUBES], 0, &skeleton, NULL, NULL);
+        noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+        face.head = face.neck = face.chest = "";
+        for (uint32_t e = 0; e < 2; e++) {
+            face.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
+            for (uint32_t i = 0; i < 3; i++) face.face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
+        }
+        face.face.eyes[0][0] += 0.06f;
+        c.kinds[0] = c.kinds[TUBES];
+        c.kinds[0].face = noh_face_module(&face);
+        c.desc.kind_count = 1;
+    }
+    cast_make(&c, NULL);
+    actor = enter(&c, NULL, NULL);
+    assert_int_equal(noh_actor_look_at(c.stage, actor, point, NULL), NOH_OK);
+    run(&c, 120);
+    blink = float_named(&c, actor, rows[0].target);
+    if (joints) {
+        cast_close(&c);
+    } else {
+        close_cast(&c);
+    }
+    return blink;
+}
+
+/* Lids go down with eyes that look down, but not up: by a blink in part where no target is for that; where looks have
+ * targets, those move lids, unless joints turn the eyes in their place. */
+static void lids_follow_eyes_that_look_down(void **state)
+{
+    static const noh_face_row rows[] = { { "eyeBlinkLeft", NOH_CHANNEL_BLINK_LEFT, 1.0f },
+                                         { "eyeLookDownLeft", NOH_CHANNEL_EYES + 1, 1.0f } };
+    static const noh_face_row lids[] = { { "eyeBlinkLeft", NOH_CHANNEL_BLINK_LEFT, 1.0f },
+                                         { "eyeSquintLeft", NOH_CHANNEL_LIDS_DOWN, 1.0f } };
+    static const noh_face_row tube[] = { { "bulge", NOH_CHANNEL_BLINK_LEFT, 1.0f },
+                                         { "swell", NOH_CHANNEL_EYES + 1, 1.0f } };
+    (void)state;
+    print_message("by a blink of %.2f\n", (double)blink_looking(rows, 1, -9.0f, 0));
+    assert_true(fabsf(blink_looking(rows, 1, -9.0f, 0) - 0.4f) < 0.05f);
+    assert_true(blink_looking(rows, 1, 9.0f, 0) == 0.0f);
+    assert_true(blink_looking(rows, 2, -9.0f, 0) == 0.0f);
+    assert_true(blink_looking(lids, 2, -9.0f, 0) == 0.0f);
+    assert_true(blink_looking(tube, 1, -9.0f, 1) > 0.3f && blink_looking(tube, 2, -9.0f, 1) > 0.3f);
+}
+
 /* Behind the lids, in a mask without joints and on a puppet's head; at joints, where there are some; nowhere in a tube
  * without lids. */
 static void eyes_are_found_by_lids_and_by_joints(void **state)
@@ -751,6 +813,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(eyes_meet_a_point_whatever_the_body_does),
         cmocka_unit_test(two_actors_meet_each_others_eyes),
         cmocka_unit_test(eyes_with_joints_turn),
+        cmocka_unit_test(lids_follow_eyes_that_look_down),
         cmocka_unit_test(eyes_are_found_by_lids_and_by_joints),
         cmocka_unit_test(nothing_that_lives_stands_still),
         cmocka_unit_test(emotions_by_name_leave_the_mouth_to_speech),
