@@ -96,7 +96,7 @@ typedef struct noh_gl_light {
     noh_gl_light_desc desc;
     int is_soft; /* 1: noh_gl_caps.render_f16, so shadows are soft: shaders read `moments`; 0: they read `depth` */
     noh_gl_texture cube, depth;   /* GL_RGB9_E5; GL_DEPTH_COMPONENT16 of casters, one texel without shadows */
-    noh_gl_texture rows, moments; /* blurred along x, along both: GL_RG16F of half the side; none if not soft */
+    noh_gl_texture rows, moments; /* to blur, blurred: GL_RG16F of a quarter, half the side; none if not soft */
     unsigned framebuffer, soft_framebuffer, blur, vertex_array; /* 0 without shadows */
     int u_blur;
     noh_gl_offscreen kept; /* state restored after the shadow map */

@@ -1,6 +1,6 @@
 /* gl_shadow.c: soft shadows by a variance shadow map (Donnelly, Lauritzen: Variance shadow maps, I3D 2006). The depth
- * of casters becomes two moments, blurred along x and then y at half the side; noh_key_shadow of
- * common_environment.glsl reads them once. */
+ * of casters becomes two moments at a quarter of the side, blurred along x and then y, and filtered at half the side;
+ * noh_key_shadow of common_environment.glsl reads them once. */
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "gl/device/gl_api_internal.h"
@@ -19,19 +19,31 @@
 
 #define LAMP 0.3f      /* width of a penumbra by the distance between caster and receiver */
 #define SIGMA 0.005f   /* of the blur, in units of the world */
-#define SIGMA_MIN 1.5f /* of the blur, in texels */
+#define SIGMA_MIN 1.6f /* of the blur, in texels */
 #define SIGMA_MAX 3.0f
+#define KEPT 0.83f       /* of a Gaussian's variance, when it is cut off after two sigma */
+#define REDUCED 0.078f   /* the variance that the first pass adds, in texels of a quarter of the side */
+#define FILTERED 0.1875f /* and the last one */
 
-static noh_gl_texture_desc soft_desc(uint32_t shadow_px)
+static uint32_t half_of(uint32_t shadow_px)
 {
-    const uint32_t side = (shadow_px + 1u) / 2u;
+    return (shadow_px + 1u) / 2u;
+}
+
+static uint32_t quarter_of(uint32_t shadow_px)
+{
+    return (shadow_px + 3u) / 4u;
+}
+
+static noh_gl_texture_desc soft_desc(uint32_t side)
+{
     return (noh_gl_texture_desc){ GL_RG16F, side, side, 0, 1, GL_LINEAR, 0 };
 }
 
 uint64_t noh_gl_soft_bytes(uint32_t shadow_px)
 {
-    const noh_gl_texture_desc desc = soft_desc(shadow_px);
-    return 2u * noh_gl_texture_bytes(&desc);
+    const noh_gl_texture_desc rows = soft_desc(quarter_of(shadow_px)), moments = soft_desc(half_of(shadow_px));
+    return noh_gl_texture_bytes(&rows) + noh_gl_texture_bytes(&moments);
 }
 
 /* Of the blur, in texels of the soft map. */
@@ -73,10 +85,11 @@ static void attach(const noh_gl_light *l, const noh_gl_texture *to)
 noh_result noh_gl_soft_create(noh_gl_light *light, char *log, size_t log_bytes, noh_error *error)
 {
     noh_gl_light *l = light;
-    const noh_gl_texture_desc desc = soft_desc(l->desc.shadow_px);
+    const noh_gl_texture_desc rows = soft_desc(quarter_of(l->desc.shadow_px)),
+                              moments = soft_desc(half_of(l->desc.shadow_px));
     int kept[2];
-    noh_result result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->rows, error);
-    if (!result) result = noh_gl_texture_create(l->gl, l->ledger, &desc, &l->moments, error);
+    noh_result result = noh_gl_texture_create(l->gl, l->ledger, &rows, &l->rows, error);
+    if (!result) result = noh_gl_texture_create(l->gl, l->ledger, &moments, &l->moments, error);
     if (!result) result = noh_gl_framebuffer_create(l->gl, l->ledger, &l->soft_framebuffer, error);
     if (result) return result;
     noh_gl_framebuffers_keep(l->gl, kept);
@@ -114,26 +127,45 @@ static void floor_plane(const float m[16], float floor, float radius, float plan
     plane[3] = 1.0f;
 }
 
+/* Weights of a texel of the blurred map and of three neighbours on each side: base to the square of the distance, which
+ * is a Gaussian, by bisection of its base. Reducing the depths and filtering the result blur, too. */
+static void weights_of(float sigma, float weights[4])
+{
+    const float wanted = 0.25f * KEPT * sigma * sigma - REDUCED - FILTERED; /* variance */
+    float low = 0.0f, high = 1.0f, all = 1.0f;
+    for (int turn = 0; turn < 16; turn++) {
+        const float b = 0.5f * (low + high), b4 = b * b * b * b, b9 = b4 * b4 * b;
+        all = 1.0f + 2.0f * (b + b4 + b9);
+        *(2.0f * (b + 4.0f * b4 + 9.0f * b9) < wanted * all ? &low : &high) = b;
+        weights[1] = b, weights[2] = b4, weights[3] = b9;
+    }
+    weights[0] = 1.0f;
+    for (int i = 0; i < 4; i++) weights[i] /= all;
+}
+
 void noh_gl_soft_blur(const noh_gl_light *light, const float view_projection[16], const noh_lighting *lighting)
 {
     const noh_gl_api *gl = light->gl;
     const float *m = view_projection;
     const float radius = 1.0f / noh_sqrt(m[0] * m[0] + m[4] * m[4] + m[8] * m[8]); /* of a parallel view */
-    const float sigma = sigma_of(radius, light->desc.shadow_px);
-    const GLsizei side = (GLsizei)((light->desc.shadow_px + 1u) / 2u);
-    float blur[2][4] = { { 1.0f, 0.0f, 2.0f * sigma, (float)side } };
-    if (lighting && lighting->has_floor) floor_plane(m, lighting->floor, radius, blur[1]);
+    const GLsizei side = (GLsizei)quarter_of(light->desc.shadow_px), half = (GLsizei)half_of(light->desc.shadow_px);
+    float blur[3][4] = { { 0.0f, (float)side, 2.0f / (float)light->desc.shadow_px } };
+    weights_of(sigma_of(radius, light->desc.shadow_px), blur[1]);
+    if (lighting && lighting->has_floor) floor_plane(m, lighting->floor, radius, blur[2]);
     gl->BindFramebuffer(GL_FRAMEBUFFER, light->soft_framebuffer);
     gl->Viewport(0, 0, side, side);
     gl->UseProgram(light->blur);
     gl->BindVertexArray(light->vertex_array);
     noh_gl_samplers_none(gl, 0, 1);
     gl->ActiveTexture(GL_TEXTURE0);
-    for (int pass = 0; pass < 2; pass++) {
-        attach(light, pass ? &light->moments : &light->rows);
-        gl->BindTexture(GL_TEXTURE_2D, pass ? light->rows.name : light->depth.name);
-        if (pass) blur[0][0] = 0.0f, blur[0][1] = 1.0f, blur[0][2] = sigma;
-        gl->Uniform4fv(light->u_blur, 2, blur[0]);
+    for (int pass = 0; pass < 4; pass++) {
+        const int to_moments = pass & 1; /* rows along x lie in a corner of it */
+        const unsigned blurred = to_moments ? light->rows.name : light->moments.name;
+        attach(light, to_moments ? &light->moments : &light->rows);
+        gl->BindTexture(GL_TEXTURE_2D, pass ? blurred : light->depth.name);
+        if (pass == 3) gl->Viewport(0, 0, half, half);
+        blur[0][0] = (float)pass;
+        gl->Uniform4fv(light->u_blur, 3, blur[0]);
         gl->DrawArraysInstanced(GL_TRIANGLES, 0, 3, 1);
     }
     gl->BindTexture(GL_TEXTURE_2D, 0);
