@@ -99,7 +99,7 @@ static uint16_t pair(world *w, noh_node_kind kind, uint16_t a, uint16_t b, float
     return (uint16_t)w->graph.node_count++;
 }
 
-/* A quarter of a second moves by these speeds, and is told once. */
+/* A quarter of a second moves by these speeds, and receives once. */
 static void goes(world *w, double x, double z)
 {
     noh_root_pose moved;
