@@ -263,9 +263,9 @@ static void ask_corners(const noh_world *w, const float origin[3], const noh_rou
     noh_world_body asked[8];
     noh_touches answers[8];
     uint32_t count = 0, of[8];
+    memset(answers, 0, sizeof answers);
     for (uint32_t i = 0; i < 8; i++) {
         noh_world_body *a = &asked[count];
-        touches[i].count = 0;
         if (!corner_of(&body->box, i, a->capsule.from)) continue;
         memcpy(a->capsule.to, a->capsule.from, sizeof a->capsule.to);
         memcpy(a->origin, origin, sizeof a->origin);
@@ -281,6 +281,7 @@ static void touch_ground(const noh_world *w, const float origin[3], const noh_ro
 {
     const int asks = noh_world_asks(w);
     noh_touches touches[8];
+    for (uint32_t i = 0; i < 8; i++) touches[i].count = 0;
     if (asks) ask_corners(w, origin, body, touches);
     for (uint32_t i = 0; i < 8; i++) {
         float corner[3], point[3], normal[3], height;

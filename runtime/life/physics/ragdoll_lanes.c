@@ -813,6 +813,7 @@ static void ask(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragd
                 lane_touch *touches)
 {
     noh_touches answers[NOH_RAGDOLL_BODIES_MAX];
+    memset(answers, 0, sizeof answers);
     for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
         if (lane < count) noh_ragdoll_ask(shape, world, dolls[lane], answers);
         for (uint32_t i = 0; i < shape->body_count; i++) {

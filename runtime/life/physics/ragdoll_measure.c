@@ -194,6 +194,7 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
     noh_touches touches[NOH_RAGDOLL_BODIES_MAX];
     const int asks = world && noh_world_asks(world);
     memset(m, 0, sizeof *m);
+    memset(touches, 0, sizeof touches);
     if (asks) noh_ragdoll_ask(&set->shape, world, d, touches);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
         const noh_ragdoll_constants *c = &set->shape.bodies[i];

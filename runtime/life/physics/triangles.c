@@ -184,7 +184,7 @@ static noh_world_hit first_hit(const noh_triangles *t, const noh_world_ray *r)
             walk.stack[walk.count++] = own + 1u;
         }
         for (uint32_t i = 0; i < n->count; i++) {
-            float normal[3];
+            float normal[3] = { 0.0f, 0.0f, 0.0f };
             const float far = enter(t, t->order[n->at + i], r, normal);
             if (!(far > 0.0f && far <= ray.distance_max) || (hit.distance > 0.0f && far >= hit.distance)) continue;
             hit.distance = far;

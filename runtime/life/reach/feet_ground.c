@@ -87,6 +87,7 @@ void noh_ground_below_all(const noh_ground *ground, const noh_ray *rays, uint32_
     noh_world_ray asked[NOH_GROUND_RAYS_MAX];
     const noh_world *w = ground->world;
     NOH_ASSERT(count <= NOH_GROUND_RAYS_MAX);
+    memset(asked, 0, sizeof asked);
     for (uint32_t i = 0; i < count; i++) {
         hits[i] = (noh_world_hit){ -1.0f, { 0.0f, 1.0f, 0.0f } };
         if (!ground->below) continue;
