@@ -187,6 +187,7 @@ static under look_down(const step *s, const noh_foot *f, const leg_now *n, const
     noh_ray rays[NOH_GROUND_RAYS_MAX];
     noh_world_hit hits[NOH_GROUND_RAYS_MAX];
     uint32_t count = NOH_FEET_POINTS;
+    memset(rays, 0, sizeof rays);
     for (uint32_t i = 0; i < NOH_FEET_POINTS; i++) carry(f, n, n->points[i], at[i]);
     for (uint32_t i = 0; i < NOH_FEET_POINTS - 2u; i++) {
         for (int row = 1; row < rows; row++) {
