@@ -1,14 +1,12 @@
 /* hair.c: the hair of the page's characters, with wind, and with swing when heads are shaken. */
 #include <emscripten.h>
-#include <math.h>
 #include <string.h>
 
 #include "web.h"
 
-#define SHAKE_S 1.6  /* how long a head is shaken */
-#define SHAKE_HZ 1.5 /* how often per second */
-#define SHAKE_RAD 0.6
-#define TURN 6.283185307179586
+#define SHAKE_S 1.6       /* how long a head is shaken */
+#define SHAKE_HZ 1.5      /* how often per second */
+#define SHAKE_TURNS 0.095 /* of a full circle */
 
 /* ---- life cycle ---- */
 
@@ -101,17 +99,21 @@ EMSCRIPTEN_KEEPALIVE float web_shaken(void)
     return place.rotation[1];
 }
 
-/* The angle at a remaining time of the shake: 0 at both ends. */
+/* The angle, in turns, at a remaining time of the shake: 0 at both ends. */
 static double angle_at(double left_s)
 {
     const double gone = SHAKE_S - left_s;
-    return SHAKE_RAD * sin(TURN * SHAKE_HZ * gone) * sin(0.5 * TURN * gone / SHAKE_S);
+    float swing, share, cosine;
+    noh_sin_cos_turn(web_turn(SHAKE_HZ * gone), &swing, &cosine);
+    noh_sin_cos_turn(web_turn(0.5 * gone / SHAKE_S), &share, &cosine);
+    return SHAKE_TURNS * (double)(swing * share);
 }
 
-/* Turn a place about the vertical axis. */
+/* Turn a place about the vertical axis, by an angle in turns. */
 static void turn(noh_place *place, double angle)
 {
-    const float s = (float)sin(0.5 * angle), c = (float)cos(0.5 * angle);
+    float s, c;
+    noh_sin_cos_turn(web_turn(0.5 * angle), &s, &c);
     float *q = place->rotation;
     const int none = q[0] == 0.0f && q[1] == 0.0f && q[2] == 0.0f && q[3] == 0.0f;
     const float x = q[0], y = q[1], z = q[2], w = none ? 1.0f : q[3];

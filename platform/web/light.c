@@ -5,8 +5,6 @@
 
 #include "web.h"
 
-#define RADIANS 0.017453292519943295
-
 /* ---- the environment ---- */
 
 static int is_lit(void)
@@ -47,8 +45,8 @@ noh_result web_light_bake(void)
 /* Pass the lighting to the stage. Without a shadow map no key light is split off. */
 static void tell(void)
 {
-    const float s = (float)sin((double)web.light.degrees * RADIANS),
-                c = (float)cos((double)web.light.degrees * RADIANS);
+    float s, c;
+    noh_sin_cos_turn(web_turn((double)web.light.degrees / 360.0), &s, &c);
     const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
     if (!is_lit()) return;
     noh_lighting_make(&web.light.all, rotation, web.light.shadow == WEB_SHADOW_MAP, &web.light.told);

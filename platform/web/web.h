@@ -8,6 +8,7 @@
 #include "noh/clip.h"
 #include "noh/gl_device.h"
 #include "noh/light.h"
+#include "noh/low_core.h"
 #include "noh/marks.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
@@ -126,6 +127,12 @@ void web_hair_shake(double seconds);
 
 /* Advance falls: fallen figures get up. */
 noh_result web_rise(uint32_t ticks);
+
+/* For noh_sin_cos_turn: libm's functions of an angle would take 2 kB of each program, compressed. */
+static inline uint32_t web_turn(double turns)
+{
+    return (uint32_t)(int64_t)(turns * 4294967296.0);
+}
 
 /* Shared functions of main.c and touch.c, also called by the page. */
 uint32_t web_joint_count(void);

@@ -11,6 +11,9 @@ WEB_STACK   := 65536
 WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
+# Blocks made again from their branches: 1 % smaller than what emcc leaves.
+WEB_OPT     := $$(em-config BINARYEN_ROOT)/bin/wasm-opt --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int \
+               --enable-mutable-globals --enable-sign-ext --flatten --rereloop -Oz
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
 WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js greet.js)
@@ -128,6 +131,7 @@ $(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c r
 $(WEB_PROGRAMS):
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
+	$(Q)$(WEB_OPT) $@ -o $@
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
 
 # ---- the page's converter ----
