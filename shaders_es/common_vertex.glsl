@@ -26,7 +26,7 @@ layout(location = 2) in ivec2 noh_a_tangent;
 layout(location = 3) in vec2 noh_a_uv;
 layout(location = 4) in vec4 noh_a_color;
 #ifdef NOH_UV_TARGETS
-layout(location = 14) in highp uint noh_a_uv_texel;
+layout(location = 14) in highp int noh_a_uv_texel;
 #endif
 #endif
 
@@ -193,7 +193,7 @@ vec2 noh_uv_of(ivec4 tile)
 {
 #ifdef NOH_UV_TARGETS
     vec2 uv = noh_uv[0].xy + noh_uv[0].zw * noh_a_uv;
-    int texel = int(noh_a_uv_texel);
+    int texel = noh_a_uv_texel;
     if (texel < tile.w) {
 #ifdef NOH_DIRECT
         uv += noh_morph_sums(tile, texel).position.xy * noh_uv[1].x;
@@ -274,6 +274,39 @@ noh_vertex noh_fetch()
 #endif
     return v;
 }
+
+/* ---- extra attributes ---- */
+
+/* Define NOH_EXTRAS to read them. Without it their locations are free. */
+#ifdef NOH_EXTRAS
+layout(location = 15) in highp ivec4 noh_a_extra;
+#ifndef NOH_UV_TARGETS
+layout(location = 14) in highp ivec4 noh_a_more_extra;
+#endif
+uniform highp vec4 noh_extras[15]; /* noh_extra_row of the pack for each: offset, step; first bit, bits, components */
+
+highp int noh_extra_word(int i)
+{
+#ifndef NOH_UV_TARGETS
+    if (i >= 4) return i < 6 ? (i == 4 ? noh_a_more_extra.x : noh_a_more_extra.y) : (i == 6 ? noh_a_more_extra.z : noh_a_more_extra.w);
+#endif
+    return i < 2 ? (i == 0 ? noh_a_extra.x : noh_a_extra.y) : (i == 2 ? noh_a_extra.z : noh_a_extra.w);
+}
+
+highp float noh_extra_number(highp ivec3 place, int component)
+{
+    int bit = place.x + component * place.y;
+    return component < place.z ? float(noh_extra_word(bit >> 5) >> (bit & 31) & (1 << place.y) - 1) : 0.0;
+}
+
+/* The attribute at a place of the list of noh build --attributes; 0 where the mesh or the attribute has none. */
+highp vec4 noh_extra(int index)
+{
+    highp ivec3 place = ivec3(noh_extras[3 * index + 2].xyz);
+    return noh_extras[3 * index] + noh_extras[3 * index + 1] * vec4(noh_extra_number(place, 0), noh_extra_number(place, 1),
+                                                                    noh_extra_number(place, 2), noh_extra_number(place, 3));
+}
+#endif
 
 /* ---- the last frame ---- */
 

@@ -92,6 +92,7 @@ typedef enum noh_half_mode {
 /* ---- a mesh ---- */
 
 #define NOH_VERTICES_MAX (1u << 22) /* a 2048 x 2048 texture, which ES 3.0 guarantees */
+#define NOH_EXTRAS_MAX 5u           /* extra attributes of a mesh's vertices */
 #define NOH_INDICES_MAX (1u << 26)
 #define NOH_SUBMESHES_MAX 256u
 #define NOH_PIXELS_MAX 1e6f             /* of an allowed error on screen */

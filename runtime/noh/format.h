@@ -49,7 +49,8 @@ extern "C" {
     X(HAIR, hair, NOH_FOURCC('H', 'A', 'I', 'R'), 0)             \
     X(TERRAIN, terrain, NOH_FOURCC('T', 'E', 'R', 'R'), 0)       \
     X(COVER, cover, NOH_FOURCC('C', 'O', 'V', 'R'), 1)           \
-    X(MATCH, match, NOH_FOURCC('M', 'T', 'C', 'H'), 0)
+    X(MATCH, match, NOH_FOURCC('M', 'T', 'C', 'H'), 0)           \
+    X(EXTRAS, extras, NOH_FOURCC('X', 'T', 'R', 'A'), 1)
 
 /* NOH_CHUNK_STRINGS and so on: a place in the list. */
 #define NOH_CHUNK_TYPE(NAME, name, tag, many) NOH_CHUNK_##NAME,
@@ -100,6 +101,7 @@ typedef struct noh_pack_chunk {
  *   tangent  int16 x 2, octahedral; y has 15 bits above bit 0, which is 1 for handedness -1 (TANGENTS)
  *   uv       unorm 16:16, uv = uv_offset + uv_scale * value (UVS)
  *   color    unorm 8:8:8:8, linear rgb with a square-root curve, alpha straight (COLORS)
+ *   extras   extra_words words, which CHUNK_EXTRAS describes
  *   uv texel the accumulation texel of its UV, or NOH_TEXEL_NONE if no target moves the UV (UV_TARGETS)
  *   texel    low 22 bits the vertex's accumulation texel, above them its palette (TEXELS). Without levels: the vertex
  *            whose texel it shares, which has a texel if it is below touched_count; with levels, or with UV_TARGETS:
@@ -173,8 +175,12 @@ typedef struct noh_mesh_header {
     uint32_t level_first;      /* the finest level in the pack; below level_count */
     uint32_t source_crc;       /* CRC-32C of the unstripped chunk, with level 0; 0 if level_first is 0 */
     float uv_per_unit; /* with UV_TARGETS: texture coordinates per model unit in a UV's texel, above 0; otherwise 0 */
-    uint32_t reserved[5];
+    uint32_t extra_words; /* of extra attributes in each record: 0 to NOH_EXTRA_WORDS_ROOM(flags) */
+    uint32_t reserved[4];
 } noh_mesh_header;
+
+/* Vertex attributes have 16 locations: texels of texture coordinates take one of the two of extra attributes. */
+#define NOH_EXTRA_WORDS_ROOM(flags) ((flags)&NOH_MESH_UV_TARGETS ? 4u : 8u)
 
 /* Influences of a vertex, in words. The first joint is the strongest: its weight is 1 minus the other weights, so sums
  * are exact. The other weights are multiples of 2^-22. Joints are 8-bit indices into the vertex's palette; joints
@@ -314,6 +320,37 @@ typedef struct noh_far_joints_header {
     uint32_t reserved[6];
 } noh_far_joints_header;
 NOH_STATIC_ASSERT(sizeof(noh_far_joints_header) == 64, far_joints_header);
+
+/* ---- CHUNK_EXTRAS, none or one for a mesh, in the order of meshes: header, names, then rows. The extra attributes of
+ * its vertices, for shaders of the game's own: noh_mesh_extra (low_core.h) and noh_extra (shaders_es/README.md). All
+ * meshes of a pack have the same ones in the same order. ---- */
+
+typedef struct noh_extras_header {
+    uint32_t mesh;         /* the n-th mesh chunk */
+    uint32_t count;        /* 1..NOH_EXTRAS_MAX */
+    uint32_t word_count;   /* extra_words of the mesh, above 0 */
+    uint32_t names_offset; /* noh_extra_name[count] */
+    uint32_t rows_offset;  /* noh_extra_row[count] */
+    uint32_t reserved[3];
+} noh_extras_header;
+NOH_STATIC_ASSERT(sizeof(noh_extras_header) == 32, extras_header);
+
+typedef struct noh_extra_name {
+    uint32_t name, name_hash;
+    float error; /* the farthest that a component of a vertex is off */
+    uint32_t reserved;
+} noh_extra_name;
+
+/* Component c of an attribute is offset[c] + step[c] * n, n being `bits` bits of the words from bit
+ * first_bit + c * bits. Numbers are floats, so that a row is uniforms as it is. */
+typedef struct noh_extra_row {
+    float offset[4], step[4]; /* step: 0 or above; components that there are not: 0 */
+    float first_bit;          /* a multiple of `bits` */
+    float bits;               /* 8 or 16 */
+    float component_count;    /* 0..4; 0: this mesh does not have it, and the rest of the row is 0 */
+    float reserved;
+} noh_extra_row;
+NOH_STATIC_ASSERT(sizeof(noh_extra_row) == 48, extra_row);
 
 /* ---- CHUNK_NODES: header, then noh_node[node_count] at 16, then float[weight_count]. ---- */
 

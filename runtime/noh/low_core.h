@@ -141,7 +141,6 @@ uint32_t noh_texture_block_bytes(uint32_t format);
 int noh_mesh_tangent_offset(const noh_mesh *mesh);
 int noh_mesh_uv_offset(const noh_mesh *mesh);
 int noh_mesh_color_offset(const noh_mesh *mesh);
-int noh_mesh_uv_texel_offset(const noh_mesh *mesh);
 
 /* A vertex's accumulation texel (header->touched_count or more: none, no target moves the vertex), and its palette (0
  * unless the mesh is split into several). */
@@ -151,6 +150,12 @@ uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 /* The accumulation texel of a vertex's texture coordinates; header->touched_count or more: none, no target moves
  * them. */
 uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex);
+
+/* Get an extra attribute of a vertex (noh build --attributes), for renderers without the library's shaders.
+ * index    the place in that list, which mesh->extras describes (format.h)
+ * value    components that the attribute does not have are 0
+ * returns  its components: 1..4; 0: the mesh does not have it */
+uint32_t noh_mesh_extra(const noh_mesh *mesh, uint32_t index, uint32_t vertex, float value[4]);
 
 /* Get the joints and weights of a vertex of a skinned mesh.
  * shapes   joints[influence_count] indices into the skin's joints, weights[influence_count]

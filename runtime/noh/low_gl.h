@@ -461,7 +461,8 @@ typedef struct noh_gl_variant {
     unsigned program;
     int u_view_projection, u_world, u_normal, u_uv, u_morph, u_skin, u_camera, u_key, u_base_color, u_material,
         u_bounds_min, u_bounds_size, u_lod, u_blends, u_f0, u_emissive, u_maps, u_lighting, u_center, u_wrinkle_regions,
-        u_wrinkle_models, u_colors, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams, u_before;
+        u_wrinkle_models, u_colors, u_surface_values, u_surface_more, u_rest, u_f90, u_user, u_streams, u_before,
+        u_extras;
 } noh_gl_variant;
 
 /* The key of a mesh with given bindings; set `fade`, `encode_srgb`, `two_layers`, `depth`, `cut` and `features`
@@ -532,7 +533,9 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
 #define NOH_ATTRIBUTE_TEXEL 7u           /* uint: accumulation texel and palette; only with NOH_MESH_TEXELS */
 #define NOH_ATTRIBUTE_LOBE 8u            /* ivec4: the first bytes of a transfer record; only with a transfer */
 #define NOH_ATTRIBUTE_MORE_LOBE 9u       /* ivec2 or ivec4: the rest of the record */
-#define NOH_ATTRIBUTE_UV_TEXEL 14u       /* uint: accumulation texel of its UV; only with NOH_MESH_UV_TARGETS */
+#define NOH_ATTRIBUTE_UV_TEXEL 14u       /* int: accumulation texel of its UV; only with NOH_MESH_UV_TARGETS */
+#define NOH_ATTRIBUTE_MORE_EXTRA 14u     /* ivec4, without it: extra words from the fifth on; not in every mesh */
+#define NOH_ATTRIBUTE_EXTRA 15u          /* ivec4: the first four words of extra attributes; not in every mesh */
 /* Locations 10 to 13 are delta texels (uvec3) on the path streams: NOH_ATTRIBUTE_STREAMS. On other paths
  * the first two are the bind pose, even if finished vertices are at NOH_ATTRIBUTE_POSITION and NOH_ATTRIBUTE_NORMAL */
 #define NOH_ATTRIBUTE_REST 10u        /* vec3 */

@@ -106,6 +106,7 @@ typedef struct noh_mesh {
     const float *joint_boxes;                /* [joint_count of the skin][6] */
     const noh_transfer_header *transfer;     /* followed by its arrays; NULL: none (light.h) */
     const noh_far_joints_header *far_joints; /* likewise (deform.h) */
+    const noh_extras_header *extras;         /* likewise (noh_mesh_extra) */
 } noh_mesh;
 
 /* The joints that move a mesh. A view: valid as long as the pack and its bytes are. */

@@ -11,6 +11,7 @@
 #include "convert/convert.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/model/model_build.h"
+#include "convert/model/model_extra.h"
 #include "convert/pack/pack_strip.h"
 #include "convert/pack/pack_wire.h"
 #include "support/graph_fixture.h"
@@ -193,6 +194,28 @@ static void write_transfer(const char *folder)
     snprintf(path, sizeof path, "%s/transfer.noh", folder);
     test_write_file(path, out.bytes, out.count);
     buffer_free(&out);
+    lod_pack_free(&p);
+    model_free(m);
+}
+
+/* A face with levels, whose vertices have extra attributes in halves and bytes. */
+static void write_extras(const char *folder)
+{
+    const lod_face face = { 8, 6, 2, 0, 0 };
+    const lod_settings two = { .level_count = 2, .mode = LOD_FAST };
+    model *m = lod_face_model(&face);
+    model_mesh *mesh = &m->meshes[0];
+    model_error error;
+    char path[4096];
+    lod_pack p;
+    assert_int_equal(extras_parse("TEXCOORD_1,_MASK:8,_NONE", &m->extras, &error), 0);
+    mesh->extra = test_zeros(sizeof *mesh->extra * 4u * NOH_EXTRAS_MAX * mesh->vertex_count);
+    mesh->extras[0].width = 2;
+    mesh->extras[1].width = 3;
+    for (uint32_t i = 0; i < 4u * NOH_EXTRAS_MAX * mesh->vertex_count; i++) mesh->extra[i] = (float)(i % 97u) / 7.0f;
+    lod_pack_make(m, &two, 0, &p);
+    snprintf(path, sizeof path, "%s/extras.noh", folder);
+    test_write_file(path, p.bytes, p.byte_count);
     lod_pack_free(&p);
     model_free(m);
 }
@@ -388,6 +411,7 @@ static void corpus(void **state)
     write_blocks(folder);
     write_graph(folder);
     write_transfer(folder);
+    write_extras(folder);
     write_terrain(folder);
     write_skin(folder, "skin", 0);
     write_skin(folder, "skin_split", 4);

@@ -336,6 +336,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
             reading.lips = 0;
             reading.targets = NULL;
             reading.attached_count = 0;
+            reading.extras.count = 0;
         }
     }
     return 0;

@@ -19,6 +19,7 @@
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/model_attach.h"
+#include "convert/model/model_extra.h"
 #include "convert/mocap/clean.h"
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
@@ -105,7 +106,7 @@ static int read_model(const char *path, const source_options *options, model **o
     switch (reader) {
     case READER_FBX: return fbx_read(path, &fbx, out, error);
     case READER_OBJ: return obj_read(path, &obj, out, error);
-    case READER_GLTF: return model_read_gltf(path, out, error);
+    case READER_GLTF: return model_read_gltf_with(path, &options->extras, out, error);
     default:
         return model_fail(error, "", "this is %s, not a model: %s", kind->what,
                           kind->instead ? kind->instead : "noh build MODEL FILE adds its clips to a model");
@@ -131,6 +132,10 @@ static int read_model_file(const char *path, const source_options *options, sour
     sample_options sampling = { options->sample_rate_hz };
     if (read_model(path, options, &s->m, error) || attach_all(options, s->m, error)) {
         return 1;
+    }
+    if (options->extras.count && s->m->mesh_count) {
+        s->m->extras = options->extras;
+        if (extras_check(s->m, error)) return 1;
     }
     for (uint32_t i = 0; i < options->two_stream_count; i++) {
         if (two_stream_join(s->m, options->two_streams[i], error)) {

@@ -55,6 +55,15 @@ static const noh_far_joints_header *far_joints_of(const noh_pack *pack, uint32_t
     return NULL;
 }
 
+static const noh_extras_header *extras_of(const noh_pack *pack, uint32_t mesh)
+{
+    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_EXTRAS].count; i++) {
+        const noh_extras_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_EXTRAS, i);
+        if (h->mesh == mesh) return h;
+    }
+    return NULL;
+}
+
 noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh, noh_error *error)
 {
     NOH_ASSERT(pack && mesh);
@@ -68,6 +77,7 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
     mesh->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_MESH].first + index);
     mesh->transfer = transfer_of(pack, index);
     mesh->far_joints = far_joints_of(pack, index);
+    mesh->extras = extras_of(pack, index);
     view_of(noh_pack_chunk_at(pack, NOH_CHUNK_MESH, index), mesh);
     return NOH_OK;
 }
@@ -142,14 +152,9 @@ int noh_mesh_uv_offset(const noh_mesh *mesh)
 
 int noh_mesh_color_offset(const noh_mesh *mesh)
 {
-    int after = 4 + ((mesh->header->flags & NOH_MESH_TEXELS) ? 4 : 0) +
+    int after = 4 + 4 * (int)mesh->header->extra_words + ((mesh->header->flags & NOH_MESH_TEXELS) ? 4 : 0) +
                 ((mesh->header->flags & NOH_MESH_UV_TARGETS) ? 4 : 0);
     return (mesh->header->flags & NOH_MESH_COLORS) ? (int)mesh->header->attribute_stride - after : -1;
-}
-
-int noh_mesh_uv_texel_offset(const noh_mesh *mesh)
-{
-    return (mesh->header->flags & NOH_MESH_UV_TARGETS) ? (int)mesh->header->attribute_stride - 8 : -1;
 }
 
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
@@ -186,9 +191,28 @@ uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex)
 uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex)
 {
     NOH_ASSERT(vertex < mesh->header->vertex_count);
-    const int offset = noh_mesh_uv_texel_offset(mesh);
-    return offset < 0 ? NOH_TEXEL_NONE
-                      : load_u32(mesh->attributes + (size_t)vertex * mesh->header->attribute_stride + offset);
+    return mesh->header->flags & NOH_MESH_UV_TARGETS
+               ? load_u32(mesh->attributes + ((size_t)vertex + 1u) * mesh->header->attribute_stride - 8u)
+               : NOH_TEXEL_NONE;
+}
+
+uint32_t noh_mesh_extra(const noh_mesh *mesh, uint32_t index, uint32_t vertex, float value[4])
+{
+    const noh_mesh_header *h = mesh->header;
+    const uint32_t after = 4u * ((h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u));
+    const noh_extra_row *row;
+    const uint8_t *at;
+    NOH_ASSERT(vertex < h->vertex_count && value);
+    memset(value, 0, 4u * sizeof *value);
+    if (!mesh->extras || index >= mesh->extras->count) return 0;
+    row = (const noh_extra_row *)(const void *)((const uint8_t *)mesh->extras + mesh->extras->rows_offset) + index;
+    at = mesh->attributes + ((size_t)vertex + 1u) * h->attribute_stride - after - 4u * (size_t)h->extra_words;
+    for (uint32_t c = 0; c < (uint32_t)row->component_count; c++) {
+        const uint32_t bits = (uint32_t)row->bits, byte = ((uint32_t)row->first_bit + c * bits) / 8u;
+        const uint32_t n = bits == 8u ? at[byte] : at[byte] | (uint32_t)at[byte + 1u] << 8;
+        value[c] = row->offset[c] + row->step[c] * (float)n;
+    }
+    return (uint32_t)row->component_count;
 }
 
 /* The n-th stored weight (the first is n = 1), in units of 1 / NOH_WEIGHT_ONE: the second heaviest, at most a half, in

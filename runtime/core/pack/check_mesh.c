@@ -49,6 +49,10 @@ static noh_result check_limits(const noh_check *check, const noh_mesh_header *h)
                      NOH_MESH_UV_TARGETS)) {
         return noh_check_fail(check, "unknown mesh flags", offsetof(noh_mesh_header, flags));
     }
+    if (h->extra_words > NOH_EXTRA_WORDS_ROOM(h->flags)) {
+        return noh_check_fail(check, "more words of extra attributes than a mesh can have",
+                              offsetof(noh_mesh_header, extra_words));
+    }
     return NOH_OK;
 }
 
@@ -131,9 +135,10 @@ static noh_result check_boxes(const noh_check *check, uint32_t offset, uint32_t 
     return result;
 }
 
-static uint32_t stride_of(uint32_t flags)
+static uint32_t stride_of(const noh_mesh_header *h)
 {
-    return 4u + ((flags & NOH_MESH_TANGENTS) ? 4u : 0u) + ((flags & NOH_MESH_UVS) ? 4u : 0u) +
+    const uint32_t flags = h->flags;
+    return 4u + 4u * h->extra_words + ((flags & NOH_MESH_TANGENTS) ? 4u : 0u) + ((flags & NOH_MESH_UVS) ? 4u : 0u) +
            ((flags & NOH_MESH_COLORS) ? 4u : 0u) + ((flags & NOH_MESH_UV_TARGETS) ? 4u : 0u) +
            ((flags & NOH_MESH_TEXELS) ? 4u : 0u);
 }
@@ -161,7 +166,7 @@ static noh_result check_arrays(noh_check *check, const noh_mesh_header *h)
         { offsetof(noh_mesh_header, palette_joints_offset), h->palette_joint_count, 2 },
         { offsetof(noh_mesh_header, joint_boxes_offset), noh_check_skin_joints(check->pack, h->skin), 24 }
     };
-    if (h->attribute_stride != stride_of(h->flags)) {
+    if (h->attribute_stride != stride_of(h)) {
         return noh_check_fail(check, "attribute stride does not fit the mesh flags",
                               offsetof(noh_mesh_header, attribute_stride));
     }

@@ -145,6 +145,17 @@ static void use_variant(const noh_gl_renderer *r, const noh_gl_variant *v)
     }
 }
 
+/* How a game's shader reads extra attributes; zeros in a mesh without them. */
+static void set_extras(const noh_gl_api *gl, const noh_gl_variant *v, const noh_mesh *mesh)
+{
+    static const noh_extra_row none[NOH_EXTRAS_MAX];
+    const noh_extras_header *h = mesh->extras;
+    const void *rows = h ? (const void *)((const uint8_t *)h + h->rows_offset) : none;
+    gl->Uniform4fv(v->u_extras, 3 * (GLsizei)(h ? h->count : NOH_EXTRAS_MAX), rows);
+    gl->VertexAttribI4i(NOH_ATTRIBUTE_EXTRA, 0, 0, 0, 0);
+    gl->VertexAttribI4i(NOH_ATTRIBUTE_MORE_EXTRA, 0, 0, 0, 0);
+}
+
 static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_gl_mesh *mesh,
                      const noh_gl_morph_binding *morph)
 {
@@ -162,6 +173,7 @@ static void set_mesh(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->VertexAttribI4i(NOH_ATTRIBUTE_TANGENT, 0, 0, 0, 1);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_UV, 0.0f, 0.0f, 0.0f, 1.0f);
     r->gl->VertexAttrib4f(NOH_ATTRIBUTE_COLOR, 1.0f, 1.0f, 1.0f, 1.0f);
+    if (v->u_extras >= 0) set_extras(r->gl, v, &mesh->mesh);
     noh_gl_mesh_bind(r->gl, mesh, morph);
     if (r->cover) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->cover);
     if (r->triangles) r->gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, r->triangles->buffer);

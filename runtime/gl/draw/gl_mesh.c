@@ -124,6 +124,22 @@ static void set_lobe(const noh_gl_api *gl, const noh_gl_mesh *m)
     }
 }
 
+/* The words of extra attributes, in front of a record's texels; as integers, which drivers do not convert. */
+static void set_extras(const noh_gl_api *gl, const noh_mesh_header *h)
+{
+    const uint32_t words = h->extra_words, stride = h->attribute_stride;
+    const uint32_t texels = (h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u);
+    const uintptr_t at = stride - 4u * ((uintptr_t)words + texels);
+    if (!words) return;
+    gl->EnableVertexAttribArray(NOH_ATTRIBUTE_EXTRA);
+    gl->VertexAttribIPointer(NOH_ATTRIBUTE_EXTRA, (GLint)(words > 4u ? 4u : words), GL_INT, (GLsizei)stride,
+                             (const void *)at);
+    if (words <= 4u) return;
+    gl->EnableVertexAttribArray(NOH_ATTRIBUTE_MORE_EXTRA);
+    gl->VertexAttribIPointer(NOH_ATTRIBUTE_MORE_EXTRA, (GLint)words - 4, GL_INT, (GLsizei)stride,
+                             (const void *)(at + 16u));
+}
+
 static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     noh_gl_label(gl, GL_BUFFER, m->positions.name, "positions of", m->mesh.name);
@@ -209,8 +225,11 @@ GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const noh_gl_mesh *m, const 
         set_words(gl, NOH_ATTRIBUTE_TEXEL, 1, stride, stride - 4u);
     }
     if (m->mesh.header->flags & NOH_MESH_UV_TARGETS) {
-        set_words(gl, NOH_ATTRIBUTE_UV_TEXEL, 1, stride, (uint32_t)noh_mesh_uv_texel_offset(&m->mesh));
+        gl->EnableVertexAttribArray(NOH_ATTRIBUTE_UV_TEXEL);
+        gl->VertexAttribIPointer(NOH_ATTRIBUTE_UV_TEXEL, 1, GL_INT, (GLsizei)stride,
+                                 (const void *)(uintptr_t)(stride - 8u));
     }
+    set_extras(gl, m->mesh.header);
     if (m->influences.name) {
         set_influences(gl, m);
     }

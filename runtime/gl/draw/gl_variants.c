@@ -1,5 +1,6 @@
 /* gl_variants.c: makes a key from a mesh and its bindings, defines from a key, and a program from defines. */
 #include "core/base/assert_internal.h"
+#include "core/base/name_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_material_internal.h"
 #include "gl/draw/gl_skin_internal.h"
@@ -323,6 +324,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
                      { "noh_surface_more", offsetof(noh_gl_variant, u_surface_more) },
                      { "noh_user_values", offsetof(noh_gl_variant, u_user) },
                      { "noh_before", offsetof(noh_gl_variant, u_before) },
+                     { "noh_extras", offsetof(noh_gl_variant, u_extras) },
                      { "noh_lighting", offsetof(noh_gl_variant, u_lighting) },
                      { "noh_rest", offsetof(noh_gl_variant, u_rest) },
                      { "noh_center", offsetof(noh_gl_variant, u_center) },
@@ -337,7 +339,7 @@ static void find_uniforms(const noh_gl_api *gl, noh_gl_variant *v)
 
 /* List the attributes of vertex arrays, the game's and the meshes' (low_gl.h), and return their number. Attributes
  * that a mesh lacks are constants of the same kind. */
-#define INPUTS_MAX (15u + NOH_GL_OWN_INPUTS_MAX)
+#define INPUTS_MAX (16u + NOH_GL_OWN_INPUTS_MAX)
 static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_desc *own,
                             noh_gl_input inputs[INPUTS_MAX])
 {
@@ -348,11 +350,11 @@ static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_d
         { NOH_ATTRIBUTE_UV, GL_FLOAT_VEC2 },
         { NOH_ATTRIBUTE_COLOR, GL_FLOAT_VEC4 },
         { NOH_ATTRIBUTE_TEXEL, GL_UNSIGNED_INT },
-        { NOH_ATTRIBUTE_UV_TEXEL, GL_UNSIGNED_INT },
         { NOH_ATTRIBUTE_LOBE, GL_INT_VEC4 },
         { NOH_ATTRIBUTE_MORE_LOBE, GL_INT_VEC4 },
         { NOH_ATTRIBUTE_STREAMS + 2u, GL_UNSIGNED_INT_VEC3 },
         { NOH_ATTRIBUTE_STREAMS + 3u, GL_UNSIGNED_INT_VEC3 },
+        { NOH_ATTRIBUTE_MORE_EXTRA, GL_INT_VEC4 }, /* or NOH_ATTRIBUTE_UV_TEXEL */
     };
     static const noh_gl_input shared[2][2] = {
         { { NOH_ATTRIBUTE_REST, GL_FLOAT_VEC3 }, { NOH_ATTRIBUTE_REST_NORMAL, GL_INT_VEC2 } },
@@ -364,6 +366,9 @@ static uint32_t list_inputs(const noh_gl_variant_key *key, const noh_gl_shader_d
     uint32_t count = own->input_count + (uint32_t)(sizeof of_meshes / sizeof of_meshes[0]);
     for (uint32_t i = 0; i < own->input_count; i++) inputs[i] = own->inputs[i];
     memcpy(inputs + own->input_count, of_meshes, sizeof of_meshes);
+    if (own->defines && noh_name_has(own->defines, "nohextras")) {
+        inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_EXTRA, GL_INT_VEC4 };
+    }
     for (int i = 0; i < 2; i++) inputs[count++] = shared[key->layers_uint == NOH_LAYERS_STREAMS][i];
     if (influences)
         inputs[count++] = (noh_gl_input){ NOH_ATTRIBUTE_INFLUENCES, words[word_count < 4u ? word_count : 4u] };

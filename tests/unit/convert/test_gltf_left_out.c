@@ -128,9 +128,9 @@ static void further_uvs_and_colours(void **state)
 {
     (void)state;
     EXPECT(",\"TEXCOORD_1\":1,\"COLOR_1\":0,\"_HEAT\":0", "", "",
-           "mesh 'm' primitive 0: the attribute TEXCOORD_1 was left out",
+           "mesh 'm' primitive 0: the attribute TEXCOORD_1 was left out; --attributes keeps it",
            "mesh 'm' primitive 0: the attribute COLOR_1 was left out",
-           "mesh 'm' primitive 0: the attribute _HEAT was left out");
+           "mesh 'm' primitive 0: the attribute _HEAT was left out; --attributes keeps it");
     EXPECT(
         "", ",\"targets\":[{\"POSITION\":0,\"COLOR_0\":0},{\"POSITION\":0,\"_HEAT\":0}]", "",
         "mesh 'm' primitive 0 target 0: the deltas of COLOR_0 were ignored: noh build --color-map makes colours that "
@@ -140,7 +140,7 @@ static void further_uvs_and_colours(void **state)
     EXPECT(
         ",\"TEXCOORD_1\":1", ",\"material\":0",
         ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":1}}}]" ONE_TEXTURE,
-        "mesh 'm' primitive 0: the attribute TEXCOORD_0 was left out");
+        "mesh 'm' primitive 0: the attribute TEXCOORD_0 was left out; --attributes keeps it");
     EXPECT(
         "", ",\"material\":0",
         ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0,\"texCoord\":3}}}]" ONE_TEXTURE,

@@ -250,7 +250,7 @@ static void strips_and_the_wire_form_keep_them(void **state)
 
 static uint32_t *uv_word(const lod_pack *p, uint8_t *bytes, uint32_t vertex)
 {
-    const size_t at = (size_t)(p->mesh.attributes - p->pack.bytes) + (size_t)noh_mesh_uv_texel_offset(&p->mesh) +
+    const size_t at = (size_t)(p->mesh.attributes - p->pack.bytes) + p->mesh.header->attribute_stride - 8u +
                       (size_t)vertex * p->mesh.header->attribute_stride;
     return (uint32_t *)(void *)(bytes + at);
 }

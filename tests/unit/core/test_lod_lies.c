@@ -189,7 +189,7 @@ static void have_more_rectangles(forged *f)
     X(other_boxes, f->h[1].target_boxes_offset += 16, "differs in what all levels share")                            \
     X(other_skin, f->h[1].skin = 0, "differs in what all levels share")                                              \
     X(other_level_count, f->h[1].level_count = 2, "differs in what all levels share")                                \
-    X(other_reserved, f->h[2].reserved[4] = 1, "differs in what all levels share")                                   \
+    X(other_reserved, f->h[2].reserved[3] = 1, "differs in what all levels share")                                   \
     X(falling_influences, f->h[0].influence_errors[0] = 1.0f, "fewer influences")                                    \
     X(unknown_influences, f->h[0].influence_errors[2] = NAN, "fewer influences")                                     \
     X(no_vertices, f->h[2].vertex_count = 0, "higher count")                                                         \

@@ -672,7 +672,7 @@ static void errors_say_where(void **state)
     X(mesh->level_skipped, = 1.0f)                      \
     X(mesh->influence_errors[1], = -1.0f)               \
     X(mesh->reserved[0], = 1)                           \
-    X(mesh->reserved[4], = 1)                           \
+    X(mesh->reserved[3], = 1)                           \
     X(mesh->uv_per_unit, = 1.0f)                        \
     X(mesh->level_first, = 1)                           \
     X(mesh->source_crc, = 1)                            \

@@ -39,8 +39,10 @@ static bool begins_with(const std::string &name, const char *beginning)
 }
 
 /* Joints and weights are read whole, in sets of four, or the file is refused. */
-static bool is_read(const std::string &name, const std::string &uv)
+static bool is_read(const file &f, const std::string &name, const std::string &uv)
 {
+    for (uint32_t k = 0; k < f.out->extras.count; ++k)
+        if (name == f.out->extras.names[k]) return true;
     return name == "POSITION" || name == "NORMAL" || name == "TANGENT" || name == "COLOR_0" || name == uv ||
            begins_with(name, "JOINTS_") || begins_with(name, "WEIGHTS_");
 }
@@ -49,8 +51,12 @@ static void find_in_primitive(file &f, const tinygltf::Primitive &p, const std::
 {
     const std::string uv = uv_name(f, p);
     for (const auto &attribute : p.attributes)
-        if (!is_read(attribute.first, uv))
-            leave_out(f, where, ": the attribute " + printable(attribute.first) + " was left out");
+        if (!is_read(f, attribute.first, uv))
+            leave_out(f, where,
+                      ": the attribute " + printable(attribute.first) + " was left out" +
+                          (begins_with(attribute.first, "_") || begins_with(attribute.first, "TEXCOORD_")
+                               ? "; --attributes keeps it"
+                               : ""));
     if (p.material < 0 || static_cast<size_t>(p.material) >= f.json.materials.size()) return;
     const tinygltf::Material &m = f.json.materials[static_cast<size_t>(p.material)];
     const bool textured = m.pbrMetallicRoughness.baseColorTexture.index >= 0 || m.normalTexture.index >= 0 ||

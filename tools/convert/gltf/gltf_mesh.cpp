@@ -295,8 +295,58 @@ static void allocate_base(file &f, mesh_job &job)
     if (uvs || any_part_has(job, "TANGENT")) m.tangent = allocate<float>(f, uint64_t{ m.vertex_count } * 4, job.where);
     if (uvs) m.uv = allocate<float>(f, uint64_t{ m.vertex_count } * 2, job.where);
     if (any_part_has(job, "COLOR_0")) m.color = allocate<float>(f, uint64_t{ m.vertex_count } * 4, job.where);
+    for (uint32_t k = 0; k < f.out->extras.count; ++k)
+        if (!m.extra && any_part_has(job, f.out->extras.names[k]))
+            m.extra = allocate<float>(f, uint64_t{ m.vertex_count } * NOH_EXTRAS_MAX * 4, job.where);
     m.indices = allocate<uint32_t>(f, m.index_count, job.where);
     m.submeshes = allocate<model_submesh>(f, m.submesh_count, job.where);
+}
+
+/* --- extra attributes, for shaders of a game's own --- */
+
+/* How a file's integers are read. */
+static model_extra kind_of(const tinygltf::Accessor &a, uint32_t width)
+{
+    const bool n = a.normalized;
+    const uint8_t w = static_cast<uint8_t>(width);
+    switch (a.componentType) {
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE: return { w, 8, 0.0f, n ? 1.0f / 255.0f : 1.0f };
+    case TINYGLTF_COMPONENT_TYPE_BYTE: return { w, 8, n ? -1.0f : -128.0f, n ? 1.0f / 127.0f : 1.0f };
+    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT: return { w, 16, 0.0f, n ? 1.0f / 65535.0f : 1.0f };
+    case TINYGLTF_COMPONENT_TYPE_SHORT: return { w, 16, n ? -1.0f : -32768.0f, n ? 1.0f / 32767.0f : 1.0f };
+    default: return { w, 0, 0.0f, 0.0f };
+    }
+}
+
+static void read_extra(file &f, const mesh_job &job, const part &p, uint32_t k, model_mesh &m)
+{
+    const std::string name = f.out->extras.names[k], where = where_of(job, p) + " " + printable(name);
+    const int index = find(p.source->attributes, name);
+    const tinygltf::Accessor &a = accessor_at(f, index, where);
+    const uint32_t width = a.type == TINYGLTF_TYPE_SCALAR ? 1u : static_cast<uint32_t>(a.type);
+    if (width < 1 || width > 4) fail(where, "it is neither a scalar nor a vector");
+    const model_extra kind = kind_of(a, width);
+    model_extra &all = m.extras[k];
+    std::vector<float> values(p.vertices.count() * width);
+    read_vertices(f, index, width, signed_bits | unsigned_bits | c_f32, p.vertices, where, values.data());
+    for (size_t v = 0; v < p.vertices.count(); ++v)
+        memcpy(m.extra + 4 * ((p.first_vertex + v) * NOH_EXTRAS_MAX + k), &values[v * width], width * sizeof(float));
+    const bool same = kind.bits == all.bits && kind.least == all.least && kind.step == all.step;
+    const uint8_t widest = std::max(kind.width, all.width);
+    all = !all.width || same ? kind : model_extra{ 0, 0, 0.0f, 0.0f };
+    all.width = widest;
+}
+
+static void read_extras(file &f, mesh_job &job, const part &p)
+{
+    model_mesh &m = *job.out;
+    for (uint32_t k = 0; m.extra && k < f.out->extras.count; ++k) {
+        const char *name = f.out->extras.names[k];
+        if (has(p.source->attributes, name))
+            (void)attempt(f, "; its values are 0", [&] { read_extra(f, job, p, k, m); });
+        else if (any_part_has(job, name))
+            leave_out(f, where_of(job, p), std::string(": it has no ") + printable(name) + ", as others do; it is 0");
+    }
 }
 
 static void read_color(file &f, const mesh_job &job, const part &p, float *out)
@@ -353,6 +403,7 @@ static void read_base(file &f, mesh_job &job, const part &p, model_submesh &subm
             transform_uvs(f, job, p, 1.0, m.uv + first * 2);
         });
     }
+    read_extras(f, job, p);
     if (m.color) (void)attempt(f, "; colours are white", [&] { read_color(f, job, p, m.color + first * 4); });
 }
 

@@ -153,7 +153,8 @@ static int refuse(model_error *error, const std::string &where, const std::strin
 }
 
 /* `given`: the file's bytes; null: they are read from the path. To a model, or to curves alone. */
-static int read(const char *path, const bytes *given, model **out, curve_list *curves, model_error *error)
+static int read(const char *path, const bytes *given, const extra_list *extras, model **out, curve_list *curves,
+                model_error *error)
 {
     try {
         std::unique_ptr<model, model_deleter> building(model_new());
@@ -162,6 +163,7 @@ static int read(const char *path, const bytes *given, model **out, curve_list *c
             file f;
             f.path = path;
             f.out = building.get();
+            if (extras) f.out->extras = *extras;
             const bytes data = given ? *given : read_whole_file(f.path, "");
             curves ? read_curves(f, data, *curves) : read_model(f, data);
         }
@@ -183,18 +185,24 @@ static int read(const char *path, const bytes *given, model **out, curve_list *c
 extern "C" int model_read_gltf(const char *path, model **out, model_error *error)
 {
     *out = nullptr;
-    return gltf::read(path, nullptr, out, nullptr, error);
+    return gltf::read(path, nullptr, nullptr, out, nullptr, error);
+}
+
+extern "C" int model_read_gltf_with(const char *path, const extra_list *extras, model **out, model_error *error)
+{
+    *out = nullptr;
+    return gltf::read(path, nullptr, extras, out, nullptr, error);
 }
 
 extern "C" int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error)
 {
     const gltf::bytes data(bytes, bytes + size);
     *out = nullptr;
-    return gltf::read(path, &data, out, nullptr, error);
+    return gltf::read(path, &data, nullptr, out, nullptr, error);
 }
 
 extern "C" int curves_read(const char *path, curve_list *out, model_error *error)
 {
     memset(out, 0, sizeof *out);
-    return gltf::read(path, nullptr, nullptr, out, error);
+    return gltf::read(path, nullptr, nullptr, nullptr, out, error);
 }

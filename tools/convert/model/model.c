@@ -86,6 +86,7 @@ void model_mesh_clear(model_mesh *mesh)
     free(mesh->tangent);
     free(mesh->uv);
     free(mesh->color);
+    free(mesh->extra);
     free(mesh->indices);
     free(mesh->submeshes);
     free(mesh->weights);

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "convert/base/error.h"
+#include "noh/format.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -102,6 +103,20 @@ typedef struct model_submesh {
 
 #define MODEL_INFLUENCES_MAX 32u
 
+/* Extra attributes of vertices that a build keeps (noh build --attributes), in its order. */
+typedef struct extra_list {
+    uint32_t count;
+    char names[NOH_EXTRAS_MAX][NOH_NAME_BYTES_MAX]; /* "TEXCOORD_1", "_WIND" */
+    uint8_t bits[NOH_EXTRAS_MAX];                   /* asked for: 8 or 16; 0: as the file has them, 16 for floats */
+} extra_list;
+
+/* An extra attribute as a mesh has it. */
+typedef struct model_extra {
+    uint8_t width;     /* components: 1..4; 0: the mesh does not have it */
+    uint8_t bits;      /* of the file's component type, 8 or 16; 0: floats */
+    float least, step; /* values of integers are `least` plus multiples of `step`; else 0 */
+} model_extra;
+
 /* One glTF mesh: its primitives' vertices one after another, indices rebased. */
 typedef struct model_mesh {
     char *name;
@@ -112,6 +127,8 @@ typedef struct model_mesh {
     float *uv; /* [vertex_count][2] (TEXCOORD_0, or the set that the base colour texture uses); NULL where no primitive
                   has them */
     float *color; /* [vertex_count][4] linear (COLOR_0); NULL where no primitive has them */
+    float *extra; /* [vertex_count][NOH_EXTRAS_MAX][4] extra attributes, for shaders of a game's own; NULL: none */
+    model_extra extras[NOH_EXTRAS_MAX];
     uint32_t *indices;
     model_submesh *submeshes;
     model_target *targets;
@@ -221,6 +238,7 @@ typedef struct model {
     model_collider *colliders; /* [collider_count], at most NOH_SPRING_COLLIDERS_MAX */
     char *spring_lines;        /* lines of springs (springs/springs_read.h) out of extras; NULL: none */
     int for_any_body;          /* 1: a VRM animation: its clips are retargeted (retarget/) */
+    extra_list extras;         /* extra attributes that its vertices may have */
     uint32_t warning_count;
     char **warnings; /* sentences for the user, e.g. what was skipped and why */
 } model;
@@ -228,6 +246,9 @@ typedef struct model {
 /* Read a .gltf or .glb file. Returns 0 and *out on success, else 1 and a filled error (*out = NULL).
  * Calls model_complete. */
 int model_read_gltf(const char *path, model **out, model_error *error);
+
+/* The same with extra attributes of its vertices. What no mesh has is left to the caller. */
+int model_read_gltf_with(const char *path, const extra_list *extras, model **out, model_error *error);
 
 /* The same of a .glb in memory. `path` names its source file: images lie in the same folder, and a clip without a
  * name takes the file's. */

@@ -25,6 +25,7 @@ int model_copy_vertices(model_mesh *mesh, const uint32_t *sources, uint32_t coun
     int failed = grow(&mesh->position, 12u, mesh, sources, count) || grow(&mesh->normal, 12u, mesh, sources, count) ||
                  grow(&mesh->tangent, 16u, mesh, sources, count) || grow(&mesh->uv, 8u, mesh, sources, count) ||
                  grow(&mesh->color, 16u, mesh, sources, count) ||
+                 grow(&mesh->extra, 16u * NOH_EXTRAS_MAX, mesh, sources, count) ||
                  grow(&mesh->joints, influences * sizeof *mesh->joints, mesh, sources, count) ||
                  grow(&mesh->joint_weights, influences * sizeof *mesh->joint_weights, mesh, sources, count);
     for (uint32_t t = 0; t < mesh->target_count && !failed; t++) {

@@ -101,11 +101,13 @@ static uint32_t pack_uv(const float uv[2], const noh_mesh_header *h)
     return word;
 }
 
-#define RECORD_WORDS_MAX 6u
+#define RECORD_WORDS_MAX 14u
 
-static uint32_t attribute_record(const model_mesh *m, const morph_encoding *e, const mesh_layout *l, uint32_t vertex,
+static uint32_t attribute_record(const mesh_input *from, const mesh_layout *l, uint32_t vertex,
                                  const noh_mesh_header *h, uint32_t record[RECORD_WORDS_MAX])
 {
+    const model_mesh *m = from->mesh;
+    const morph_encoding *e = from->encoding;
     size_t old = l->source[vertex];
     uint32_t words = 0;
     record[words++] = pack_normal(m->normal + 3 * old);
@@ -118,6 +120,8 @@ static uint32_t attribute_record(const model_mesh *m, const morph_encoding *e, c
     if (m->color) {
         record[words++] = pack_color(m->color + 4 * old);
     }
+    extras_pack(from->extras, m, old, record + words);
+    words += from->extras->word_count;
     if (e->uv_texel) {
         record[words++] = e->uv_texel[old] == MODEL_NONE ? NOH_TEXEL_NONE : e->uv_texel[old];
     }
@@ -127,9 +131,10 @@ static uint32_t attribute_record(const model_mesh *m, const morph_encoding *e, c
     return words;
 }
 
-static void append_vertices(const model_mesh *m, const morph_encoding *e, const mesh_layout *l, noh_mesh_header *h,
-                            size_t base, byte_buffer *out)
+static void append_vertices(const mesh_input *from, const mesh_layout *l, noh_mesh_header *h, size_t base,
+                            byte_buffer *out)
 {
+    const model_mesh *m = from->mesh;
     buffer_align(out, 16);
     h->positions_offset = (uint32_t)(out->count - base);
     for (uint32_t v = 0; v < l->vertex_count; v++) {
@@ -139,7 +144,7 @@ static void append_vertices(const model_mesh *m, const morph_encoding *e, const 
     h->attributes_offset = (uint32_t)(out->count - base);
     for (uint32_t v = 0; v < l->vertex_count; v++) {
         uint32_t record[RECORD_WORDS_MAX];
-        h->attribute_stride = 4 * attribute_record(m, e, l, v, h, record);
+        h->attribute_stride = 4 * attribute_record(from, l, v, h, record);
         buffer_append(out, record, h->attribute_stride);
     }
 }
@@ -300,6 +305,15 @@ static noh_mesh_header level_header(const noh_mesh_header *full, const morph_enc
     return h;
 }
 
+static int check_extras(const mesh_input *from, model_error *error)
+{
+    const uint32_t most = NOH_EXTRA_WORDS_ROOM(from->encoding->uv_texel ? NOH_MESH_UV_TARGETS : 0u);
+    if (from->extras->word_count <= most) return 0;
+    return model_fail(error, from->mesh->name,
+                      "its --attributes take %u bytes a vertex, and it has room for %u: NAME:8 stores one in bytes",
+                      4u * from->extras->word_count, 4u * most);
+}
+
 int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, mesh_extra *extra, model_error *error)
 {
     const model_mesh *m = from->mesh;
@@ -307,16 +321,17 @@ int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, m
     const morph_encoding *e = from->encoding;
     size_t base = out->count;
     noh_mesh_header h;
-    mesh_layout l;
-    int failed = mesh_layout_make(m, levels, e, from->submesh_blends, &l, error);
+    mesh_layout l = { 0 };
+    int failed = check_extras(from, error) || mesh_layout_make(m, levels, e, from->submesh_blends, &l, error);
     if (!failed) {
         set_counts(m, e, &l, &h);
         if (f16_bound(e, &h.f16_position_bound, &h.f16_direction_bound)) out->failed = 1;
         set_skin(m, &l, from->skin, &h);
         h.world_scale = from->world_scale;
+        h.extra_words = from->extras->word_count;
         memcpy(h.influence_errors, levels->cap_error, sizeof h.influence_errors);
         buffer_append(out, NULL, sizeof h * l.level_count);
-        append_vertices(m, e, &l, &h, base, out);
+        append_vertices(from, &l, &h, base, out);
         append_indices(&l, &h, base, out);
         append_targets(m, e, strings, &h, base, out);
         append_target_boxes(from, &h, base, out);

@@ -4,6 +4,7 @@
 
 #include "convert/base/byte_buffer.h"
 #include "convert/lod/lod_levels.h"
+#include "convert/model/model_extra.h"
 #include "convert/morph/morph_encode.h"
 
 /* Results of a mesh in addition to its chunk. */
@@ -20,10 +21,11 @@ typedef struct mesh_input {
     float world_scale;              /* model_mesh_scale */
     uint32_t skin;                  /* the n-th skin chunk, or NOH_NONE */
     uint32_t skin_joint_count;
+    const extra_plan *extras;
 } mesh_input;
 
 /* Append a mesh chunk: the full mesh and its levels. Returns 0, or 1 and a filled error if the mesh cannot be split
- * into palettes. */
+ * into palettes, or has no room for its extra attributes. */
 int pack_mesh(const mesh_input *from, string_table *strings, byte_buffer *out, mesh_extra *extra, model_error *error);
 
 #endif

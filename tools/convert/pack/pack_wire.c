@@ -197,6 +197,30 @@ static void write_column(writer *w, uint32_t chunk, uint32_t offset, const uint3
     write_best(w, s, 4u, &w->report->attributes);
 }
 
+/* Whether a component of 8 bits lies in a word of the extra attributes. */
+static int has_bytes(const noh_extras_header *e, uint32_t word)
+{
+    const noh_extra_row *rows = (const noh_extra_row *)(const void *)((const uint8_t *)e + e->rows_offset);
+    for (uint32_t k = 0; k < e->count; k++) {
+        const float first = rows[k].first_bit, end = first + rows[k].bits * rows[k].component_count;
+        if (rows[k].bits == 8.0f && first < 32.0f * (float)(word + 1u) && end > 32.0f * (float)word) return 1;
+    }
+    return 0;
+}
+
+/* The words of extra attributes, as two halves or four bytes. */
+static void write_extras(writer *w, const noh_mesh *mesh, uint32_t chunk)
+{
+    static const uint32_t halves[8] = { 16u << 8, 65535, 16u << 8 | 16u, 65535 };
+    static const uint32_t bytes[8] = { 8u << 8, 255, 8u << 8 | 8u, 255, 8u << 8 | 16u, 255, 8u << 8 | 24u, 255 };
+    const noh_mesh_header *h = mesh->header;
+    const uint32_t texels = (h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u);
+    for (uint32_t i = 0; i < h->extra_words; i++) {
+        write_column(w, chunk, h->attribute_stride - 4u * (texels + h->extra_words - i),
+                     mesh->extras && has_bytes(mesh->extras, i) ? bytes : halves);
+    }
+}
+
 static void write_attributes(writer *w, const noh_mesh *mesh, uint32_t chunk)
 {
     const uint32_t uv = w->steps->uv_steps,
@@ -212,6 +236,7 @@ static void write_attributes(writer *w, const noh_mesh *mesh, uint32_t chunk)
     if (noh_mesh_tangent_offset(mesh) >= 0) write_column(w, chunk, (uint32_t)noh_mesh_tangent_offset(mesh), tangents);
     if (noh_mesh_uv_offset(mesh) >= 0) write_column(w, chunk, (uint32_t)noh_mesh_uv_offset(mesh), uvs);
     if (noh_mesh_color_offset(mesh) >= 0) write_column(w, chunk, (uint32_t)noh_mesh_color_offset(mesh), colors);
+    write_extras(w, mesh, chunk);
     if (mesh->header->flags & NOH_MESH_TEXELS) {
         s.kind = NOH_WIRE_TEXEL_REFS;
         s.mode = 0;
@@ -219,7 +244,7 @@ static void write_attributes(writer *w, const noh_mesh *mesh, uint32_t chunk)
         write_section(w, &s, &w->report->attributes);
     }
     if (mesh->header->flags & NOH_MESH_UV_TARGETS) {
-        s.stride = (uint16_t)noh_mesh_uv_texel_offset(mesh);
+        s.stride = (uint16_t)(mesh->header->attribute_stride - 8u);
         write_section(w, &s, &w->report->attributes);
     }
 }

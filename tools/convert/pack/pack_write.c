@@ -166,13 +166,16 @@ static void write_mesh(pack_writer *w, uint32_t index, const morph_encoding *e)
     static const mesh_levels alone = { .count = 1 };
     const model_mesh *mesh = &w->m->meshes[index];
     uint8_t blends[NOH_SUBMESHES_MAX];
+    extra_plan extras;
     const mesh_input from = { mesh,
                               w->levels ? &w->levels[index] : &alone,
                               e,
                               blends,
                               model_mesh_scale(w->m, index),
                               mesh->bound ? w->skin_chunks[mesh->skin] : NOH_NONE,
-                              mesh->bound ? w->m->skins[mesh->skin].joint_count : 0 };
+                              mesh->bound ? w->m->skins[mesh->skin].joint_count : 0,
+                              &extras };
+    extras_plan(w->m, mesh, &extras);
     for (uint32_t s = 0; s < mesh->submesh_count; s++) {
         uint32_t material = mesh->submeshes[s].material;
         blends[s] = material != MODEL_NONE && w->m->materials[material].alpha == MODEL_ALPHA_BLEND;

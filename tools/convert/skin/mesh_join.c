@@ -7,6 +7,8 @@
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 
+#define EXTRA_FLOATS ((size_t)NOH_EXTRAS_MAX * 4u)
+
 /* The transform from a part to the joined mesh. */
 typedef struct turn {
     double place[16], normal[9]; /* normal: the cofactors, with the sign that keeps normals outward */
@@ -94,6 +96,9 @@ static void join_vertex(const mesh_part *part, size_t v, const turn *t, model_me
     }
     for (size_t i = 0; out->color && i < 4; i++) {
         out->color[4 * to + i] = from->color ? from->color[4 * v + i] : 1.0f;
+    }
+    if (out->extra && from->extra) {
+        memcpy(out->extra + EXTRA_FLOATS * to, from->extra + EXTRA_FLOATS * v, EXTRA_FLOATS * sizeof *out->extra);
     }
     join_influences(part, v, out, to);
 }
@@ -191,11 +196,26 @@ static int allocate_targets(const model_mesh *from, model_mesh *out)
     return 0;
 }
 
+/* An extra attribute that parts have in several ways is floats. */
+static void join_extras(const model_extra *part, model_extra *out)
+{
+    for (uint32_t k = 0; k < NOH_EXTRAS_MAX; k++) {
+        const model_extra *from = &part[k];
+        model_extra *to = &out[k];
+        if (from->width && to->width &&
+            (from->bits != to->bits || from->least != to->least || from->step != to->step)) {
+            *to = (model_extra){ to->width > from->width ? to->width : from->width, 0, 0.0f, 0.0f };
+        } else if (from->width > to->width) {
+            *to = *from;
+        }
+    }
+}
+
 static int allocate(const mesh_part *parts, uint32_t part_count, model_mesh *out)
 {
     const model_mesh *morphed = parts[0].mesh;
     size_t submeshes = 0;
-    int tangent = 0, uv = 0, color = 0;
+    int tangent = 0, uv = 0, color = 0, extra = 0;
     for (uint32_t p = 0; p < part_count; p++) {
         const model_mesh *m = parts[p].mesh;
         out->vertex_count += m->vertex_count;
@@ -204,6 +224,8 @@ static int allocate(const mesh_part *parts, uint32_t part_count, model_mesh *out
         tangent |= m->tangent != NULL;
         uv |= m->uv != NULL;
         color |= m->color != NULL;
+        extra |= m->extra != NULL;
+        join_extras(m->extras, out->extras);
         morphed = m->target_count ? m : morphed;
     }
     out->position = model_zeros((size_t)out->vertex_count * 3, sizeof *out->position);
@@ -211,12 +233,14 @@ static int allocate(const mesh_part *parts, uint32_t part_count, model_mesh *out
     out->tangent = tangent ? model_zeros((size_t)out->vertex_count * 4, sizeof *out->tangent) : NULL;
     out->uv = uv ? model_zeros((size_t)out->vertex_count * 2, sizeof *out->uv) : NULL;
     out->color = color ? model_zeros((size_t)out->vertex_count * 4, sizeof *out->color) : NULL;
+    out->extra = extra ? model_zeros(out->vertex_count * EXTRA_FLOATS, sizeof *out->extra) : NULL;
     out->joints = model_zeros((size_t)out->vertex_count * MODEL_INFLUENCES_MAX, sizeof *out->joints);
     out->joint_weights = model_zeros((size_t)out->vertex_count * MODEL_INFLUENCES_MAX, sizeof *out->joint_weights);
     out->indices = model_zeros(out->index_count, sizeof *out->indices);
     out->submeshes = model_zeros(submeshes, sizeof *out->submeshes);
     return !out->position || !out->normal || (tangent && !out->tangent) || (uv && !out->uv) || (color && !out->color) ||
-           !out->joints || !out->joint_weights || !out->indices || !out->submeshes || allocate_targets(morphed, out);
+           (extra && !out->extra) || !out->joints || !out->joint_weights || !out->indices || !out->submeshes ||
+           allocate_targets(morphed, out);
 }
 
 static void join_part(const mesh_part *part, uint32_t first_vertex, model_mesh *out)
@@ -288,6 +312,7 @@ int mesh_copy(const model_mesh *mesh, model_mesh *out)
     out->tangent = duplicate(mesh->tangent, vertices * 4, sizeof *mesh->tangent, &failed);
     out->uv = duplicate(mesh->uv, vertices * 2, sizeof *mesh->uv, &failed);
     out->color = duplicate(mesh->color, vertices * 4, sizeof *mesh->color, &failed);
+    out->extra = duplicate(mesh->extra, vertices * EXTRA_FLOATS, sizeof *mesh->extra, &failed);
     out->joints = duplicate(mesh->joints, influences, sizeof *mesh->joints, &failed);
     out->joint_weights = duplicate(mesh->joint_weights, influences, sizeof *mesh->joint_weights, &failed);
     out->indices = duplicate(mesh->indices, mesh->index_count, sizeof *mesh->indices, &failed);

@@ -12,6 +12,7 @@
 #include "cli/args.h"
 #include "convert/convert.h"
 #include "convert/mocap/clean.h"
+#include "convert/model/model_extra.h"
 #include "cli/message.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -44,6 +45,7 @@ typedef struct skin_args {
 } skin_args;
 
 typedef struct material_args {
+    const char *extras;
     option_list two_streams, surfaces, tints, priorities;
 } material_args;
 
@@ -306,6 +308,12 @@ static int set_wrinkles(const build_args *a, convert_options *o)
     return 0;
 }
 
+static int set_extras(const build_args *a, convert_options *o)
+{
+    model_error error = { "", "" };
+    return extras_parse(a->materials.extras, &o->source.extras, &error) ? tool_usage("%s", error.what) : 0;
+}
+
 static int set_textures(const build_args *a, convert_options *o)
 {
     o->whole_textures = a->textures.whole;
@@ -339,6 +347,7 @@ static int set_values(const build_args *a, convert_options *o)
     if (!status) status = set_transfer(a, o);
     if (!status) status = set_wrinkles(a, o);
     if (!status) status = set_textures(a, o);
+    if (!status) status = set_extras(a, o);
     return status;
 }
 
@@ -695,6 +704,14 @@ static const option options[] = {
       .what =
           "make the second mesh a target of the first: both need the same triangles, and the same vertices in the same order; may repeat",
       .example = "arm=arm_bent",
+      .excludes = "--only=anim" },
+    { .name = "--attributes",
+      .kind = OPTION_TEXT,
+      .at = offsetof(build_args, materials.extras),
+      .value = "NAME[:BITS],...",
+      .what =
+          "keep up to 5 attributes of vertices for shaders of your own, in this order: TEXCOORD_1, or names that begin with _; BITS: 8 or 16 for each component; default: as the file has them, 16 for floats",
+      .example = "TEXCOORD_1,_WIND:8",
       .excludes = "--only=anim" },
     { .name = "--surface",
       .kind = OPTION_LIST,

@@ -9,6 +9,7 @@
 #include "info_match.h"
 #include "info_materials.h"
 #include "info_terrain.h"
+#include "info_extras.h"
 #include "info_transfer.h"
 #include "cli/args.h"
 #include "cli/message.h"
@@ -138,6 +139,7 @@ static void print_mesh(const noh_pack *pack, uint32_t index, const noh_mesh *m)
     if (h->flags & NOH_MESH_UV_TARGETS) {
         printf("  texture coordinates of %u vertices move\n", count_sliding(m));
     }
+    info_print_extras(m);
     info_print_transfer(m);
     print_levels(m);
     for (uint32_t t = 0; t < h->target_count; t++) {
@@ -299,6 +301,7 @@ static void json_mesh(json *j, const noh_pack *pack, uint32_t index, const noh_m
     json_number(j, "f16_bound_0_to_1_um", half_bound_um(m));
     json_number(j, "f16_bound_um", 1e6 * (double)h->world_scale * (double)h->f16_position_bound);
     json_skin(j, pack, index, h);
+    info_json_extras(j, m);
     info_json_transfer(j, m);
     json_integer(j, "level_first", h->level_first);
     json_integer(j, "source", noh_mesh_source(m));
