@@ -105,6 +105,16 @@ else
     expect 1 'what has no joint of the body is no garment'
     check 'and says so' grep -q 'no joint of the garment has the name' "$work/err"
 
+    run conversation "$build/demo/nell.noh" -o talk
+    expect 0 'conversation lets two heads talk in turns'
+    check 'who speaks opens the mouth, who listens does not' awk '
+        { said = $5 > 0.5; heard = $7 > 0.5; if (said == heard || said != (NR % 2)) wrong++ } END { exit wrong || NR != 3 }' "$work/out"
+    check 'and its pictures show it' differ "$work/talk0.png" "$work/talk1.png"
+    check 'a smile, too' differ "$work/talk0.png" "$work/talk2.png"
+    run conversation "$build/demo/coat.noh"
+    expect 2 'what has no eyes is refused'
+    check 'and says so' grep -q '^eyes: ' "$work/err"
+
     field() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$work/out"; }
     run cast "$build/demo/puppet_levels.noh" --json --seconds 1 -o cast.png
     expect 0 'cast plays for a second'
