@@ -15,22 +15,11 @@
 extern "C" {
 #endif
 
-/* ======== boxes, rays and capsules ========
- * Points in boxes, and a ray against a capsule.
- *
- *   noh_aabb_contains   axis-aligned boxes
+/* ======== rays and capsules ========
  *   noh_ray_capsule     a ray against a capsule
  *
- * Touching counts as overlapping. Boxes may be flat.
- * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes), 5.1.9 (segments), 5.3.3
- *          (slabs); Granberg, Character Animation with Direct3D, 2009, chapter 6, with its degenerate cases added
+ * source   Ericson: Real-Time Collision Detection, 2005, section 5.3.7
  * Threads: no state; any thread. */
-
-typedef struct noh_aabb {
-    float min[3], max[3];
-} noh_aabb;
-
-int noh_aabb_contains(const noh_aabb *box, const float point[3]);
 
 /* Intersect a ray with a capsule; a ball if `from` and `to` are equal. */
 float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3], float radius);

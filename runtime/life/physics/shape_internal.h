@@ -1,4 +1,8 @@
-/* shape_internal.h: tests of shapes that ragdolls, feet and worlds share. */
+/* shape_internal.h: tests of shapes that ragdolls, feet and worlds share. Touching counts as overlapping; boxes may be
+ * flat.
+ *
+ * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes), 5.1.9 (segments), 5.3.3
+ *          (slabs); Granberg, Character Animation with Direct3D, 2009, chapter 6, with its degenerate cases added */
 #ifndef NOH_PHYSICS_SHAPE_INTERNAL_H
 #define NOH_PHYSICS_SHAPE_INTERNAL_H
 
@@ -8,6 +12,11 @@
 extern "C" {
 #endif
 
+typedef struct noh_aabb {
+    float min[3], max[3];
+} noh_aabb;
+
+int noh_aabb_contains(const noh_aabb *box, const float point[3]);
 int noh_obb_contains(const noh_obb *box, const float point[3]);
 
 /* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of

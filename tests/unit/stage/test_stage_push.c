@@ -193,7 +193,7 @@ static void a_table_of_pushes(void **state)
         assert_true(pushes[p] > 15.0f || all.sways == SIDES * SEEDS);
         assert_true(pushes[p] < 35.0f || pushes[p] > 75.0f || all.steppers == SIDES * SEEDS);
         assert_true(pushes[p] < 95.0f || all.falls == SIDES * SEEDS);
-        assert_true(all.foot_over_hip < (pushes[p] > 350.0f ? 0.85f : 0.42f));
+        assert_true(all.foot_over_hip < (pushes[p] > 350.0f ? 0.85f : 0.48f));
         assert_true(all.foot_over_hip_lying < (pushes[p] > 350.0f ? 0.25f : 0.1f));
     }
 }
