@@ -25,6 +25,14 @@ noh_result noh_check_fields(const noh_check *check, const noh_check_field *field
     return NOH_OK;
 }
 
+noh_result noh_check_reserved(const noh_check *check, uint64_t at, uint32_t count)
+{
+    for (uint32_t i = 0; i < 4u * count; i++) {
+        if (check->bytes[at + i]) return noh_check_fail(check, "reserved field is not zero", at + (i & ~3u));
+    }
+    return NOH_OK;
+}
+
 noh_result noh_check_head(noh_check *check, uint32_t bytes)
 {
     if (check->count < bytes) {

@@ -23,10 +23,9 @@ noh_result noh_check_cover(noh_check *check)
     const noh_check_field fields[] = {
         { offsetof(noh_pack_cover_header, triangle_count), !h->triangle_count },
         { offsetof(noh_pack_cover_header, hidden_count), h->hidden_count > h->triangle_count },
-        { offsetof(noh_pack_cover_header, reserved), h->reserved[0] != 0 },
-        { offsetof(noh_pack_cover_header, reserved) + 4u, h->reserved[1] != 0 },
     };
     result = noh_check_fields(check, fields, sizeof fields / sizeof *fields, "count of a cover is impossible", 0);
+    if (!result) result = noh_check_reserved(check, offsetof(noh_pack_cover_header, reserved), 2);
     if (!result) result = noh_check_name(check, h->mesh, h->mesh_hash, offsetof(noh_pack_cover_header, mesh));
     if (!result) result = noh_check_array(check, offsetof(noh_pack_cover_header, bits_offset), words, 4);
     if (!result) {

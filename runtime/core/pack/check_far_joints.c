@@ -21,13 +21,9 @@ static noh_result check_header(const noh_check *check, const noh_far_joints_head
     };
     noh_result result = noh_check_fields(check, fields, sizeof fields / sizeof fields[0],
                                          "virtual joints do not fit their mesh and its skin", 0);
-    for (unsigned i = 0; !result && i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
-        if (h->reserved[i]) {
-            result = noh_check_fail(check, "reserved field of virtual joints is not zero",
-                                    offsetof(noh_far_joints_header, reserved) + 4ull * i);
-        }
-    }
-    return result;
+    return result ? result
+                  : noh_check_reserved(check, offsetof(noh_far_joints_header, reserved),
+                                       sizeof h->reserved / sizeof h->reserved[0]);
 }
 
 /* Levels that they move have no accumulation texels. */

@@ -8,13 +8,8 @@
 
 static noh_result check_header(const noh_check *check, const noh_influences_header *h)
 {
-    for (unsigned i = 0; i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
-        if (h->reserved[i]) {
-            return noh_check_fail(check, "reserved field of an influence list is not zero",
-                                  offsetof(noh_influences_header, reserved) + 4ull * i);
-        }
-    }
-    return NOH_OK;
+    return noh_check_reserved(check, offsetof(noh_influences_header, reserved),
+                              sizeof h->reserved / sizeof h->reserved[0]);
 }
 
 static noh_result check_arrays(noh_check *check, const noh_influences_header *h)

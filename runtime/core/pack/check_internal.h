@@ -26,13 +26,16 @@ noh_result noh_check_fail(const noh_check *check, const char *what, uint64_t off
 
 /* A field of a record, and whether it is wrong. */
 typedef struct noh_check_field {
-    size_t at; /* byte in the record */
+    uint32_t at; /* byte in the record */
     int wrong;
 } noh_check_field;
 
 /* Fail at the first field that is wrong, of the record at a byte of the chunk. */
 NOH_COLD noh_result noh_check_fields(const noh_check *check, const noh_check_field *fields, size_t count,
                                      const char *what, uint64_t record);
+
+/* Fail if one of `count` words at a byte of the chunk is not zero. */
+NOH_COLD noh_result noh_check_reserved(const noh_check *check, uint64_t at, uint32_t count);
 
 /* The fixed head of a chunk. */
 noh_result noh_check_head(noh_check *check, uint32_t bytes);

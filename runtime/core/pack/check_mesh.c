@@ -72,17 +72,6 @@ static noh_result check_uv_targets(const noh_check *check, const noh_mesh_header
     return NOH_OK;
 }
 
-static noh_result check_reserved(const noh_check *check, const noh_mesh_header *h)
-{
-    for (size_t i = 0; i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
-        if (h->reserved[i]) {
-            return noh_check_fail(check, "reserved field of a mesh is not zero",
-                                  offsetof(noh_mesh_header, reserved) + 4u * i);
-        }
-    }
-    return NOH_OK;
-}
-
 /* The counts that size a skinned mesh's arrays, before the arrays are looked at. */
 static noh_result check_skin_counts(const noh_check *check, const noh_mesh_header *h)
 {
@@ -277,7 +266,7 @@ noh_result noh_check_mesh(noh_check *check)
     const noh_mesh_header *h = (const noh_mesh_header *)(const void *)check->bytes;
     noh_result result = noh_check_head(check, sizeof *h);
     if (!result) result = check_limits(check, h);
-    if (!result) result = check_reserved(check, h);
+    if (!result) result = noh_check_reserved(check, offsetof(noh_mesh_header, reserved), sizeof h->reserved / 4u);
     if (!result) result = check_uv_targets(check, h);
     if (!result) result = noh_check_texture_shape(check, h);
     if (!result) result = check_skin_counts(check, h);

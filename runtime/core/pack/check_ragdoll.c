@@ -23,13 +23,12 @@ static noh_result check_row(const noh_check *check, const noh_pack_ragdoll_row *
         { offsetof(noh_pack_ragdoll_row, side), !is_within(row->side, 0.0f, HALF_TURN) },
         { offsetof(noh_pack_ragdoll_row, twist), !is_within(row->twist, 0.0f, HALF_TURN) },
         { offsetof(noh_pack_ragdoll_row, friction), !is_within(row->friction, 0.0f, FRICTION_MAX) },
-        { offsetof(noh_pack_ragdoll_row, reserved), row->reserved[0] != 0 },
-        { offsetof(noh_pack_ragdoll_row, reserved) + 4u, row->reserved[1] != 0 },
-        { offsetof(noh_pack_ragdoll_row, reserved) + 8u, row->reserved[2] != 0 },
     };
-    const noh_result result = noh_check_name(check, row->joint, row->joint_hash,
-                                             at + offsetof(noh_pack_ragdoll_row, joint));
-    return result ? result : noh_check_fields(check, fields, 10, "row of a ragdoll's table is impossible", at);
+    noh_result result = noh_check_name(check, row->joint, row->joint_hash, at + offsetof(noh_pack_ragdoll_row, joint));
+    if (!result) result = noh_check_reserved(check, at + offsetof(noh_pack_ragdoll_row, reserved), 3);
+    return result ? result
+                  : noh_check_fields(check, fields, sizeof fields / sizeof *fields,
+                                     "row of a ragdoll's table is impossible", at);
 }
 
 /* A joint has one row: string offsets of equal names may differ, so hashes are compared. */

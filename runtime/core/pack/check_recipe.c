@@ -9,15 +9,13 @@ static noh_result check_row(const noh_check *check, const noh_recipe_row *row, u
 {
     const noh_check_field fields[] = {
         { offsetof(noh_recipe_row, weight), !(row->weight >= -4.0f && row->weight <= 4.0f) },
-        { offsetof(noh_recipe_row, reserved), row->reserved[0] != 0 },
-        { offsetof(noh_recipe_row, reserved) + 4u, row->reserved[1] != 0 },
-        { offsetof(noh_recipe_row, reserved) + 8u, row->reserved[2] != 0 },
     };
     noh_result result = noh_check_name(check, row->target, row->target_hash, at + offsetof(noh_recipe_row, target));
     if (!result) {
         result = noh_check_name(check, row->channel, row->channel_hash, at + offsetof(noh_recipe_row, channel));
     }
-    return result ? result : noh_check_fields(check, fields, 4, "row of a recipe is impossible", at);
+    if (!result) result = noh_check_reserved(check, at + offsetof(noh_recipe_row, reserved), 3);
+    return result ? result : noh_check_fields(check, fields, 1, "row of a recipe is impossible", at);
 }
 
 noh_result noh_check_recipe(noh_check *check)

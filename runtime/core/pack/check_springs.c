@@ -27,25 +27,23 @@ static noh_result check_header(const noh_check *check, const noh_springs_header 
         { offsetof(noh_springs_header, row_count), !h->row_count || h->row_count > h->joint_count },
         { offsetof(noh_springs_header, chain_count), !h->chain_count || h->chain_count > h->row_count },
         { offsetof(noh_springs_header, collider_count), h->collider_count > NOH_SPRING_COLLIDERS_MAX },
-        { offsetof(noh_springs_header, reserved), h->reserved[0] != 0 },
-        { offsetof(noh_springs_header, reserved) + 4u, h->reserved[1] != 0 },
-        { offsetof(noh_springs_header, reserved) + 8u, h->reserved[2] != 0 },
-        { offsetof(noh_springs_header, reserved) + 12u, h->reserved[3] != 0 },
     };
-    return noh_check_fields(check, fields, sizeof fields / sizeof *fields, "count of springs is impossible", 0);
+    const noh_result result = noh_check_fields(check, fields, sizeof fields / sizeof *fields,
+                                               "count of springs is impossible", 0);
+    return result ? result : noh_check_reserved(check, offsetof(noh_springs_header, reserved), 4);
 }
 
-static int is_not_below(float value)
+static NOH_NEVER_INLINE int is_not_below(float value)
 {
     return !(value >= 0.0f) || !noh_float_finite(value);
 }
 
-static int is_not_finite3(const float v[3])
+static NOH_NEVER_INLINE int is_not_finite3(const float v[3])
 {
     return !noh_float_finite(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-static int has_no_length(const float v[3])
+static NOH_NEVER_INLINE int has_no_length(const float v[3])
 {
     return !(v[0] * v[0] + v[1] * v[1] + v[2] * v[2] > 0.0f) || is_not_finite3(v);
 }

@@ -30,13 +30,10 @@ noh_result noh_check_terrain(noh_check *check)
         { offsetof(noh_pack_terrain_header, origin) + 8u, is_far(h->origin[2]) },
         { offsetof(noh_pack_terrain_header, spacing), !(h->spacing >= 1e-4f && h->spacing <= 1e4f) },
         { offsetof(noh_pack_terrain_header, scale), !(h->scale >= 0.0f && h->scale <= 1e2f) },
-        { offsetof(noh_pack_terrain_header, reserved), h->reserved[0] != 0 },
-        { offsetof(noh_pack_terrain_header, reserved) + 4u, h->reserved[1] != 0 },
-        { offsetof(noh_pack_terrain_header, reserved) + 8u, h->reserved[2] != 0 },
-        { offsetof(noh_pack_terrain_header, reserved) + 12u, h->reserved[3] != 0 },
     };
     result = noh_check_fields(check, fields, sizeof fields / sizeof fields[0],
                               "number of a terrain is out of its range", 0);
+    if (!result) result = noh_check_reserved(check, offsetof(noh_pack_terrain_header, reserved), 4);
     if (!result) {
         result = noh_check_array(check, offsetof(noh_pack_terrain_header, heights_offset),
                                  (uint64_t)h->width * h->depth, sizeof(uint16_t));

@@ -15,13 +15,9 @@ static noh_result check_header(const noh_check *check, const noh_transfer_header
     };
     noh_result result = noh_check_fields(
         check, known, 4, "transfer has an unknown order or flag, reflects more than it gets, or was not measured", 0);
-    for (unsigned i = 0; !result && i < sizeof h->reserved / sizeof h->reserved[0]; i++) {
-        if (h->reserved[i]) {
-            result = noh_check_fail(check, "reserved field of a transfer is not zero",
-                                    offsetof(noh_transfer_header, reserved) + 4ull * i);
-        }
-    }
-    return result;
+    return result ? result
+                  : noh_check_reserved(check, offsetof(noh_transfer_header, reserved),
+                                       sizeof h->reserved / sizeof h->reserved[0]);
 }
 
 /* As many vertices, delta texels and targets as its mesh has. */
