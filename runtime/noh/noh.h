@@ -206,11 +206,11 @@ typedef struct noh_kind_desc {
                            * set is drawn whole. Without GPU, and for meshes with `finer`, none. Default (0) none */
     /* 1: its index is a slot: noh_stage_set_kind takes the kind out while the stage runs, and puts others in. The plan
      * reserves room for the largest of this kind and `others`, keeps it whole under bounds, and the slot shares no clips
-     * with other kinds. Only of a stage without `gpu`. Default (0): the kind stays */
+     * with other kinds. Only of a stage without `gpu`. 2: the same, and the slot is empty after init: this kind only
+     * sizes it. Default (0): the kind stays */
     int changes;
-    int absent;                         /* with `changes`: 1: the slot is empty after init; this kind only sizes it */
-    const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes, absent and others are
-                                         * ignored. Read by plans, not kept. Default (NULL) none */
+    const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes and others are ignored.
+                                         * Read by plans, not kept. Default (NULL) none */
     uint32_t other_count;
 } noh_kind_desc;
 

@@ -257,7 +257,8 @@ noh_result noh_stage_check_kind(const noh_stage_desc *desc, const noh_kind_desc 
 
 static const char *bad_slot(const noh_kind_desc *d)
 {
-    if (!d->changes && (d->absent || d->other_count)) return "absent or others of a kind, and changes is 0";
+    if (d->changes < 0 || d->changes > 2) return "changes of a kind must be 0, 1 or 2";
+    if (!d->changes && d->other_count) return "others of a kind, and changes is 0";
     return !d->others && d->other_count ? "others of a kind is NULL, and other_count is not 0" : NULL;
 }
 

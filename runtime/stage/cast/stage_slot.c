@@ -188,7 +188,6 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
     }
     *d = *desc;
     d->changes = 1;
-    d->absent = 0;
     d->others = NULL;
     d->other_count = 0;
     result = plan_slot(s, kind, error);
@@ -205,7 +204,7 @@ noh_result noh_stage_open_slots(noh_stage *s, const noh_stage_desc *desc, noh_er
         if (desc->kinds[i].changes) empty(s, i);
     }
     for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
-        if (desc->kinds[i].changes && !desc->kinds[i].absent) result = fill(s, i, &desc->kinds[i], error);
+        if (desc->kinds[i].changes == 1) result = fill(s, i, &desc->kinds[i], error);
     }
     hash_slots(s);
     return result;

@@ -219,7 +219,7 @@ static void forge(forged *f)
     X(none, "do not fit their mesh", f->h->count = 0)                   \
     X(many, "do not fit their mesh", f->h->count = NOH_EXTRAS_MAX + 1u) \
     X(words, "do not fit their mesh", f->h->word_count = 3)             \
-    X(reserved, "do not fit their mesh", f->h->reserved[2] = 1)         \
+    X(reserved, "reserved field", f->h->reserved[2] = 1)         \
     X(names, "begin", f->h->names_offset += 16)                         \
     X(rows, "begin", f->h->rows_offset += 16)                           \
     X(name, "name", f->names[0].name_hash ^= 1u)                        \

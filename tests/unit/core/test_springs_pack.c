@@ -97,7 +97,7 @@ static void forge(forged *f)
     X(no_chains, "count of springs", f->h->chain_count = 0)                         \
     X(chains_overflow, "count of springs", f->h->chain_count = 0xffffffffu)         \
     X(colliders_overflow, "count of springs", f->h->collider_count = 33)            \
-    X(reserved, "count of springs", f->h->reserved[3] = 1)                          \
+    X(reserved, "reserved field", f->h->reserved[3] = 1)                          \
     X(rows_elsewhere, "begin", f->h->rows_offset += 16)                             \
     X(chains_elsewhere, "begin", f->h->chains_offset = 0)                           \
     X(colliders_elsewhere, "begin", f->h->colliders_offset = 0xfffffff0u)           \

@@ -53,8 +53,7 @@ static void make_slots(show *w)
 {
     for (uint32_t i = 1; i <= SLOTS; i++) {
         w->c.kinds[i] = w->candidates[0];
-        w->c.kinds[i].changes = 1;
-        w->c.kinds[i].absent = 1;
+        w->c.kinds[i].changes = 2;
         w->c.kinds[i].others = w->candidates + 1;
         w->c.kinds[i].other_count = CANDIDATES - 1u;
     }
@@ -120,7 +119,7 @@ static void a_kind_that_comes_equals_one_that_was_there(void **state)
         early.c.kinds[1].others = early.candidates;
         early.c.kinds[1].other_count = CANDIDATES;
         early.c.kinds[2] = early.candidates[0];
-        early.c.kinds[2].changes = early.c.kinds[2].absent = 1;
+        early.c.kinds[2].changes = 2;
         early.c.kinds[2].others = early.candidates + 1;
         early.c.kinds[2].other_count = CANDIDATES - 1u;
         cast_make(&early.c, NULL);
@@ -297,8 +296,7 @@ static void what_does_not_fit_is_refused(void **state)
     (void)state;
     open_show(&w);
     w.c.kinds[1] = w.candidates[0];
-    w.c.kinds[1].changes = 1;
-    w.c.kinds[1].absent = 1;
+    w.c.kinds[1].changes = 2;
     w.c.desc.kind_count = 2;
     cast_make(&w.c, NULL);
     s = w.c.stage;
@@ -338,7 +336,7 @@ static void fields_of_slots_are_checked(void **state)
     (void)state;
     open_show(&w);
     w.c.desc.kind_count = 2;
-    w.c.kinds[1].absent = 1;
+    w.c.kinds[1].changes = 3;
     assert_int_equal(noh_stage_plan_make(&w.c.desc, NULL, &w.c.plan, &said), NOH_ERR_ARG);
     assert_int_equal(said.where, 1);
     w.c.kinds[1].changes = 1;
