@@ -30,10 +30,15 @@ stbi_us *stbi_load_16_from_memory(stbi_uc const *bytes, int count, int *width, i
     return NULL;
 }
 
+int model_read_gltf_with(const char *path, const extra_list *extras, model **out, model_error *error)
+{
+    (void)extras, (void)out;
+    return model_fail(error, path, "glTF is not read here");
+}
+
 int model_read_gltf(const char *path, model **out, model_error *error)
 {
-    (void)out;
-    return model_fail(error, path, "glTF is not read here");
+    return model_read_gltf_with(path, NULL, out, error);
 }
 
 int fbx_read(const char *path, const fbx_options *options, model **out, model_error *error)

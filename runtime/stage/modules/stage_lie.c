@@ -75,7 +75,9 @@ void noh_stage_breathe_lying(const noh_stage_kind *k, const noh_stage_body *b, c
 
 uint8_t noh_stage_breath_left(const noh_stage_body *b, int64_t clock)
 {
-    return b->state == NOH_BODY_FALLS ? (uint8_t)(255.0f * breath_of(b, clock) + 0.5f) : 0u;
+    if (b->state != NOH_BODY_FALLS) return 0;
+    const uint32_t byte = (uint32_t)(breath_of(b, clock) * 255.0f + 0.5f);
+    return (uint8_t)byte;
 }
 
 void noh_stage_breathe_out(const noh_stage_kind *k, noh_stage_body *b, const noh_modifier_work *w)

@@ -14,11 +14,12 @@ static int is_name(const char *name)
 
 static int parse_one(const char *item, size_t bytes, extra_list *out, model_error *error)
 {
-    char *name = out->names[out->count], *colon;
+    char *name, *colon;
     if (out->count == NOH_EXTRAS_MAX || bytes >= NOH_NAME_BYTES_MAX) {
         return model_fail(error, "", "--attributes takes up to %u names of up to %u bytes", NOH_EXTRAS_MAX,
                           NOH_NAME_BYTES_MAX - 1u);
     }
+    name = out->names[out->count];
     memcpy(name, item, bytes);
     name[bytes] = 0;
     colon = strchr(name, ':');
