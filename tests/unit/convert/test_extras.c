@@ -219,23 +219,23 @@ static void forge(forged *f)
     X(none, "do not fit their mesh", f->h->count = 0)                   \
     X(many, "do not fit their mesh", f->h->count = NOH_EXTRAS_MAX + 1u) \
     X(words, "do not fit their mesh", f->h->word_count = 3)             \
-    X(reserved, "reserved field", f->h->reserved[2] = 1)         \
+    X(reserved, "reserved field", f->h->reserved[2] = 1)                \
     X(names, "begin", f->h->names_offset += 16)                         \
     X(rows, "begin", f->h->rows_offset += 16)                           \
     X(name, "name", f->names[0].name_hash ^= 1u)                        \
     X(error, "error or reserved", f->names[1].error = -1.0f)            \
     X(error_nan, "not finite", f->names[1].error = NAN)                 \
     X(bits, "impossible bits", f->rows[0].bits = 12.0f)                 \
-    X(bits_nan, "impossible bits", f->rows[0].bits = NAN)               \
+    X(bits_nan, "not finite", f->rows[0].bits = NAN)                    \
     X(components, "impossible bits", f->rows[0].component_count = 1.5f) \
     X(five, "impossible bits", f->rows[0].component_count = 5.0f)       \
     X(outside, "impossible bits", f->rows[1].first_bit = 48.0f)         \
     X(before, "impossible bits", f->rows[1].first_bit = -8.0f)          \
-    X(within, "within a component", f->rows[1].first_bit = 20.0f)       \
-    X(fraction, "within a component", f->rows[1].first_bit = 16.5f)     \
+    X(within, "impossible bits", f->rows[1].first_bit = 20.0f)          \
+    X(fraction, "impossible bits", f->rows[1].first_bit = 16.5f)        \
     X(box, "not finite", f->rows[0].offset[0] = INFINITY)               \
     X(step, "step below 0", f->rows[0].step[0] = -1.0f)                 \
-    X(no_component, "no component", f->rows[0].step[3] = 1.0f)          \
+    X(no_component, "impossible bits", f->rows[0].step[3] = 1.0f)       \
     X(lacking, "impossible bits", f->rows[0].component_count = 0.0f)
 #include "support/forgeries_template.h"
 

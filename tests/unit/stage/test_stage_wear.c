@@ -325,7 +325,7 @@ static void meshes_are_off_and_on(void **state)
 static void lies_about_what_it_hides_are_refused(void **state)
 {
     static const char *const what[] = { "count of a cover", "count of a cover", "bits of a cover", "name and its hash",
-                                        "count of a cover" };
+                                        "reserved field" };
     cast c;
     noh_mesh mesh;
     uint32_t found = 0;
