@@ -15,11 +15,29 @@
 extern "C" {
 #endif
 
-/* ======== rays and capsules ========
- *   noh_ray_capsule     a ray against a capsule
+/* ======== boxes, rays and capsules ========
+ * Points in boxes, boxes that overlap, and a ray against a capsule.
  *
- * source   Ericson: Real-Time Collision Detection, 2005, section 5.3.7
+ *   noh_aabb_contains                  axis-aligned boxes
+ *   noh_obb_contains, noh_obb_overlap  oriented boxes
+ *   noh_ray_capsule                    a ray against a capsule
+ *
+ * Touching counts as overlapping. Boxes may be flat.
+ * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes), 5.1.9 (segments), 5.3.3
+ *          (slabs); Granberg, Character Animation with Direct3D, 2009, chapter 6, with its degenerate cases added
  * Threads: no state; any thread. */
+
+typedef struct noh_aabb {
+    float min[3], max[3];
+} noh_aabb;
+
+int noh_aabb_contains(const noh_aabb *box, const float point[3]);
+int noh_obb_contains(const noh_obb *box, const float point[3]);
+
+/* Test whether two oriented boxes overlap, on 15 axes: the sides of each, and the products of edges, with a margin of
+ * 1e-6 of the sides where edges are parallel and their product vanishes. Boxes closer than that margin may count as
+ * overlapping. */
+int noh_obb_overlap(const noh_obb *a, const noh_obb *b);
 
 /* Intersect a ray with a capsule; a ball if `from` and `to` are equal. */
 float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3], float radius);

@@ -4,7 +4,7 @@
 #define NOH_PHYSICS_TRIANGLES_INTERNAL_H
 
 #include "noh/body.h"
-#include "life/physics/shape_internal.h"
+#include "noh/low_life.h"
 #include <stdint.h>
 
 #ifdef __cplusplus
