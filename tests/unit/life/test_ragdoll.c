@@ -1,6 +1,5 @@
 /* Tests of ragdoll.c and ragdoll_lanes.c: closed forms, energy, torture, and the same bits at every width.
  * cross: slow, minutes of falls */
-#include "life/physics/ragdoll_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -11,20 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "support/ragdoll_kernels.h"
 #include "support/support.h"
 
 #define PI 3.14159265358979
 #define FRAME NOH_RAGDOLL_STEP_TICKS
-
-/* The step compiled again: for one lane everywhere, and for what x86 has (Makefile, KERNELS). */
-#if defined(__x86_64__)
-void noh_ragdoll_step_dolls_scalar(const noh_ragdoll_shape *shape, const noh_world *world,
-                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch);
-void noh_ragdoll_step_dolls_sse2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
-void noh_ragdoll_step_dolls_avx2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
-#endif
 
 static const float upright[4] = { -0.70710678f, 0.0f, 0.0f, 0.70710678f }; /* z of the capsule is +y */
 static const float unturned[4] = { 0.0f, 0.0f, 0.0f, 1.0f };

@@ -1,5 +1,4 @@
 /* Tests of world_ask.c: a game's physics that knows the same shapes gives the same bits as the shapes of a world. */
-#include "life/physics/ragdoll_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/base.h"
@@ -11,19 +10,11 @@
 #include <string.h>
 
 #include "support/game_physics.h"
+#include "support/ragdoll_kernels.h"
 #include "support/support.h"
 
 #define DOLLS 5u
 #define BODIES 6u
-
-#if defined(__x86_64__)
-void noh_ragdoll_step_dolls_scalar(const noh_ragdoll_shape *shape, const noh_world *world,
-                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch);
-void noh_ragdoll_step_dolls_sse2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
-void noh_ragdoll_step_dolls_avx2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
-#endif
 
 /* A floor that slopes, and two walls. */
 static const noh_plane planes[3] = { { { 0.0f, 0.96f, 0.28f }, -0.1f },

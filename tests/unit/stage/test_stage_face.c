@@ -166,6 +166,23 @@ static void two_actors_meet_each_others_eyes(void **state)
     close_cast(&c);
 }
 
+/* A tube with a face whose eyes are joints, the only kind of a cast that is opened.
+ * rest: [12 * NOH_JOINTS_MAX], gets its joints at rest */
+static void open_tube_with_eyes(cast *c, noh_kind_face *face, float *rest)
+{
+    noh_skeleton skeleton;
+    cast_open(c);
+    (void)noh_pack_skeleton_at(&c->packs[TUBES], 0, &skeleton, NULL, NULL);
+    noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+    for (uint32_t e = 0; e < 2; e++) {
+        face->eyes[e] = noh_pack_joint_name(&c->packs[TUBES], 0, 2u - e);
+        for (uint32_t i = 0; i < 3; i++) face->face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
+    }
+    face->face.eyes[0][0] += 0.06f; /* the joints are in line: separate the eyes; the lower eye keeps its place */
+    c->kinds[0] = c->kinds[TUBES];
+    c->desc.kind_count = 1;
+}
+
 /* An eye that is a joint turns to what is looked at, with a head that turns and without one. */
 static void eyes_with_joints_turn(void **state)
 {
@@ -174,25 +191,15 @@ static void eyes_with_joints_turn(void **state)
     (void)state;
     for (int without_head = 0; without_head < 2; without_head++) {
         noh_kind_face face;
-        noh_skeleton skeleton;
         noh_actor actor;
         float m[12], dot = 0.0f, length = 0.0f;
         cast c;
         memset(&face, 0, sizeof face);
-        cast_open(&c);
-        (void)noh_pack_skeleton_at(&c.packs[TUBES], 0, &skeleton, NULL, NULL);
-        noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+        open_tube_with_eyes(&c, &face, rest);
         face.head = without_head ? "" : noh_pack_joint_name(&c.packs[TUBES], 0, 0);
         face.neck = face.chest = "";
         face.flags = NOH_FACE_NO_WANDER;
-        for (uint32_t e = 0; e < 2; e++) {
-            face.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
-            for (uint32_t i = 0; i < 3; i++) face.face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
-        }
-        face.face.eyes[0][0] += 0.06f; /* the joints are in line: separate the eyes; the lower eye keeps its place */
-        c.kinds[0] = c.kinds[TUBES];
         c.kinds[0].face = noh_face_module(&face);
-        c.desc.kind_count = 1;
         cast_make(&c, NULL);
         actor = enter(&c, NULL, NULL);
         assert_int_equal(noh_actor_look_at(c.stage, actor, point, NULL), NOH_OK);
@@ -225,20 +232,10 @@ static float blink_looking(const noh_face_row *rows, uint32_t row_count, float h
     face.recipe_count = 1;
     open_cast(&c, 1, &face, 1);
     if (joints) {
-        noh_skeleton skeleton;
         close_cast(&c);
-        cast_open(&c);
-        (void)noh_pack_skeleton_at(&c.packs[TUBES], 0, &skeleton, NULL, NULL);
-        noh_local_to_model(&skeleton, skeleton.bind_pose, skeleton.joint_count, rest);
+        open_tube_with_eyes(&c, &face, rest);
         face.head = face.neck = face.chest = "";
-        for (uint32_t e = 0; e < 2; e++) {
-            face.eyes[e] = noh_pack_joint_name(&c.packs[TUBES], 0, 2u - e);
-            for (uint32_t i = 0; i < 3; i++) face.face.eyes[e][i] = rest[12u * (2u - e) + 4u * i + 3u];
-        }
-        face.face.eyes[0][0] += 0.06f;
-        c.kinds[0] = c.kinds[TUBES];
         c.kinds[0].face = noh_face_module(&face);
-        c.desc.kind_count = 1;
     }
     cast_make(&c, NULL);
     actor = enter(&c, NULL, NULL);

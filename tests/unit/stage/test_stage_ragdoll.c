@@ -297,6 +297,23 @@ static void fall_with(const cast *c, noh_actor actor, float push)
     assert_int_equal(noh_actor_hit(c->stage, actor, chest, impulse, NULL), NOH_OK);
 }
 
+/* The only actor of a stage, which falls by a push. */
+static noh_actor one_that_falls(cast *c, const noh_kind_ragdoll *ragdoll, float push)
+{
+    noh_actor actor;
+    open_cast(c, 1, ragdoll, 1);
+    cast_make(c, NULL);
+    actor = enter(c, 0.0f);
+    run(c, 40);
+    fall_with(c, actor, push);
+    return actor;
+}
+
+static void run_until_it_lies(cast *c, noh_actor actor)
+{
+    for (int f = 0; f < 480 && noh_actor_body(c->stage, actor) != NOH_BODY_LIES; f++) run(c, 1);
+}
+
 /* Pushed from the front it lies on its back, and from behind on its front. It gets up by the clip for that, stands
  * where it lay, on the ground, and from frame to frame nothing leaps. */
 static void who_lies_gets_up(void **state)
@@ -309,12 +326,8 @@ static void who_lies_gets_up(void **state)
         noh_place place;
         noh_actor actor;
         cast c;
-        open_cast(&c, 1, &ragdoll, 1);
-        cast_make(&c, NULL);
-        actor = enter(&c, 0.0f);
-        run(&c, 40);
-        fall_with(&c, actor, front ? 60.0f : -90.0f);
-        for (int f = 0; f < 480 && noh_actor_body(c.stage, actor) != NOH_BODY_LIES; f++) run(&c, 1);
+        actor = one_that_falls(&c, &ragdoll, front ? 60.0f : -90.0f);
+        run_until_it_lies(&c, actor);
         track(&c, actor, at[0]);
         run(&c, 1);
         track(&c, actor, at[1]);
@@ -361,14 +374,10 @@ static void who_lies_breathes(void **state)
         float low = 1e9f, high = -1e9f, slides = 0.0f, leap = 0.0f;
         noh_actor actor;
         cast c;
-        open_cast(&c, 1, &ragdoll, 1);
-        cast_make(&c, NULL);
-        actor = enter(&c, 0.0f);
-        run(&c, 40);
-        fall_with(&c, actor, way == 1 ? 60.0f : -90.0f);
+        actor = one_that_falls(&c, &ragdoll, way == 1 ? 60.0f : -90.0f);
         assert_int_equal(noh_actor_stop(c.stage, actor, 0, 1, NULL), NOH_OK); /* shoulders have no bodies */
         if (way == 2) assert_int_equal(noh_actor_kill(c.stage, actor, NULL), NOH_OK);
-        for (int f = 0; f < 480 && noh_actor_body(c.stage, actor) != NOH_BODY_LIES; f++) run(&c, 1);
+        run_until_it_lies(&c, actor);
         bodies_of(&c, actor, lay);
         track(&c, actor, first);
         joint_at(&c, actor, "chest", before);
@@ -412,11 +421,7 @@ static void who_falls_gets_up_at_speed(void **state)
     noh_actor actor;
     cast c;
     (void)state;
-    open_cast(&c, 1, &ragdoll, 1);
-    cast_make(&c, NULL);
-    actor = enter(&c, 0.0f);
-    run(&c, 40);
-    fall_with(&c, actor, 90.0f);
+    actor = one_that_falls(&c, &ragdoll, 90.0f);
     run(&c, 11);
     for (int i = 0; i < 3; i++) {
         run(&c, 1);
