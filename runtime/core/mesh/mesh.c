@@ -37,29 +37,11 @@ static void view_of(const noh_mesh_header *h, noh_mesh *mesh)
     mesh->joint_boxes = (const float *)(const void *)(chunk + h->joint_boxes_offset);
 }
 
-static const noh_transfer_header *transfer_of(const noh_pack *pack, uint32_t mesh)
+const void *noh_pack_chunk_of_mesh(const noh_pack *pack, noh_chunk_type type, uint32_t mesh)
 {
-    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_TRANSFER].count; i++) {
-        const noh_transfer_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_TRANSFER, i);
-        if (h->mesh == mesh) return h;
-    }
-    return NULL;
-}
-
-static const noh_far_joints_header *far_joints_of(const noh_pack *pack, uint32_t mesh)
-{
-    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_FAR_JOINTS].count; i++) {
-        const noh_far_joints_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_FAR_JOINTS, i);
-        if (h->mesh == mesh) return h;
-    }
-    return NULL;
-}
-
-static const noh_extras_header *extras_of(const noh_pack *pack, uint32_t mesh)
-{
-    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_EXTRAS].count; i++) {
-        const noh_extras_header *h = noh_pack_chunk_at(pack, NOH_CHUNK_EXTRAS, i);
-        if (h->mesh == mesh) return h;
+    for (uint32_t i = 0; i < pack->runs[type].count; i++) {
+        const uint32_t *words = noh_pack_chunk_at(pack, type, i);
+        if (words[0] == mesh) return words;
     }
     return NULL;
 }
@@ -75,9 +57,9 @@ noh_result noh_pack_mesh_at(const noh_pack *pack, uint32_t index, noh_mesh *mesh
     }
     mesh->pack = pack;
     mesh->name = noh_pack_chunk_name(pack, pack->runs[NOH_CHUNK_MESH].first + index);
-    mesh->transfer = transfer_of(pack, index);
-    mesh->far_joints = far_joints_of(pack, index);
-    mesh->extras = extras_of(pack, index);
+    mesh->transfer = noh_pack_chunk_of_mesh(pack, NOH_CHUNK_TRANSFER, index);
+    mesh->far_joints = noh_pack_chunk_of_mesh(pack, NOH_CHUNK_FAR_JOINTS, index);
+    mesh->extras = noh_pack_chunk_of_mesh(pack, NOH_CHUNK_EXTRAS, index);
     view_of(noh_pack_chunk_at(pack, NOH_CHUNK_MESH, index), mesh);
     return NOH_OK;
 }
@@ -152,9 +134,7 @@ int noh_mesh_uv_offset(const noh_mesh *mesh)
 
 int noh_mesh_color_offset(const noh_mesh *mesh)
 {
-    int after = 4 + 4 * (int)mesh->header->extra_words + ((mesh->header->flags & NOH_MESH_TEXELS) ? 4 : 0) +
-                ((mesh->header->flags & NOH_MESH_UV_TARGETS) ? 4 : 0);
-    return (mesh->header->flags & NOH_MESH_COLORS) ? (int)mesh->header->attribute_stride - after : -1;
+    return mesh->header->flags & NOH_MESH_COLORS ? (int)noh_mesh_extra_offset(mesh->header) - 4 : -1;
 }
 
 uint32_t noh_mesh_index(const noh_mesh *mesh, uint32_t i)
@@ -199,14 +179,13 @@ uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex)
 uint32_t noh_mesh_extra(const noh_mesh *mesh, uint32_t index, uint32_t vertex, float value[4])
 {
     const noh_mesh_header *h = mesh->header;
-    const uint32_t after = 4u * ((h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u));
     const noh_extra_row *row;
     const uint8_t *at;
     NOH_ASSERT(vertex < h->vertex_count && value);
     memset(value, 0, 4u * sizeof *value);
     if (!mesh->extras || index >= mesh->extras->count) return 0;
     row = (const noh_extra_row *)(const void *)((const uint8_t *)mesh->extras + mesh->extras->rows_offset) + index;
-    at = mesh->attributes + ((size_t)vertex + 1u) * h->attribute_stride - after - 4u * (size_t)h->extra_words;
+    at = mesh->attributes + (size_t)vertex * h->attribute_stride + noh_mesh_extra_offset(h);
     for (uint32_t c = 0; c < (uint32_t)row->component_count; c++) {
         const uint32_t bits = (uint32_t)row->bits, byte = ((uint32_t)row->first_bit + c * bits) / 8u;
         const uint32_t n = bits == 8u ? at[byte] : at[byte] | (uint32_t)at[byte + 1u] << 8;

@@ -28,6 +28,16 @@ void noh_wrinkles_color(const noh_wrinkles *wrinkles, const uint8_t cover[4], co
  * source  reoriented normal mapping: Barre-Brisebois, Hill, Blending in Detail, 2012 */
 void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, float *out);
 
+/* The chunk that is about the n-th mesh, whose number is its first word. NULL: there is none. */
+const void *noh_pack_chunk_of_mesh(const noh_pack *pack, noh_chunk_type type, uint32_t mesh);
+
+/* Where a record's words of extra attributes begin: behind its colour, in front of its texels. */
+static inline uint32_t noh_mesh_extra_offset(const noh_mesh_header *h)
+{
+    return h->attribute_stride - 4u * (h->extra_words + (h->flags & NOH_MESH_TEXELS ? 1u : 0u) +
+                                       (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u));
+}
+
 /* Decode a vertex's normal and tangent without normalising; their lengths are 0.57 to 1. Without tangents the tangent
  * is 0. */
 void noh_mesh_directions(const noh_mesh *mesh, uint32_t index, float normal[3], float tangent[3]);

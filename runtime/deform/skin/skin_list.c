@@ -6,27 +6,26 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "core/mesh/mesh_internal.h"
 #include "deform/skin/skin_blend_internal.h"
 
 noh_result noh_pack_skin_list(const noh_pack *pack, uint32_t mesh, noh_skin_list *list, noh_error *error)
 {
     NOH_ASSERT(pack && list);
-    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_INFLUENCES].count; i++) {
-        const uint8_t *bytes = noh_pack_chunk_at(pack, NOH_CHUNK_INFLUENCES, i);
-        const noh_influences_header *h = (const noh_influences_header *)(const void *)bytes;
-        if (h->mesh == mesh) {
-            list->header = h;
-            list->vertices = (const uint32_t *)(const void *)(bytes + h->vertices_offset);
-            list->firsts = (const uint32_t *)(const void *)(bytes + h->firsts_offset);
-            list->weights = (const float *)(const void *)(bytes + h->weights_offset);
-            list->joints = (const uint16_t *)(const void *)(bytes + h->joints_offset);
-            return NOH_OK;
-        }
+    const uint8_t *bytes = noh_pack_chunk_of_mesh(pack, NOH_CHUNK_INFLUENCES, mesh);
+    const noh_influences_header *h = (const noh_influences_header *)(const void *)bytes;
+    if (!h) {
+        return noh_fail(
+            error, NOH_ERR_NOT_FOUND,
+            "the mesh has no influence list: build its pack with --influences above 8, from a model with that many",
+            mesh, 0);
     }
-    return noh_fail(
-        error, NOH_ERR_NOT_FOUND,
-        "the mesh has no influence list: build its pack with --influences above 8, from a model with that many", mesh,
-        0);
+    list->header = h;
+    list->vertices = (const uint32_t *)(const void *)(bytes + h->vertices_offset);
+    list->firsts = (const uint32_t *)(const void *)(bytes + h->firsts_offset);
+    list->weights = (const float *)(const void *)(bytes + h->weights_offset);
+    list->joints = (const uint16_t *)(const void *)(bytes + h->joints_offset);
+    return NOH_OK;
 }
 
 uint32_t noh_skin_list_place(const noh_skin_list *list, uint32_t vertex)

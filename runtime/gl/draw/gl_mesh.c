@@ -4,6 +4,7 @@
  * and its indices follow the finer level's. A draw therefore chooses a level by an offset into the index buffer, and a
  * vertex keeps its number, which selects its accumulation texel, at every level. */
 #include "core/base/assert_internal.h"
+#include "core/mesh/mesh_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_draw_internal.h"
 #include "noh/base.h"
@@ -93,10 +94,12 @@ static void set_pair(const noh_gl_api *gl, GLuint location, uint32_t stride, int
     }
 }
 
-static void set_words(const noh_gl_api *gl, GLuint location, uint32_t words, uint32_t stride, uint32_t offset)
+/* type: as the shader declares them, signed or not */
+static void set_words(const noh_gl_api *gl, GLuint location, uint32_t words, GLenum type, uint32_t stride,
+                      uint32_t offset)
 {
     gl->EnableVertexAttribArray(location);
-    gl->VertexAttribIPointer(location, (GLint)words, GL_UNSIGNED_INT, (GLsizei)stride, (const void *)(uintptr_t)offset);
+    gl->VertexAttribIPointer(location, (GLint)words, type, (GLsizei)stride, (const void *)(uintptr_t)offset);
 }
 
 /* The words of a vertex's influences, as common_skin.glsl reads them. Seven words take two attributes, of four and
@@ -105,9 +108,9 @@ static void set_influences(const noh_gl_api *gl, const noh_gl_mesh *m)
 {
     uint32_t words = NOH_INFLUENCE_WORDS(m->mesh.header->influence_count);
     gl->BindBuffer(GL_ARRAY_BUFFER, m->influences.name);
-    set_words(gl, NOH_ATTRIBUTE_INFLUENCES, words > 4u ? 4u : words, 4u * words, 0);
+    set_words(gl, NOH_ATTRIBUTE_INFLUENCES, words > 4u ? 4u : words, GL_UNSIGNED_INT, 4u * words, 0);
     if (words > 4u) {
-        set_words(gl, NOH_ATTRIBUTE_MORE_INFLUENCES, words - 4u, 4u * words, 16);
+        set_words(gl, NOH_ATTRIBUTE_MORE_INFLUENCES, words - 4u, GL_UNSIGNED_INT, 4u * words, 16);
     }
 }
 
@@ -127,17 +130,9 @@ static void set_lobe(const noh_gl_api *gl, const noh_gl_mesh *m)
 /* The words of extra attributes, in front of a record's texels; as integers, which drivers do not convert. */
 static void set_extras(const noh_gl_api *gl, const noh_mesh_header *h)
 {
-    const uint32_t words = h->extra_words, stride = h->attribute_stride;
-    const uint32_t texels = (h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u);
-    const uintptr_t at = stride - 4u * ((uintptr_t)words + texels);
-    if (!words) return;
-    gl->EnableVertexAttribArray(NOH_ATTRIBUTE_EXTRA);
-    gl->VertexAttribIPointer(NOH_ATTRIBUTE_EXTRA, (GLint)(words > 4u ? 4u : words), GL_INT, (GLsizei)stride,
-                             (const void *)at);
-    if (words <= 4u) return;
-    gl->EnableVertexAttribArray(NOH_ATTRIBUTE_MORE_EXTRA);
-    gl->VertexAttribIPointer(NOH_ATTRIBUTE_MORE_EXTRA, (GLint)words - 4, GL_INT, (GLsizei)stride,
-                             (const void *)(at + 16u));
+    const uint32_t words = h->extra_words, stride = h->attribute_stride, at = noh_mesh_extra_offset(h);
+    if (words) set_words(gl, NOH_ATTRIBUTE_EXTRA, words > 4u ? 4u : words, GL_INT, stride, at);
+    if (words > 4u) set_words(gl, NOH_ATTRIBUTE_MORE_EXTRA, words - 4u, GL_INT, stride, at + 16u);
 }
 
 static void label_mesh(const noh_gl_api *gl, const noh_gl_mesh *m)
@@ -222,12 +217,10 @@ GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const noh_gl_mesh *m, const 
     set_attribute(gl, NOH_ATTRIBUTE_UV, 2, GL_UNSIGNED_SHORT, GL_TRUE, stride, noh_mesh_uv_offset(&m->mesh));
     set_attribute(gl, NOH_ATTRIBUTE_COLOR, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, noh_mesh_color_offset(&m->mesh));
     if (m->mesh.header->flags & NOH_MESH_TEXELS) {
-        set_words(gl, NOH_ATTRIBUTE_TEXEL, 1, stride, stride - 4u);
+        set_words(gl, NOH_ATTRIBUTE_TEXEL, 1, GL_UNSIGNED_INT, stride, stride - 4u);
     }
     if (m->mesh.header->flags & NOH_MESH_UV_TARGETS) {
-        gl->EnableVertexAttribArray(NOH_ATTRIBUTE_UV_TEXEL);
-        gl->VertexAttribIPointer(NOH_ATTRIBUTE_UV_TEXEL, 1, GL_INT, (GLsizei)stride,
-                                 (const void *)(uintptr_t)(stride - 8u));
+        set_words(gl, NOH_ATTRIBUTE_UV_TEXEL, 1, GL_INT, stride, stride - 8u);
     }
     set_extras(gl, m->mesh.header);
     if (m->influences.name) {

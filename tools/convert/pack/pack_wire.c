@@ -13,6 +13,7 @@
 #include "noh/format.h"
 #include "noh/low_core.h"
 #include "noh/pack.h"
+#include "core/mesh/mesh_internal.h"
 #include "core/wire/wire_internal.h"
 #include "wire_like.h"
 
@@ -214,9 +215,8 @@ static void write_extras(writer *w, const noh_mesh *mesh, uint32_t chunk)
     static const uint32_t halves[8] = { 16u << 8, 65535, 16u << 8 | 16u, 65535 };
     static const uint32_t bytes[8] = { 8u << 8, 255, 8u << 8 | 8u, 255, 8u << 8 | 16u, 255, 8u << 8 | 24u, 255 };
     const noh_mesh_header *h = mesh->header;
-    const uint32_t texels = (h->flags & NOH_MESH_TEXELS ? 1u : 0u) + (h->flags & NOH_MESH_UV_TARGETS ? 1u : 0u);
     for (uint32_t i = 0; i < h->extra_words; i++) {
-        write_column(w, chunk, h->attribute_stride - 4u * (texels + h->extra_words - i),
+        write_column(w, chunk, noh_mesh_extra_offset(h) + 4u * i,
                      mesh->extras && has_bytes(mesh->extras, i) ? bytes : halves);
     }
 }
