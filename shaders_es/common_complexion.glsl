@@ -83,7 +83,8 @@ float noh_freckle(vec3 place, float wide, float share, uint layer)
 }
 
 /* Melanin and blood are layers that absorb: their densities add to the skin's own, which keeps its texture (Tsumura et
- * al., 1999, 2003). The skin's own blood, from the ratios of its channels, tells lips from the rest, and grey and blue texels, which are lashes or cloth, from both. */
+ * al., 1999, 2003). The skin's own blood, from the ratios of its channels, tells lips from the rest, and grey and blue
+ * texels, which are lashes or cloth, from both. */
 vec3 noh_complexioned(vec3 albedo, vec3 normal)
 {
     vec3 place = noh_v_freckles.xyz;

@@ -286,7 +286,8 @@ static void light_is_counted_and_comes_back(void **state)
     assert_int_equal(noh_gl_ledger_bytes(&g.ledger), f.plan.gpu_bytes);
     assert_int_equal(f.plan.gpu_bytes - unlit.plan.gpu_bytes, noh_gl_light_bytes(&light.desc, g.caps.render_f16));
     assert_int_equal(noh_gl_light_bytes(&light.desc, 0), noh_reflection_size(0) + 2 * 512 * 512);
-    assert_int_equal(noh_gl_light_bytes(&light.desc, 1), noh_reflection_size(0) + 2 * 512 * 512 + 4 * (256 * 256 + 128 * 128));
+    assert_int_equal(noh_gl_light_bytes(&light.desc, 1),
+                     noh_reflection_size(0) + 2 * 512 * 512 + 4 * (256 * 256 + 128 * 128));
     before = picture(&f, &g, "face");
     for (int round = 0; round < 2; round++) {
         g.platform->destroy(g.context);

@@ -42,7 +42,7 @@ END {
     for (i = 1; i <= survivors; i++) print lines[i]
     counted = total - listed
     share = counted ? 100 * dead / counted : 0
-    printf "%d of %d killed (%.1f %%); without the %d of survivors.txt %.1f %%, of which 95 %% have to be\n",
+    printf "%d of %d killed (%.1f %%); without the %d in survivors.txt %.1f %%: at least 95 %% is required\n",
         dead, total, total ? 100 * dead / total : 0, listed, share
     few = share < 95 ? survivors - listed : 0
     printf "%d passed, %d failed, %d skipped\n", dead, few, survivors - few

@@ -4,9 +4,10 @@
 #   plan MAP SEED COUNT FILES...  the first COUNT mutants that SEED draws, one a line, fields between tabs: operator,
 #                      file, line, offset, length, new text, what changes, programs that run the line, quickest first
 #   plant PLAN NUMBER FOLDER      puts one of them into the tree in FOLDER
-#   lines DATA OBJECTS  FILE LINES - LINES for each file of runtime/ of which a line ran: lines that ran, and lines that
-#                      did not, by the .gcda below DATA and the .gcno below OBJECTS
-#   uncovered MAP MOST FILES...   the share of lines that programs run, and the functions with most lines that none does
+#   lines DATA OBJECTS  prints "FILE LINES - LINES" for each file of runtime/ that ran: the lines that ran, then the lines
+#                      that did not. Reads the .gcda files below DATA and the .gcno files below OBJECTS
+#   uncovered MAP MOST FILES...   prints the share of lines that programs run, and the MOST largest functions that none
+#                      runs
 #
 # MAP is a folder of NAME.lines, as `lines` prints them, after a line "NAME SECONDS". Operators: arithmetic, compare,
 # constant (an integer or an index, one more or one less), order (two calls swapped, or one removed). Mutants are inside
