@@ -50,11 +50,19 @@ tell() { # TOOL
 }
 
 if command -v clang-tidy >/dev/null 2>&1; then
+    # A process for 16 files reads what they share once, in half the time of a process a file.
+    tidy() { # CHECKS, for the files of standard input
+        # shellcheck disable=SC2016
+        xargs -r -P "$jobs" -n 16 sh -c '
+            checks=$1 includes=$2
+            shift 2
+            clang-tidy --quiet "--checks=$checks" "$@" -- -std=c99 $includes 2>/dev/null' sh "$1" "$includes"
+    }
     # Clang's path analysis takes most of the time: it is for what games link, in the long form. tools/ has cppcheck's.
-    # shellcheck disable=SC2016
-    xargs -P "$jobs" -I '{}' sh -c '
-        case $1$NOH_LONG in tools/* | *.c) fewer=--checks=-clang-analyzer-* ;; *) fewer= ;; esac
-        clang-tidy --quiet $fewer "$1" -- -std=c99 $2 2>/dev/null' sh '{}' "$includes" <"$work/files" >"$work/clang-tidy.txt"
+    {
+        grep '^tools/' "$work/files" | tidy '-clang-analyzer-*'
+        grep -v '^tools/' "$work/files" | tidy "$([ -n "$NOH_LONG" ] || echo '-clang-analyzer-*')"
+    } >"$work/clang-tidy.txt"
     tell clang-tidy
 else
     echo 'clang-tidy skipped: it is not installed'
