@@ -87,7 +87,7 @@ layout(std140) uniform noh_palette_block {
 /* In a crowd, x: its row in an instance; 0: none. */
 uniform highp vec4 noh_user_values;
 
-/* noh_appearance.user, noh_gl_skin_set_user or noh_gl_draw_user: four floats, unused by the library but for
+/* noh_appearance.user, noh_gl_skin_set_user or noh_gl_draw_instance: four floats, unused by the library but for
  * complexions; zeros if not set. */
 vec4 noh_user()
 {

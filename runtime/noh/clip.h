@@ -230,8 +230,9 @@ typedef struct noh_change_desc {
 /* ======== controllers ========
  * The animation of one instance: tracks, changes over time, callback keys.
  *
- * A controller is one block without pointers: clone, save or restore it with one memcpy of noh_controller_bytes(c)
- * bytes. Instances share the clip set, which is passed to every call. Poses go to the caller's buffers.
+ * A controller is one block without pointers: clone, save or restore it with one memcpy of its `bytes`, to memory
+ * aligned to NOH_MEMORY_ALIGN. Instances share the clip set, which is passed to every call. Poses go to the caller's
+ * buffers.
  *
  * Timing does not depend on how time is split into steps:
  *   - noh_controller_step advances time from event to event;
@@ -357,9 +358,6 @@ noh_result noh_controller_cross_fade(noh_controller *c, const noh_clip_set *set,
  * ranges   ticks 0..2^32-1; 0 does nothing. The clock stops at INT64_MAX
  * returns  the number of events delivered */
 uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_t ticks, noh_event_fn fn, void *user);
-
-/* Bytes to copy to clone or save a controller. Align the copy to NOH_MEMORY_ALIGN too. */
-size_t noh_controller_bytes(const noh_controller *c);
 
 /* ======== root motion ======== */
 

@@ -511,8 +511,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
  *   noh_gl_draw_begin        begin drawing; noh_gl_draw_end ends it
  *   noh_gl_draw_mesh         draw one instance
  *   noh_gl_draw_crowd        draw many instances of one mesh in one call
- *   noh_gl_draw_tint         the tint of the next meshes; noh_gl_draw_wrinkles, their wrinkles; noh_gl_draw_user,
- *                            values for your own shaders
+ *   noh_gl_draw_instance     tint, wrinkles and values for your own shaders, of the next meshes
  *
  * The renderer is deliberately small: one shader in variants, one key light, and the textures of glTF materials. A
  * game's own shaders can replace it (noh_gl_renderer_desc.shaders): two texts, compiled for all types of meshes. A game
@@ -695,20 +694,14 @@ void noh_gl_draw_mesh(noh_gl_renderer *renderer, const noh_gl_mesh *mesh, const 
                       const noh_gl_morph_binding *morph, const noh_gl_skin_binding *skin, const noh_gl_lod *lod,
                       const noh_gl_texture *pictures, int pass);
 
-/* Set the tint for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets it to white. Instances of a crowd have
- * their own (noh_gl_skin_set_tint).
+/* Set the values of one instance for the next noh_gl_draw_mesh calls. After noh_gl_draw_begin each is as for NULL.
+ * Instances of a crowd have their own (noh_gl_skin_set_tint, _set_user, _set_wrinkles).
  * shapes  tint: sRGB and alpha, multiplied with vertex colours, except for NOH_MATERIAL_UNTINTED; alpha is used only by
- *         blended materials. NULL: white */
-void noh_gl_draw_tint(noh_gl_renderer *renderer, const uint8_t tint[4]);
-
-/* Set noh_user() of your own vertex shaders, four floats, for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets
- * them to 0. Instances of a crowd have their own (noh_gl_skin_set_user). NULL: zeros */
-void noh_gl_draw_user(noh_gl_renderer *renderer, const float values[4]);
-
-/* Set the wrinkles and colours of regions for the next noh_gl_draw_mesh calls; noh_gl_draw_begin resets them to none.
- * Instances of a crowd have their own (noh_gl_skin_set_wrinkles).
- * shapes  regions of noh_wrinkles_weights, 0..1. NULL: none */
-void noh_gl_draw_wrinkles(noh_gl_renderer *renderer, const float regions[NOH_WRINKLE_REGIONS]);
+ *         blended materials. NULL: white
+ *         user: noh_user() of your own vertex shaders. NULL: zeros
+ *         regions: wrinkles and colours, 0..1, of noh_wrinkles_weights. NULL: none */
+void noh_gl_draw_instance(noh_gl_renderer *renderer, const uint8_t tint[4], const float user[4],
+                          const float regions[NOH_WRINKLE_REGIONS]);
 
 /* Draw `count` consecutive instances of one mesh, from the binding `first` on, with one draw call per submesh.
  * noh_gl_skin_set_place places the instances. Rigid meshes work too; palettes must be in a texture. Blended submeshes

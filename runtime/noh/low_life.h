@@ -425,7 +425,6 @@ void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleto
  * A swinging chain of joints: hair, sleeves, skirts, tails.
  *
  *   noh_spring_size, noh_spring_init   a chain at rest
- *   noh_spring_reset                   back to rest, after its carrier was teleported
  *   noh_spring_step                    advance time, for any number of chains
  *   noh_spring_rotations               local rotations of the joints
  *
@@ -492,14 +491,11 @@ typedef struct noh_spring_move {
  * invalid. */
 size_t noh_spring_size(const noh_spring_desc *desc);
 
-/* Make a chain at rest.
+/* Make a chain at rest; after a teleport of its carrier, in the same memory again.
  * errors  ARG memory NULL or misaligned, a bone of length 0, or a number out of its range (where: the joint); LIMIT too
  *         many joints or colliders; MEMORY too small */
 noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
                            noh_spring **spring, noh_error *error);
-
-/* Put a chain at rest at its carrier, after a teleport. */
-void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier);
 
 /* Advance time, in pieces of any length; frames may take up to one second (NOH_SPRING_STEPS_MAX). Of a longer time only
  * the last second is simulated, from rest at the carrier's new place.

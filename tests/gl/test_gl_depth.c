@@ -393,7 +393,7 @@ static uint32_t *grid_depth(noh_gl_renderer *r, const noh_gl_mesh *gl, const noh
     camera.view_projection[15] = 1.0f;
     frame_open(&f);
     noh_gl_draw_begin(r, &camera);
-    noh_gl_draw_tint(r, tint);
+    noh_gl_draw_instance(r, tint, NULL, NULL);
     noh_gl_draw_mesh(r, gl, world, NULL, NULL, NULL, pictures, pass);
     noh_gl_draw_end(r);
     if (pass == NOH_DRAW_DEPTH) expect_untouched_color();

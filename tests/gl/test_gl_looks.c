@@ -202,7 +202,7 @@ static void draw_by_hand(const wardrobe *w, gpu *g, canvas *to, uint32_t *rgba)
             float world[12] = { 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0 };
             if (node) memcpy(world, node, sizeof world);
             world[3] += (float)i;
-            noh_gl_draw_tint(&renderer, looks[i].tint[3] ? looks[i].tint : NULL);
+            noh_gl_draw_instance(&renderer, looks[i].tint[3] ? looks[i].tint : NULL, NULL, NULL);
             noh_gl_draw_mesh(&renderer, &on_gl, world, NULL, NULL, NULL, pictures[looks[i].texture_set], pass);
         }
     }
@@ -597,7 +597,7 @@ static void every_way_of_drawing_has_the_tint(void **state)
         noh_gl_skin_update(t.skin);
         fixture_frame_open(&f, 128);
         noh_gl_draw_begin(&r, &tube_camera);
-        if (way < 3) noh_gl_draw_tint(&r, tint);
+        if (way < 3) noh_gl_draw_instance(&r, tint, NULL, NULL);
         tube_draw(&r, &t, &t.gl, way == 0 || way == 3 ? CROWD : SKINNED, NULL, NOH_DRAW_OPAQUE);
         noh_gl_draw_end(&r);
         pictures[way] = fixture_frame_read(&f);

@@ -312,7 +312,7 @@ static void each_region_has_its_own_weight(void **state)
         const double right = (10 + 60 * (region / 3) + 20 * (region % 3)) / 255.0;
         float regions[NOH_WRINKLE_REGIONS] = { 0.0f };
         regions[region] = 1.0f;
-        noh_gl_draw_wrinkles(&renderer, regions);
+        noh_gl_draw_instance(&renderer, NULL, NULL, regions);
         p.gl->Uniform4fv(p.variant.u_wrinkle_regions, 3, literal ? regions : renderer.wrinkles);
         uint8_t *rgba = cover(&p, &frame, 0);
         const int is_right = fabs((double)float_at(rgba, 0) - right) < 5e-4;
@@ -361,7 +361,7 @@ static void colors_are_those_of_the_cpu(void **state)
     program_open_with(&p, NOH_FEATURE_COLORS, color_vertex, color_fragment);
     one_texel(&p, &map, &ledger, texel, NOH_UNIT_COLORS);
     for (uint32_t c = 0; c < 4; c++) regions[NOH_WRINKLE_FOLDS + c] = (float)(51u * (c + 1u)) / 255.0f;
-    noh_gl_draw_wrinkles(&renderer, regions);
+    noh_gl_draw_instance(&renderer, NULL, NULL, regions);
     for (uint32_t c = 0; c < 4; c++) {
         for (uint32_t i = 0; i < 3; i++) sent[c][i] = (float)(colors[c][i] * colors[c][i]) / 65025.0f;
         sent[c][3] = renderer.wrinkles[NOH_WRINKLE_FOLDS + c];

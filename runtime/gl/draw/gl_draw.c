@@ -34,10 +34,8 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     noh_gl_tests_begin(r->gl, &r->raster);
     noh_gl_samplers_none(r->gl, 0, NOH_UNIT_USER);
     r->camera = *camera;
-    noh_gl_draw_tint(r, NULL);
-    noh_gl_draw_user(r, NULL);
+    noh_gl_draw_instance(r, NULL, NULL, NULL);
     r->priority = NOH_PRIORITY_ANY;
-    noh_gl_draw_wrinkles(r, NULL);
     noh_gl_draw_triangles(r, NULL);
     noh_gl_draw_cover(r, 0);
     noh_gl_draw_before(r, NULL);
@@ -45,18 +43,19 @@ void noh_gl_draw_begin(noh_gl_renderer *r, const noh_gl_camera *camera)
     noh_gl_draw_wrinkle_look(r, 0, 0);
 }
 
-void noh_gl_draw_tint(noh_gl_renderer *r, const uint8_t tint[4])
+void noh_gl_draw_instance(noh_gl_renderer *r, const uint8_t tint[4], const float user[4],
+                          const float regions[NOH_WRINKLE_REGIONS])
 {
     static const uint8_t white[4] = { 255, 255, 255, 255 };
+    static const float zeros[4] = { 0.0f };
     NOH_ASSERT(r);
     memcpy(r->tint, tint ? tint : white, sizeof r->tint);
-}
-
-void noh_gl_draw_user(noh_gl_renderer *r, const float values[4])
-{
-    NOH_ASSERT(r);
-    memset(r->user, 0, sizeof r->user);
-    if (values) memcpy(r->user, values, sizeof r->user);
+    memcpy(r->user, user ? user : zeros, sizeof r->user);
+    memset(r->wrinkles, 0, sizeof r->wrinkles);
+    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* of wrinkles by map, then by channel */
+        const uint32_t at = i < NOH_WRINKLE_FOLDS ? 4u * (i % 3u) + i / 3u : i;
+        r->wrinkles[at] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
+    }
 }
 
 void noh_gl_draw_priority(noh_gl_renderer *r, int priority)
@@ -81,16 +80,6 @@ void noh_gl_draw_triangles(noh_gl_renderer *r, const noh_gl_triangles *triangles
 {
     NOH_ASSERT(r);
     r->triangles = triangles;
-}
-
-void noh_gl_draw_wrinkles(noh_gl_renderer *r, const float regions[NOH_WRINKLE_REGIONS])
-{
-    NOH_ASSERT(r);
-    memset(r->wrinkles, 0, sizeof r->wrinkles);
-    for (uint32_t i = 0; regions && i < NOH_WRINKLE_REGIONS; i++) { /* of wrinkles by map, then by channel */
-        const uint32_t at = i < NOH_WRINKLE_FOLDS ? 4u * (i % 3u) + i / 3u : i;
-        r->wrinkles[at] = (float)(int)(regions[i] * 255.0f + 0.5f) / 255.0f; /* as in crowds */
-    }
 }
 
 void noh_gl_draw_wrinkle_look(noh_gl_renderer *r, uint32_t models, uint32_t smoothed)

@@ -51,17 +51,19 @@ static noh_gl_skin_binding skin_of(const noh_gl_item *item, uint32_t place, uint
     return binding;
 }
 
-/* Set the wrinkles of an actor's expression on a mesh, for the next draw. */
-static void set_wrinkles(const drawing *d, uint32_t mesh, uint32_t place)
+/* Set an actor's tint and values, and the wrinkles of its expression on a mesh, for the next draw. */
+static void set_instance(const drawing *d, uint32_t mesh, uint32_t place)
 {
     const noh_stage_mesh *m = &d->k->meshes[mesh];
-    const noh_appearance *look = &actor_at(d, place)->look;
+    const noh_stage_actor *actor = actor_at(d, place);
+    const noh_appearance *look = &actor->look;
     const float *weights = d->k->weights + (size_t)d->k->order[place] * d->k->weight_count + m->first_weight;
     float regions[NOH_WRINKLE_REGIONS];
     noh_wrinkles wrinkles;
     const int has_regions = noh_wrinkles_of(&m->mesh, &wrinkles, NULL) == NOH_OK;
     if (has_regions) noh_wrinkles_weights(&wrinkles, weights, regions);
-    noh_gl_draw_wrinkles(d->renderer, has_regions ? regions : NULL);
+    noh_gl_draw_instance(d->renderer, noh_stage_tint_of(actor), d->s->desc.user_values ? look->user : NULL,
+                         has_regions ? regions : NULL);
     noh_gl_draw_wrinkle_look(d->renderer, look->wrinkle_models, look->smoothed);
 }
 
@@ -92,9 +94,7 @@ static void draw_alone(drawing *d, const noh_stage_drawing *of, uint32_t place)
     if (!m->skinned && m->node_world) noh_matrix_multiply(shown->world, m->node_world, world);
     if (is_morphed) morph = noh_gl_morph_binding_of(item->model->morph, noh_gl_item_tile(item, shown));
     if (is_morphed && !noh_gl_any_weight(weights, m->mesh.header->target_count)) morph.touched = 0; /* no deltas */
-    noh_gl_draw_tint(d->renderer, noh_stage_tint_of(actor_at(d, place)));
-    noh_gl_draw_user(d->renderer, d->s->desc.user_values ? actor_at(d, place)->look.user : NULL);
-    set_wrinkles(d, mesh, place);
+    set_instance(d, mesh, place);
     set_cover(d, mesh, place);
     if (d->s->desc.motion) set_before(d, mesh, place);
     noh_gl_draw_mesh(d->renderer, &item->model->mesh, world, is_morphed ? &morph : NULL, m->skinned ? &skin : NULL,

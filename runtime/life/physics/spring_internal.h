@@ -20,6 +20,9 @@ void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, floa
  * errors  ARG, LIMIT: as noh_spring_init */
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error);
 
+/* Put a chain at rest at its carrier. */
+void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier);
+
 /* Check a spring of this desc whose bytes come from outside.
  * shapes   spring: noh_spring_size bytes, aligned to 16
  * returns  NULL if it may be used, else a constant message */

@@ -122,12 +122,6 @@ noh_result noh_controller_init(void *memory, size_t bytes, const noh_controller_
     return NOH_OK;
 }
 
-size_t noh_controller_bytes(const noh_controller *c)
-{
-    NOH_ASSERT(c);
-    return c->bytes;
-}
-
 noh_track *noh_controller_tracks(noh_controller *c)
 {
     NOH_ASSERT(c);

@@ -295,8 +295,8 @@ void noh_character_update_begin(noh_character *ch, const noh_clip_set *set, noh_
         keep_shown(ch, u.pose ^ 1u, u.keep);
     }
     if (ahead > 0) {
-        NOH_ASSERT(noh_controller_bytes(c) <= scratch->ahead_bytes);
-        memcpy(scratch->ahead, c, noh_controller_bytes(c));
+        NOH_ASSERT(c->bytes <= scratch->ahead_bytes);
+        memcpy(scratch->ahead, c, c->bytes);
         (void)noh_controller_step(scratch->ahead, set, (uint32_t)ahead, NULL, NULL);
         c = scratch->ahead;
     }

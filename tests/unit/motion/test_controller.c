@@ -179,7 +179,7 @@ static void memory_is_exact(void **state)
     assert_int_equal(noh_controller_init(g.memory + NOH_MEMORY_ALIGN / 2, size, &d, &c, &error), NOH_ERR_ARG);
     assert_int_equal(noh_controller_init(NULL, size, &d, &c, &error), NOH_ERR_ARG);
     assert_int_equal(noh_controller_init(g.memory, size, &d, &c, &error), NOH_OK);
-    assert_int_equal(noh_controller_bytes(c), size);
+    assert_int_equal(c->bytes, size);
     g.c = c;
     for (uint32_t t = 0; t < 3; t++) start(&g, t, track_of(t, 1.0f));
     assert_int_equal(noh_controller_inertia_capture(c, &g.s.set, &g.scratch, NULL), NOH_OK);
@@ -933,7 +933,7 @@ static void clones_share_nothing_they_write(void **state)
     stage_open(&g, 2, NOH_CONTROLLER_INERTIAL);
     start(&g, 0, track_of(WALK, 1.0f));
     step(&g, 5000);
-    memcpy(clone, g.c, noh_controller_bytes(g.c));
+    memcpy(clone, g.c, g.c->bytes);
     step(&g, 1000);
     noh_controller_step(clone, &g.s.set, 9000, NULL, NULL);
     scene_pose(&g.s, WALK, 6000, want_a, floats);
@@ -961,11 +961,11 @@ static void a_snapshot_continues_with_the_same_bits(void **state)
     d.speed = 5 * NOH_SPEED_ONE;
     change(&g, d);
     step(&g, 1234);
-    memcpy(saved, g.c, noh_controller_bytes(g.c));
+    memcpy(saved, g.c, g.c->bytes);
     for (int i = 0; i < 100; i++) step(&g, 801);
     take_pose(&g);
     memcpy(first, g.pose, sizeof first);
-    memcpy(g.c, saved, noh_controller_bytes(g.c));
+    memcpy(g.c, saved, g.c->bytes);
     for (int i = 0; i < 801; i++) step(&g, 100);
     take_pose(&g);
     assert_memory_equal(first, g.pose, sizeof first);
