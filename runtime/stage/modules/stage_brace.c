@@ -23,7 +23,10 @@
 #define ELBOW 0.6f    /* radians */
 #define LEG_BEND 0.1f /* of knees, and 0.7 of it of hips; to BACK_BEND more of one that falls on its back */
 #define BACK_BEND 0.7f
-#define LANDED 0.4f /* of the greatest speed downwards: when the trunk is slower than this, it has landed */
+#define FOOT_RATE 6.0f   /* 1/s: how fast a foot may rise, for each metre that it is below the hips */
+#define FOOT_MARGIN 0.1f /* of a leg */
+#define FOOT_DOWN 1.5f   /* legs a second: no foot is sent down faster */
+#define LANDED 0.4f      /* of the greatest speed downwards: when the trunk is slower than this, it has landed */
 #define BRACE_MAX_TICKS 72000u
 #define BRACE_MIN_TICKS 9600u
 #define RELAX_SECONDS 0.35f
@@ -266,6 +269,36 @@ void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage
         brace_head(&b, &shared->parts);
     }
     for (uint32_t i = 0; i < shared->rig.body_count; i++) hertz[i] *= brace->strength;
+}
+
+/* ---- legs ---- */
+
+/* The nearer a foot gets to the height of the hips, the slower its leg may rise. A leg that is kicked up as the trunk
+ * lands or rolls comes down again, as muscles would have it; a foot that lies high, on a stair, stays. */
+static void brake_leg(const noh_stage_parts *p, noh_ragdoll_doll *doll, uint32_t leg, float length)
+{
+    const uint32_t bodies[3] = { p->thighs[leg], p->shins[leg], p->feet[leg] };
+    const noh_ragdoll_state *hips = &doll->bodies[0], *foot = &doll->bodies[p->feet[leg]];
+    const float room = hips->position[1] - foot->position[1] - FOOT_MARGIN * length;
+    const float most = hips->velocity[1] + FOOT_RATE * (room > 0.0f ? room : 0.0f), down = -FOOT_DOWN * length;
+    const float excess = foot->velocity[1] - (most > down ? most : down);
+    if (!(excess > 0.0f)) return;
+    const float share = excess < length ? excess / length : 1.0f; /* of the spin: all of it from a leg a second on */
+    for (int i = 0; i < 3; i++) {
+        noh_ragdoll_state *s = &doll->bodies[bodies[i]];
+        s->velocity[1] -= excess * (i ? 1.0f : 0.5f);
+        s->spin[0] *= 1.0f - share;
+        s->spin[2] *= 1.0f - share;
+    }
+}
+
+void noh_stage_keep_feet_low(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body)
+{
+    noh_ragdoll_doll *doll = &noh_ragdoll_dolls(shared->dolls)[body->doll - 1u];
+    if (!shared->parts.has_legs || doll->asleep || body->held) return;
+    for (uint32_t i = 0; i < NOH_FEET_LEGS_MAX; i++) {
+        brake_leg(&shared->parts, doll, i, shared->legs.length * shared->metres);
+    }
 }
 
 /* ---- time ---- */

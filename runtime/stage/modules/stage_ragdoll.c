@@ -275,6 +275,7 @@ static void step(noh_stage_kind *k, uint32_t ticks)
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive) continue;
         if (b->doll && b->moves == NOH_MOVES_BRACING) noh_stage_step_brace(r, b, ticks);
+        if (b->doll && !has_goals(k, b)) noh_stage_keep_feet_low(r, b);
         if (b->doll) noh_stage_step_lying(r, b, ticks);
         if (b->doll) follow_doll(k, b, &k->actors[i]);
         if (b->moves == NOH_MOVES_STAGGERING) noh_stage_step_stagger(k, &k->actors[i], b, ticks);

@@ -130,6 +130,7 @@ noh_result noh_stage_knock_down(noh_stage_kind *k, const noh_stage_actor *a, noh
 void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body, noh_ragdoll_pose *goals,
                            float *hertz);
 void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *body, uint32_t ticks);
+void noh_stage_keep_feet_low(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body);
 const char *noh_stage_check_brace(const noh_stage_brace *b);
 
 /* Whether a ragdoll moves its place. */
