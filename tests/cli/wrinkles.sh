@@ -42,6 +42,12 @@ noh build "$build/mask.glb" -o "$work/no.noh" --wrinkle-map "$work/bad.png"
 expect 1 'a map that is no picture'
 says 'neither PNG nor JPEG'
 check 'names the file' grep -q 'bad.png' "$work/err"
+noh build "$build/mask.glb" -o "$work/default.noh" --only mesh --quiet
+check 'a face has folds without asking' cmp "$work/auto.noh" "$work/default.noh"
+noh build "$build/mask.glb" -o "$work/off.noh" --wrinkles off --only mesh --quiet
+check 'and none if they are not wanted' sh -c "! '$build/noh' info '$work/off.noh' | grep -q wrinkle"
+noh build "$build/demo/nell.glb" -o "$work/nell.noh" --only mesh
+check 'what cannot have them is built without a word of it' sh -c "! grep -qi wrinkle '$work/out' '$work/err'"
 noh build "$build/demo/arm.glb" -o "$work/no.noh" --wrinkles auto
 expect 1 'a model without targets'
 says 'no mesh can have wrinkles'
@@ -83,7 +89,7 @@ check 'they change the table' test "$(cmp -l "$work/auto.noh" "$work/rows.noh" |
 
 flush=$build/demo/flush.png
 printf 'tint r b02020\ncolor smile r 0.5\ncolor anger r\ncolor nobody r\n' >"$work/blush.recipe"
-noh build "$build/mask.glb" -o "$work/blush.noh" --color-map "$flush" --recipe "$work/blush.recipe" --only mesh
+noh build "$build/mask.glb" -o "$work/blush.noh" --wrinkles off --color-map "$flush" --recipe "$work/blush.recipe" --only mesh
 expect 0 'build --color-map'
 check 'reports size and rows' grep -q "^colours of mesh 'mask', material 'paint': 64 x 64, 2 rows of the recipe" "$work/out"
 check 'warns of a target that is not there' grep -q "blush.recipe:4: no mesh has the target 'nobody'" "$work/out"
@@ -93,7 +99,7 @@ noh info "$work/blush.noh"
 check 'info names the map' grep -q "^material 'paint'.* colours by target 'mask colours'" "$work/out"
 noh strip "$work/blush.noh" -o "$work/again.noh" --from-level 0 --quiet
 check 'strip keeps the colours' cmp "$work/blush.noh" "$work/again.noh"
-noh build "$build/mask.glb" -o "$work/plain.noh" --only mesh --quiet
+noh build "$build/mask.glb" -o "$work/plain.noh" --wrinkles off --only mesh --quiet
 for weight in 0 1; do
     for pack in blush plain; do
         noh render "$work/$pack.noh" -o "$work/$pack$weight.png" --size 64x64 --weight smile=$weight

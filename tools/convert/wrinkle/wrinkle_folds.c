@@ -15,6 +15,7 @@
 #define STEP 1e-4         /* between heights whose difference is a slope, face units */
 #define BEHIND 0.9        /* how far behind the eyes a face reaches, face units */
 #define SHOULDER 3.0      /* skin rises along a fold, */
+#define SLOW 2.0          /* widths of the side that rises slowly */
 #define WOBBLE 0.12       /* and no fold is quite even: of the gap */
 
 /* A place in a zone: -1..1 along its folds and across them where it is inside. */
@@ -141,9 +142,15 @@ static void set_zones(const wrinkle_face *f, fold_zone *z)
                             .width = 0.041,
                             .depth = 0.006,
                             .most = 2 };
-        *z = (fold_zone){
-            .region = 6 + right, .side = side, .rise = 1, .gain = 1, .gap = 0.3, .width = 0.1, .depth = 0.03, .most = 1
-        };
+        *z = (fold_zone){ .region = 6 + right,
+                          .side = side,
+                          .rise = 1,
+                          .gain = 1,
+                          .gap = 0.12,
+                          .width = 0.075,
+                          .depth = 0.022,
+                          .hangs = 1,
+                          .most = 1 };
         set_arc(z++, nose, corner, 0.05);
     }
     *z = (fold_zone){ .region = 9,
@@ -331,7 +338,16 @@ int wrinkle_folds_place(const wrinkle_field *field, const wrinkle_raster *raster
 
 /* ---- maps ---- */
 
-/* Below the skin, face units: a narrow valley between low shoulders, which fades to its ends. */
+/* Across a fold, 1 at its bottom: a narrow valley between low shoulders. Where one side hangs over the other, that side
+ * alone has a shoulder, and the other rises slowly. far: from the bottom, 1 at the end of a shoulder */
+static double profile_of(const fold_zone *z, double far)
+{
+    const int slow = z->hangs && far < 0.0;
+    const double at = slow ? far / SLOW : far, even = 1.0 - at * at;
+    return even > 0.0 ? even * even * (slow ? 1.0 : 1.0 - SHOULDER * at * at) : 0.0;
+}
+
+/* Below the skin, face units; folds fade to their ends. */
 static double height_at(const wrinkle_folds *folds, const double p[3])
 {
     double height = 0.0;
@@ -340,12 +356,10 @@ static double height_at(const wrinkle_folds *folds, const double p[3])
         const fold_place at = place_of(z, p);
         for (uint32_t k = 0; k < z->count && fabs(at.along) < 1.0; k++) {
             const double end = at.along / (1.0 - 0.12 * k), taper = 1.0 - end * end;
-            double wave, cosine, far, even;
+            double wave, cosine, far;
             angle_sin_cos_degrees(130.0 * at.along + 97.0 * k, &wave, &cosine);
             far = (across_of(z, &at) - z->at[k] - WOBBLE * z->gap * wave) * length_of(z, &at) / z->width;
-            even = 1.0 - far * far;
-            if (even <= 0.0 || taper <= 0.0) continue;
-            height -= z->depth * z->share[k] * taper * taper * even * even * (1.0 - SHOULDER * far * far);
+            if (taper > 0.0) height -= z->depth * z->share[k] * taper * taper * profile_of(z, far);
         }
     }
     return height;

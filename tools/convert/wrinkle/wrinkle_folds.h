@@ -30,6 +30,7 @@ typedef struct fold_zone {
     double gain;                /* thin skin folds at less compression */
     double gap;                 /* the least between two folds: a length, or degrees for rays */
     double width, depth;        /* of a fold: from its valley to where the skin is even; of its valley */
+    int hangs;                  /* 1: of an arc, the skin outside hangs over the skin inside */
     uint32_t most;              /* folds at most */
     uint32_t count;             /* folds that were placed */
     double at[FOLD_LINES];      /* their radius or angle */

@@ -406,12 +406,22 @@ static int keep_mask(const wrinkle_settings *settings, const wrinkles *w)
     return !settings->kept->rgba;
 }
 
+/* Only what is sure to be a face gets wrinkles that nobody asked for. */
+static int faces_alone(const wrinkle_settings *settings)
+{
+    return settings->automatic == WRINKLES_OF_FACES && !settings->map && !settings->mask;
+}
+
 /* Lay out what is generated. folds->zones: none where it is not a face. Why the mesh cannot have wrinkles goes to *why,
  * which is NULL where it can. */
 static int lay_out(model *m, model_mesh *mesh, const wrinkle_settings *settings, wrinkle_field *f, wrinkle_raster *r,
                    wrinkle_folds *folds, int *is_face, const char **why)
 {
     *is_face = !settings->map && wrinkle_folds_find(f, settings->recipe, folds);
+    if (!*is_face && faces_alone(settings)) {
+        *why = "it is no face";
+        return 0;
+    }
     if (wrinkle_uv_settle(m, mesh, f) ||
         choose_size(f, *is_face ? wrinkle_folds_finest(folds) : wrinkle_spacing(f), settings->size, r)) {
         return 1;
@@ -439,7 +449,8 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
         failed = lay_out(m, mesh, settings, &f, &r, &folds, &is_face, &why) && out_of_memory(error);
     }
     if (!failed && why) {
-        failed = model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) && out_of_memory(error);
+        failed = !faces_alone(settings) && model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) &&
+                 out_of_memory(error);
     } else if (!failed) {
         failed = fill(&f, is_face ? &folds : NULL, &r, settings, &w, error);
         failed = failed || (keep_mask(settings, &w) && out_of_memory(error));
@@ -466,15 +477,16 @@ int wrinkle_has_rows(const recipe_text *recipe, uint32_t first, uint32_t count)
 int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error)
 {
     uint32_t made = 0;
-    if (!settings->automatic && !settings->map && !settings->mask) {
+    const int wanted = settings->automatic || settings->map || settings->mask;
+    for (uint32_t i = 0; wanted && i < m->mesh_count; i++) {
+        if (make_mesh(m, &m->meshes[i], settings, &made, error)) return 1;
+    }
+    if (!made && (!wanted || faces_alone(settings))) {
         return wrinkle_has_rows(settings->recipe, 0, REGION_COUNT) &&
                model_warn(
                    m,
                    "the recipe's wrinkle rows have no effect without --wrinkles auto, --wrinkle-map or --region-mask") &&
                out_of_memory(error);
-    }
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (make_mesh(m, &m->meshes[i], settings, &made, error)) return 1;
     }
     if (!made) {
         return model_fail(error, "", "no mesh can have wrinkles: %s",

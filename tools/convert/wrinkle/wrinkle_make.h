@@ -13,8 +13,10 @@
 extern "C" {
 #endif
 
+enum { WRINKLES_OFF, WRINKLES_OF_ALL, WRINKLES_OF_FACES };
+
 typedef struct wrinkle_settings {
-    int automatic;    /* generate maps that are not painted */
+    int automatic;    /* WRINKLES_*: the meshes that get maps that are generated; with painted ones all meshes get them */
     const char *map;  /* a painted normal map, tangent space, +y up; NULL: generated */
     const char *mask; /* a painted region mask (region_mask.h); NULL: generated */
     uint32_t models;  /* NOH_WRINKLE_BY_* of format.h: what shows them; 0: regions, and area where there are no folds */
@@ -27,7 +29,8 @@ typedef struct wrinkle_settings {
 } wrinkle_settings;
 
 /* Add wrinkles to the material of each mesh that targets compress the most. Meshes without possible wrinkles give a
- * warning of the model; if no mesh can have wrinkles, that is an error. Does nothing if the settings request none.
+ * warning of the model; if no mesh can have wrinkles, that is an error, unless only faces get them: then all others are
+ * left as they are. Does nothing if the settings request none.
  * Returns 0, or 1 and *error. */
 int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error);
 

@@ -284,10 +284,13 @@ static int set_wrinkles(const build_args *a, convert_options *o)
                    { "area", NOH_WRINKLE_BY_AREA },
                    { "region", NOH_WRINKLE_BY_REGION },
                    { "channel", NOH_WRINKLE_BY_CHANNEL } };
-    if (a->wrinkles.make && strcmp(a->wrinkles.make, "auto") != 0) {
-        return tool_usage("--wrinkles must be auto, not '%s'", a->wrinkles.make);
-    }
+    static const char *const made[] = { "off", "auto", "face" }; /* WRINKLES_* */
     size_t kind = 0;
+    while (o->wrinkles.automatic < 3 && strcmp(a->wrinkles.make, made[o->wrinkles.automatic]) != 0)
+        o->wrinkles.automatic++;
+    if (o->wrinkles.automatic == 3) {
+        return tool_usage("--wrinkles must be auto, face or off, not '%s'", a->wrinkles.make);
+    }
     while (kind < sizeof models / sizeof models[0] && strcmp(a->wrinkles.models, models[kind].name) != 0) kind++;
     if (kind == sizeof models / sizeof models[0]) {
         return tool_usage("--wrinkle-model must be auto, area, region or channel, not '%s'", a->wrinkles.models);
@@ -302,7 +305,6 @@ static int set_wrinkles(const build_args *a, convert_options *o)
         return tool_usage("--wrinkle-lookup must be vertex or pixel, not '%s'", a->wrinkles.lookup);
     }
     o->colors = a->colors;
-    o->wrinkles.automatic = a->wrinkles.make != NULL;
     o->wrinkles.map = a->wrinkles.map;
     o->wrinkles.mask = a->wrinkles.mask;
     return 0;
@@ -559,10 +561,11 @@ static const option options[] = {
     { .name = "--wrinkles",
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, wrinkles.make),
-      .value = "auto",
+      .value = "auto|face|off",
+      .initial = "face",
       .what =
-          "generate wrinkles from the compression of each target: a normal map, twelve regions, and the weight of each target in each region. A face, whose targets blink and smile, gets folds where faces have them; any other surface gets creases",
-      .example = "auto",
+          "generate wrinkles from the compression of each target: a normal map, twelve regions, and the weight of each target in each region. face: a mesh whose targets blink and smile gets folds where faces have them, if its texture coordinates do not overlap; auto: other meshes get creases, too",
+      .example = "off",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-map",
       .kind = OPTION_INPUT,
