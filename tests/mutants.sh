@@ -19,27 +19,11 @@
 set -u
 cd "$(dirname "$0")/.." || exit 1
 
-build=${NOH_BUILD:-build}
-build=${build#"$PWD"/}
-case $build in /* | *..*) echo "mutants.sh: NOH_BUILD has to be a folder inside $PWD"; exit 1 ;; esac
-case ${NOH_ASSETS:-} in '' | /*) ;; *) NOH_ASSETS=$PWD/$NOH_ASSETS ;; esac
-export NOH_ASSETS="${NOH_ASSETS:-}" NOH_SAN='' CMOCKA_MESSAGE_OUTPUT=TAP CC="${CC:-gcc}"
-[ -n "${NOH_ANGLE:-}" ] || [ ! -f "$build/angle/libGLESv2.so" ] || export NOH_ANGLE="$PWD/$build/angle"
-jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+. tests/support/mutants.sh
 limit=${NOH_LIMIT_S:-300}
-tree=$PWD work=$PWD/$build/mutants
-tab=$(printf '\t')
-unset MAKEFLAGS MFLAGS MAKELEVEL
+work=$PWD/$build/mutants
 
 # ---- one row ----
-
-# Runs a program in the background, so that a signal reaches it: timeout ends all its processes.
-child=
-limited() { # SECONDS COMMAND...: of the processor for a process, and four times as many by the clock
-    (seconds=$1 && shift && ulimit -S -t "$seconds" && exec timeout -k 5 $((4 * seconds)) "$@") &
-    child=$!
-    wait $child
-}
 
 # Runs a row's test of the build in a folder and sets told: `passes`, `skips: REASON`, `fails`, or another result.
 verdict() { # FOLDER PROGRAM FUNCTION LOG
@@ -127,10 +111,7 @@ one() { # NUMBER NAME PROGRAM FUNCTION
 # ---- a copy of the tree, which takes every JOBS-th row ----
 
 copy() { # FOLDER
-    mkdir -p "$1/$build" "$work/log"
-    for file in *; do
-        case $file in build*) ;; *) cp -pR "$file" "$1/" ;; esac
-    done
+    copy_sources "$1"
     (cd "$build" && find . \( -path './mutants*' -o -path ./web -o -path ./tests/log -o -path ./angle \) -prune -o -type f \
         \( -name '*.[oad]' -o -path './gen/*' -o -name embed -o -name noh -o -name '*.noh' -o -name '*.glb' \) -print) |
         tar -C "$build" -cf - -T - | tar -C "$1/$build" -xf -
@@ -147,10 +128,7 @@ is_clean() { # NUMBER
     [ ! -s "$work/log/left.$1" ]
 }
 
-worker() { # NUMBER
-    trap 'kill $child 2>/dev/null; exit 1' TERM INT HUP
-    trap - EXIT
-    copy "$work/$1" || exit 1
+mutants_of() { # NUMBER
     awk -v n="$1" -v jobs="$jobs" 'NR % jobs == n % jobs' "$work/rows" >"$work/$1.rows"
     while IFS="$tab" read -r name program function; do
         one "$1" "$name" "$program" "$function"
@@ -160,15 +138,6 @@ worker() { # NUMBER
 
 # ---- all ----
 
-workers=
-clean() {
-    trap - EXIT
-    # shellcheck disable=SC2086 # numbers
-    [ -z "$workers$child" ] || { kill $workers $child; wait; } 2>/dev/null
-    rm -rf "$work"
-}
-trap clean EXIT
-trap 'clean; exit 130' INT TERM HUP
 rm -rf "$work"
 mkdir -p "$work/log" || exit 1
 
@@ -210,18 +179,7 @@ tell() { # A LINE OF A RESULT
     echo "${line%%ok - *}ok $number - ${line#*ok - }"
 }
 
-mkfifo "$work/results"
-n=0
-while [ $n -lt "$jobs" ]; do
-    n=$((n + 1))
-    worker $n >"$work/results" &
-    workers="$workers $!"
-done
-while IFS= read -r line; do
-    tell "$line"
-done <"$work/results"
-wait
-workers=
+run_workers
 [ $((passed + skipped + failed)) -ge "$(wc -l <"$work/rows")" ] || failed=$((failed + 1))
 echo "1..$number"
 echo "$passed passed, $failed failed, $skipped skipped"

@@ -3,19 +3,25 @@
 #
 # SEED chooses the mutants in equal shares from arithmetic (+ - * /), comparisons (< <= > >= == != && ||), integers and
 # indices (one more or one less) and the order of calls (two swapped, or one removed). The unit tests, the tests of
-# memory and of GL, and the short form of golden.sh were run once with line counts; a mutant runs only the programs that
-# run its line, quickest first, until one fails. It is killed by a failed test, a crash, or a program that takes ten
-# times its seconds of the processor. A mutant that does not compile, or compiles to the same object, is replaced by
-# another. A line that no program runs is a survivor. Headers that more than 12 files include are left out, because a
-# mutant there compiles them all (NOH_LONG=1: they are not).
+# memory and of GL, and the short form of golden.sh were run once with line counts. A mutant compiles one object and
+# links the library; then the programs that run its line are run until one fails, those first that take least time for
+# the lines that they run. It is killed by a failed test, a crash, or a program that takes five times its seconds of the
+# processor. A mutant that does not compile, or compiles to the same object, is replaced by another. A line that no
+# program runs is a survivor. Headers that more than 12 files include are left out, because a mutant there compiles them
+# all (NOH_LONG=1: they are not).
 #
-# tests/survivors.txt lists survivors that were looked at, with the reason; a line of the report says which of
-# the survivors it lists. Prints a table by room and operator, survivors, the largest functions that no test runs, and
-# "N passed, N failed, N skipped". `make mutants-seed SEED=1 COUNT=200` builds what it needs, and runs it.
+# A mutant's place in the draw follows from the seed, its function and its line: an edit elsewhere draws the same mutants.
+# What is killed is kept in NOH_BUILD/mutants_seed/judged until its file changes, so that a run that was interrupted goes
+# on, and after new tests only survivors are run again (to judge all: remove the file).
+#
+# tests/survivors.txt lists survivors that were looked at, with the reason: they are run with NOH_LONG=1 alone. Prints a
+# table by room and operator, survivors, the largest functions that no test runs, and "N passed, N failed, N skipped".
+# `make mutants-seed SEED=1 COUNT=200` builds what it needs, and runs it.
 #
 #   NOH_BUILD, NOH_ASSETS  as for tests/run.sh
 #   JOBS                   copies of the tree used in parallel (default: number of processors)
 #   SEEDED_*               how the library is compiled and linked as a shared object (tools/mk/mutants.mk sets them)
+#   NOH_QUICK_S            seconds of programs for a mutant (of each, one more than it takes): a first look at survivors
 #   NOH_TEST               only mutants of files whose path has one of these words in it: NOH_TEST='life/ springs'
 #
 #   mutants_seed.sh --lines NAME  runs a program with line counts and keeps which lines it runs (tools/mk/mutants.mk)
@@ -23,37 +29,9 @@
 # Mutants are in copies of the tree in a temporary folder, which is always removed.
 set -u
 cd "$(dirname "$0")/.." || exit 1
-build=${NOH_BUILD:-build}
-build=${build#"$PWD"/}
-case $build in /* | *..*) echo "mutants_seed.sh: NOH_BUILD has to be a folder inside $PWD"; exit 1 ;; esac
-case ${NOH_ASSETS:-} in '' | /*) ;; *) NOH_ASSETS=$PWD/$NOH_ASSETS ;; esac
-export NOH_ASSETS="${NOH_ASSETS:-}" NOH_SAN='' CMOCKA_MESSAGE_OUTPUT=TAP NOH_GL_DEBUG=1 CC="${CC:-gcc}"
-[ -n "${NOH_ANGLE:-}" ] || [ ! -f "$build/angle/libGLESv2.so" ] || export NOH_ANGLE="$PWD/$build/angle"
-tree=$PWD seeded=$PWD/$build/mutants_seed
-tab=$(printf '\t')
-unset MAKEFLAGS MFLAGS MAKELEVEL
-
+. tests/support/mutants.sh
+seeded=$PWD/$build/mutants_seed
 work=$(mktemp -d "${TMPDIR:-/tmp}/noh_mutants.XXXXXX") || exit 1
-workers='' child=''
-clean() {
-    trap - EXIT
-    # shellcheck disable=SC2086 # numbers
-    [ -z "$workers$child" ] || { kill $workers $child; wait; } 2>/dev/null
-    rm -rf "$work"
-}
-trap clean EXIT
-trap 'clean; exit 130' INT TERM HUP
-
-# Runs a program in the background, so that a signal reaches it: timeout ends all its processes.
-limited() { # SECONDS COMMAND...: of the processor for a process, eight times as many by the clock, 200 MB
-    (seconds=$1 && shift && ulimit -S -t "$seconds" && ulimit -S -c 0 && ulimit -S -f 400000 &&
-        exec timeout -k 5 $((8 * seconds)) "$@") &
-    child=$!
-    wait $child
-    status=$?
-    child=
-    return $status
-}
 
 # A program of the build in FOLDER with the library in LIBRARY. golden has no asserts: its hashes have to be as before.
 play() { # FOLDER LIBRARY NAME SECONDS LOG
@@ -151,42 +129,54 @@ remake_tests() { # NUMBER FILE
 
 # Tries the mutant on a line of the plan; fails if it has to be replaced.
 try() { # NUMBER LINE-OF-THE-PLAN
-    IFS="$tab" read -r operator file line _ _ _ change programs <<END
+    IFS="$tab" read -r key operator file line _ _ _ change programs <<END
 $(sed -n "$2p" "$work/plan")
 END
     [ -n "$operator" ] || return 0
     [ "$programs" != - ] || programs=
-    perl tests/support/mutants_seed.pl plant "$work/plan" "$2" "$work/$1" || return 1
     why='' killer=''
+    before=$(grep "^$key$tab" "$seeded/judged" | tail -n 1 | cut -f2)
+    case $before in
+    replaced) return 1 ;;
+    ?*) killer=$before ;;
+    *)
+        if [ -n "${NOH_LONG:-}" ] || ! grep -qxF "$file: $change" tests/survivors.txt; then
+            judge "$@"
+        fi
+        ;;
+    esac
+    [ -z "$why" ] || { echo "$key${tab}replaced" >>"$seeded/judged" && return 1; }
+    [ -z "$killer" ] || [ -n "$before" ] || echo "$key$tab$killer" >>"$seeded/judged"
+    [ -n "$killer$programs" ] || killer='?'
+    printf '%s\t%s\t%s\t%s\t%s\n' "${killer:--}" "$operator" "$file" "$line" "$change"
+}
+
+# Sets killer, or why there is nothing to run.
+judge() { # NUMBER LINE-OF-THE-PLAN
+    perl tests/support/mutants_seed.pl plant "$work/plan" "$2" "$work/$1" || { why='no such place' && return; }
     if make_library "$1" "$file"; then
         remake_tests "$1" "$file"
+        left=${NOH_QUICK_S:-100000}
         for program in $programs; do
-            seconds=$((10 * ${program#*:} + 5)) program=${program%:*}
-            play "$work/$1" "$work/$1/library" "$program" $seconds "$work/$1/log" && continue
-            is_sound "$1" "$program" $seconds && killer=$program && break
+            left=$((left - ${program#*:} - 1)) seconds=$((5 * ${program#*:} + 5)) program=${program%:*}
+            [ $left -ge 0 ] || continue
+            play "$work/$1" "$work/$1/library" "$program" "$seconds" "$work/$1/log" && continue
+            is_sound "$1" "$program" "$seconds" && killer=$program && break
         done
     fi
     cp -p "$file" "$work/$1/$file"
-    [ -z "$why" ] || return 1
-    [ -n "$killer$programs" ] || killer='?'
-    printf '%s\t%s\t%s\t%s\t%s\n' "${killer:--}" "$operator" "$file" "$line" "$change"
 }
 
 # ---- a copy of the tree, which takes every JOBS-th mutant ----
 
 copy() { # FOLDER
+    copy_sources "$1"
     mkdir -p "$1/$build/demo" "$1/tmp"
-    for file in *; do
-        case $file in build*) ;; *) cp -pR "$file" "$1/" ;; esac
-    done
     cp -pR "$build/gen" "$build/embed" "$build/noh" "$build"/*.noh "$build"/*.glb "$1/$build/"
     cp -p "$build"/demo/*.noh "$build"/demo/*.glb "$1/$build/demo/"
 }
 
-worker() { # NUMBER
-    trap 'kill $child 2>/dev/null; exit 1' TERM INT HUP
-    trap - EXIT
-    copy "$work/$1" || exit 1
+mutants_of() { # NUMBER
     mutant=$1 scratch=$work/$1/tmp
     while [ "$mutant" -le "$count" ]; do
         place=$mutant
@@ -200,13 +190,13 @@ worker() { # NUMBER
 # ---- all ----
 
 [ $# = 2 ] || { echo 'usage: mutants_seed.sh SEED COUNT'; exit 1; }
-seed=$1 count=$2 jobs=${JOBS:-$(nproc 2>/dev/null || echo 2)}
+seed=$1 count=$2
 [ -n "${SEEDED_CC:-}" ] && [ -f "$seeded/plain/libnoh.so" ] && [ -d "$seeded/map" ] ||
     { echo 'mutants_seed.sh: make mutants-seed builds what it needs'; exit 1; }
 find runtime -name '*.[ch]' | sort >"$work/all"
 [ -z "${NOH_LONG:-}" ] && most=12 || most=1000
 find "$build/assert/runtime" -name '*.d' -exec cat {} + | tr ' ' '\n' | grep '^runtime/.*\.h$' | sort | uniq -c |
-    awk -v most=$most '$1 > most { print $2 }' >"$work/wide"
+    awk -v most="$most" '$1 > most { print $2 }' >"$work/wide"
 grep -vxFf "$work/wide" "$work/all" >"$work/files"
 # shellcheck disable=SC2086 # words
 printf '%s\n' ${NOH_TEST:-/} >"$work/words"
@@ -214,19 +204,12 @@ printf '%s\n' ${NOH_TEST:-/} >"$work/words"
 perl tests/support/mutants_seed.pl plan "$seeded/map" "$seed" $((8 * count)) \
     $(grep -Ff "$work/words" "$work/files") >"$work/plan" || exit 1
 
-mkfifo "$work/results"
-n=0
-while [ $n -lt "$jobs" ]; do
-    n=$((n + 1))
-    worker $n >"$work/results" &
-    workers="$workers $!"
-done
-while IFS= read -r line; do
-    echo "$line" >>"$work/told"
-    case $line in [-?]"$tab"*) echo "$line" | awk -F "$tab" '{ print "survives: " $3 ":" $4 " " $5 }' ;; esac
-done <"$work/results"
-wait
-workers=
+tell() { # A LINE OF A RESULT
+    echo "$1" >>"$work/told"
+    case $1 in [-?]"$tab"*) echo "$1" | awk -F "$tab" '{ print "survives: " $3 ":" $4 " " $5 }' ;; esac
+}
+: >>"$seeded/judged"
+run_workers
 
 {
     grep -h ' fails$' -r --include='*.lines' "$seeded/map" | sed 's/ fails$//'

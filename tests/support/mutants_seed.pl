@@ -1,8 +1,9 @@
 #!/usr/bin/perl
 # mutants_seed.pl: what tests/mutants_seed.sh needs to know of C.
 #
-#   plan MAP SEED COUNT FILES...  the first COUNT mutants that SEED draws, one a line, fields between tabs: operator,
-#                      file, line, offset, length, new text, what changes, programs that run the line, quickest first
+#   plan MAP SEED COUNT FILES...  the first COUNT mutants that SEED draws, one a line, fields between tabs: a key of the
+#                      mutant in this text of its file, operator, file, line, offset, length, new text, what changes,
+#                      programs that run the line, those first that take least time for the lines that they run
 #   plant PLAN NUMBER FOLDER      puts one of them into the tree in FOLDER
 #   lines DATA OBJECTS  prints "FILE LINES - LINES" for each file of runtime/ that ran: the lines that ran, then the lines
 #                      that did not. Reads the .gcda files below DATA and the .gcno files below OBJECTS
@@ -14,6 +15,7 @@
 # functions; comments, strings, the preprocessor's lines and asserts are left alone.
 use strict;
 use warnings;
+use Digest::MD5 'md5_hex';
 use File::Find;
 
 sub text_of {
@@ -97,12 +99,12 @@ sub sites_of {
 sub line_at { my ($code, $at) = @_; return 1 + (substr($code, 0, $at) =~ tr/\n//); }
 sub short { my $s = join ' ', split ' ', $_[0]; return length $s > 70 ? substr($s, 0, 67) . '...' : $s; }
 
-# {FILE}{LINE} of all lines with code: the programs that run them, quickest first.
+# {FILE}{LINE} of all lines with code: the programs that run them; then {PROGRAM} its seconds, {PROGRAM} its lines.
 sub map_of {
     my ($folder) = @_;
     my (%map, @programs);
     find({ no_chdir => 1, wanted => sub { push @programs, $_ if /\.lines$/ } }, $folder);
-    my %seconds;
+    my (%seconds, %runs);
     for my $path (@programs) {
         my ($head, @rows) = split /\n/, text_of($path);
         my ($name, $seconds) = split ' ', $head;
@@ -117,15 +119,12 @@ sub map_of {
                     $runs = 0;
                 } else {
                     my $by = $lines->{$line} ||= [];
-                    push @$by, $name if $runs;
+                    push(@$by, $name), $runs{$name}++ if $runs;
                 }
             }
         }
     }
-    for my $file (values %map) {
-        $_ = [sort { $seconds{$a} <=> $seconds{$b} || $a cmp $b } @$_] for values %$file;
-    }
-    return (\%map, \%seconds);
+    return (\%map, \%seconds, \%runs);
 }
 
 # The programs of a line; of a line without code of its own, as in a long expression, of its neighbours.
@@ -144,38 +143,47 @@ sub programs_at {
     return [keys %all];
 }
 
-sub shuffle {
-    my ($list) = @_;
-    for (my $i = @$list - 1; $i > 0; $i--) {
-        my $j = int rand($i + 1);
-        @$list[$i, $j] = @$list[$j, $i];
+# {OPERATOR}: [rank, file, offset, length, new text] of each mutant, in an order that the seed draws. The rank is of the
+# text that the mutant changes, so that it stays where other lines are edited.
+sub drawn {
+    my ($seed, @files) = @_;
+    my (%sites, %seen);
+    for my $file (sort @files) {
+        my ($code, $text) = (code_of($file), text_of($file));
+        my @texts = map { join ' ', split ' ' } split /\n/, $text;
+        for my $function (functions_of($code)) {
+            my ($name, @range) = @$function;
+            for my $site (sites_of($code, @range)) {
+                my ($operator, $at, $long, $new) = @$site;
+                my $what = join "\t", $file, $name, $texts[line_at($code, $at) - 1], substr($text, $at, $long), $new;
+                push @{$sites{$operator}}, [md5_hex(join "\t", $seed, $what, $seen{$what}++), $file, $at, $long, $new];
+            }
+        }
     }
+    $_ = [sort { $a->[0] cmp $b->[0] } @$_] for values %sites;
+    return \%sites;
 }
 
 sub plan {
     my ($folder, $seed, $count, @files) = @_;
-    my ($map, $seconds) = map_of($folder);
-    my %sites;
-    for my $file (sort @files) {
-        my $code = code_of($file);
-        for my $function (functions_of($code)) {
-            push @{$sites{$_->[0]}}, [$file, @$_] for sites_of($code, @$function[1, 2]);
-        }
-    }
-    srand $seed; # Perl's own generator since 5.20: the same on every system
-    my @operators = sort keys %sites;
-    shuffle($sites{$_}) for @operators;
-    for (my $i = 0, my $told = 0; $told < $count; $i++) {
-        my $site = shift @{$sites{$operators[$i % @operators]}} or next;
-        my ($file, $operator, $at, $long, $new) = @$site;
-        my $code = code_of($file);
+    my ($map, $seconds, $runs) = map_of($folder);
+    my $sites = drawn($seed, @files);
+    my @operators = sort keys %$sites;
+    # A program that runs few lines and takes little time comes first: it starts in a twentieth of a second.
+    my %cost = map { $_ => ($seconds->{$_} + 0.05) * ($runs->{$_} || 1) } keys %$seconds;
+    for (my $i = 0, my $told = 0; $told < $count && grep { @$_ } values %$sites; $i++) {
+        my $operator = $operators[$i % @operators];
+        my $site = shift @{$sites->{$operator}} or next;
+        my ($rank, $file, $at, $long, $new) = @$site;
+        my ($code, $text) = (code_of($file), text_of($file));
         my $line = line_at($code, $at);
-        my $old = substr text_of($file), $at, $long;
+        my $old = substr $text, $at, $long;
         my $change = $operator eq 'order' ? ($new =~ /^[\s;]*$/ ? "without $old" : "swapped $old")
-            : short((split /\n/, text_of($file))[$line - 1]) . ": $old -> $new";
-        my @programs = sort { $seconds->{$a} <=> $seconds->{$b} || $a cmp $b } @{programs_at($map, $file, $line)};
-        (my $text = $new) =~ s/\n/\\n/g;
-        print join("\t", $operator, $file, $line, $at, $long, $text, join(' ', split ' ', $change),
+            : short((split /\n/, $text)[$line - 1]) . ": $old -> $new";
+        my @programs = sort { $cost{$a} <=> $cost{$b} || $a cmp $b } @{programs_at($map, $file, $line)};
+        my $key = md5_hex("$rank\t$text");
+        $new =~ s/\n/\\n/g;
+        print join("\t", $key, $operator, $file, $line, $at, $long, $new, join(' ', split ' ', $change),
             join(' ', map { "$_:$seconds->{$_}" } @programs) || '-'), "\n";
         $told++;
     }
@@ -183,7 +191,7 @@ sub plan {
 
 sub plant {
     my ($plan, $number, $folder) = @_;
-    my ($operator, $file, $line, $at, $long, $new) = split /\t/, (split /\n/, text_of($plan))[$number - 1];
+    my (undef, undef, $file, undef, $at, $long, $new) = split /\t/, (split /\n/, text_of($plan))[$number - 1];
     my $text = text_of($file);
     $new =~ s/\\n/\n/g;
     substr($text, $at, $long) = $new;
