@@ -31,7 +31,7 @@ flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanit
 rm -rf "$work/objects"
 mkdir "$work/objects"
 # shellcheck disable=SC2016
-if ! { find runtime -name '*.c' && find tests -name pack_walk.c -o -name wild_text.c && printf '%s\n' tools/noh/capture/osc.c tools/noh/capture/vmc.c && echo "$build/gen/shaders.gen.c"; } |
+if ! { find runtime -name '*.c' && find tests -name pack_walk.c -o -name 'wild_*.c' && printf '%s\n' tools/noh/capture/osc.c tools/noh/capture/vmc.c && echo "$build/gen/shaders.gen.c"; } |
     xargs -P "${JOBS:-2}" -I '{}' sh -c '$1 $2 -c "$3" -o "$4/$(echo "$3" | tr / _).o"' sh "$clang" "$flags" '{}' "$work/objects"; then
     echo '0 passed, 1 failed, 0 skipped'
     exit 1
@@ -72,7 +72,8 @@ link_import() {
     rm -rf "$work/import"
     mkdir "$work/import"
     # shellcheck disable=SC2016
-    { find tools/convert -name '*.c' -o -name '*.cpp'; echo platform/file.c; echo platform/file_write.c; echo tests/fuzz/fuzz_import.c; } |
+    { find tools/convert -name '*.c' -o -name '*.cpp'; echo platform/file.c; echo platform/file_write.c; echo tests/fuzz/fuzz_import.c
+        printf 'tools/noh/%s\n' cli/message.c crowd/place_file.c speak/sound.c; } |
         xargs -P "${JOBS:-2}" -I '{}' sh -c 'compiler=$1 flags=$3
             case $4 in *.cpp) compiler=$2 flags="-std=c++17 ${3#-std=c99}" ;; esac
             $compiler $flags -c "$4" -o "$5/$(echo "$4" | tr / _).o"' sh "$clang" "$clangxx" "$flags $more" '{}' "$work/import" || return 1
@@ -89,6 +90,7 @@ import_seeds() {
         NOH_SEEDS=$work/imports "$build/tests/unit/convert/test_$test" >/dev/null 2>&1 || return 1
     done
     sh tests/support/small_glb.sh >"$work/imports/small"
+    "$build/tests/fuzz/fuzz_import" --seeds "$work/imports"
 }
 
 imports=

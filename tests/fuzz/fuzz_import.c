@@ -1,5 +1,6 @@
 /* fuzz_import.c: any bytes as the files that noh build reads: glTF, VRM, FBX, OBJ with targets, BVH, facial capture,
- * markers, raw clips, pictures, and text files. What is read is converted, and the pack used in full.
+ * markers, raw clips, pictures, and text files; and as those of other verbs: places, sound, packets of a capture. What
+ * is read is converted, and the pack used in full.
  *
  * The kind follows from the first bytes, so that seeds are files as they are. A .glb is tried as it is, then with the
  * lengths of its chunks made right. An .obj file is also its own target. */
@@ -8,10 +9,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
+#include "capture/vmc.h"
+#include "cli/message.h"
 #include "convert/base/hair_read.h"
 #include "convert/base/image_file.h"
 #include "convert/base/ragdoll_read.h"
@@ -20,13 +24,17 @@
 #include "convert/convert.h"
 #include "convert/graph/graph_text.h"
 #include "convert/springs/springs_read.h"
+#include "crowd/place_file.h"
 #include "noh/base.h"
 #include "noh/pack.h"
+#include "speak/sound.h"
 #include "support/fuzz_replay.h"
 #include "support/pack_walk.h"
+#include "support/wild_bytes.h"
 #include "support/wild_text.h"
 
-#define WILD_S 5 /* of the processor, of one file of at most 64 KB */
+#define WILD_S 5         /* of the processor, of one file of at most 64 KB */
+#define WILD_KB 2000000L /* of memory, at most, of all before it, too */
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count);
 
@@ -186,6 +194,7 @@ static void try_texts(const uint8_t *bytes, size_t count)
     event_list *events = NULL;
     graph_file *graph = NULL;
     springs_text *springs = springs_text_new();
+    place_file *place = NULL;
     (void)snprintf(path, sizeof path, "%s/in.txt", folder);
     write_to(path, bytes, count);
     if (hair_read(path, &hair, &line, &error)) must_say(&error);
@@ -194,12 +203,41 @@ static void try_texts(const uint8_t *bytes, size_t count)
     if (events_read(path, &events, &error)) must_say(&error);
     if (graph_text_read(path, &graph, &line, &error)) must_say(&error);
     if (springs && springs_text_read(springs, path, &line, &error)) must_say(&error);
+    if (place_parse((const char *)bytes, count, &place, &line, &error)) must_say(&error);
     hair_free(hair);
     ragdoll_free(ragdoll);
     recipe_free(recipe);
     events_free(events);
     graph_text_free(graph);
     springs_text_free(springs);
+    place_free(place);
+}
+
+/* As `noh speak` reads it. */
+static void try_sound(const uint8_t *bytes, size_t count)
+{
+    sound whole, resampled;
+    char path[96];
+    (void)snprintf(path, sizeof path, "%s/in.txt", folder);
+    write_to(path, bytes, count);
+    tool_errors_quiet();
+    if (sound_read(path, &whole)) return;
+    if (!whole.count || sound_resample(&whole, 16000, &resampled)) abort();
+    for (size_t i = 0; i < resampled.count; i++) {
+        if (!(resampled.samples[i] > -2e6f && resampled.samples[i] < 2e6f)) abort();
+    }
+    sound_free(&resampled);
+    sound_free(&whole);
+    converted = 1;
+}
+
+static void try_packet(const uint8_t *bytes, size_t count)
+{
+    static vmc v;
+    memset(&v, 0, sizeof v);
+    vmc_take(&v, bytes, count);
+    if (v.messages + v.bad > count || v.value_count > VMC_VALUES_MAX) abort();
+    converted = v.messages > 0 && v.bad == 0;
 }
 
 static int begins(const uint8_t *bytes, size_t count, const char *with)
@@ -228,6 +266,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t count)
         try_as("c3d", data, count);
     } else if (begins(data, count, "RCL")) {
         try_as("rcl", data, count);
+    } else if (begins(data, count, "RIFF") && count > 8 && begins(data + 8, count - 8, "WAVE")) {
+        try_sound(data, count);
+    } else if (begins(data, count, "#bundle") || begins(data, count, "/VMC")) {
+        try_packet(data, count);
     } else if (begins(data, count, "\x89PNG") || begins(data, count, "\xff\xd8") || begins(data, count, "RIFF")) {
         try_picture(data, count);
     } else if (begins(data, count, "text")) {
@@ -246,39 +288,76 @@ static int try_input(const uint8_t *bytes, size_t count)
     return converted;
 }
 
-/* Every kind of text with grammatical edits, cases first to first + count - 1. What a case takes is limited: a file of a
- * few kilobytes is refused or converted in seconds. A case that fails leaves its file in the folder that is printed. */
+/* A valid text, or a file of bytes, into to[TEXT_ROOM]; *name: its format. Returns its length. */
+static size_t seed_of(size_t which, uint8_t *to, const char **name)
+{
+    if (which >= wild_seed_count) {
+        *name = wild_bytes_names[which - wild_seed_count];
+        return wild_bytes_seed((int)(which - wild_seed_count), to);
+    }
+    *name = wild_seeds[which].name;
+    memcpy(to, wild_seeds[which].text, strlen(wild_seeds[which].text));
+    return strlen(wild_seeds[which].text);
+}
+
+/* Every kind of text with grammatical edits, and of bytes with edits of fields, cases first to first + count - 1. What a
+ * case takes is limited: a file of a few kilobytes is refused or converted in seconds. The file as it is has to be read.
+ * A case that fails leaves its file in the folder that is printed. */
 static int run_wild(uint32_t first, uint32_t count)
 {
-    static char text[1u << 16];
-    for (size_t s = 0; s < wild_seed_count; s++) {
-        const size_t whole = strlen(wild_seeds[s].text);
+    static uint8_t bytes[1u << 16];
+    const size_t kinds = wild_seed_count + WILD_BYTES_COUNT;
+    for (size_t s = 0; s < kinds; s++) {
+        const char *name;
+        size_t whole = seed_of(s, bytes, &name);
         unsigned passed = 0;
         clock_t longest = 0;
         uint32_t slowest = 0;
+        const int is_read = s < wild_seed_count || try_input(bytes, whole);
+        struct rusage used;
         for (uint32_t i = first; i < first + count; i++) {
             const clock_t begin = clock();
             clock_t taken;
-            memcpy(text, wild_seeds[s].text, whole);
-            passed += (unsigned)try_input((const uint8_t *)text, wild_text(text, whole, sizeof text, i));
+            whole = seed_of(s, bytes, &name);
+            whole = s < wild_seed_count ? wild_text((char *)bytes, whole, sizeof bytes, i)
+                                        : wild_bytes(bytes, whole, WILD_BYTES_ROOM, i);
+            passed += (unsigned)try_input(bytes, whole);
             taken = clock() - begin;
             if (taken > longest) longest = taken, slowest = i;
         }
-        printf("%s %u - %s: %u wild files, %u converted; the slowest, %u, took %ld ms\n",
-               longest < WILD_S * CLOCKS_PER_SEC ? "ok" : "not ok", (unsigned)s + 1u, wild_seeds[s].name, count, passed,
-               slowest, (long)(longest * 1000 / CLOCKS_PER_SEC));
+        (void)getrusage(RUSAGE_SELF, &used);
+        printf("%s %u - %s: %u wild files, %u converted; the slowest, %u, took %ld ms; %ld MB until here%s\n",
+               is_read && longest < WILD_S * CLOCKS_PER_SEC && used.ru_maxrss < WILD_KB ? "ok" : "not ok",
+               (unsigned)s + 1u, name, count, passed, slowest, (long)(longest * 1000 / CLOCKS_PER_SEC),
+               used.ru_maxrss / 1024, is_read ? "" : "; the valid file was refused");
         fflush(stdout);
     }
-    printf("1..%u\n", (unsigned)wild_seed_count);
+    printf("1..%u\n", (unsigned)kinds);
+    return 0;
+}
+
+/* The valid files, for libFuzzer. */
+static int write_seeds(const char *to)
+{
+    static uint8_t bytes[1u << 16];
+    for (size_t s = 0; s < wild_seed_count + WILD_BYTES_COUNT; s++) {
+        char path[512];
+        const char *name;
+        const size_t count = seed_of(s, bytes, &name);
+        (void)snprintf(path, sizeof path, "%s/%s", to, name);
+        write_to(path, bytes, count);
+    }
     return 0;
 }
 
 /* fuzz_import FILE|FOLDER...          replay
- * fuzz_import --wild FIRST COUNT      grammatical edits of valid texts */
+ * fuzz_import --wild FIRST COUNT      edits of valid files
+ * fuzz_import --seeds FOLDER          write those */
 int main(int argument_count, char **arguments)
 {
     if (argument_count == 4 && !strcmp(arguments[1], "--wild"))
         return run_wild((uint32_t)atoi(arguments[2]), (uint32_t)atoi(arguments[3]));
+    if (argument_count == 3 && !strcmp(arguments[1], "--seeds")) return write_seeds(arguments[2]);
     return fuzz_replay(argument_count, arguments, try_input);
 }
 
@@ -290,7 +369,8 @@ size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t count, size_t room, unsigne
 size_t LLVMFuzzerCustomMutator(uint8_t *data, size_t count, size_t room, unsigned seed)
 {
     const int is_text = count && !memchr(data, 0, count);
-    return is_text && seed % 2u ? wild_text((char *)data, count, room, seed) : LLVMFuzzerMutate(data, count, room);
+    if (seed % 2u || !count) return LLVMFuzzerMutate(data, count, room);
+    return is_text ? wild_text((char *)data, count, room, seed) : wild_bytes(data, count, room, seed);
 }
 
 #endif

@@ -97,6 +97,10 @@ const wild_seed wild_seeds[] = {
       "textjoint head\nskull 0 1.62 0 0.08 0.11 0.10\nhairline 40 80 110\ncomb 0 -0.5 -0.85\nlength 0.35 0.3\nlift "
       "0.012\naround 20\nrows 4\npoints 14\nstrips 200\nsegments 24\nwidth 0.004 0.003\ncurl 0.01 2\nscatter "
       "0.006\nroot 0.1 0.1 0.1\ngloss 1\npull 0.05 0.01\ndamping 3\nsphere 0 1.5 0 0.1\nseed 1\n" },
+    { "place",
+      "textarea 10 8 -10 -8\nagents 0.3 0.5 1.5\nwall -3 -2 3 -2 0.4\npost 8 3 0.6\nstep -9 -7 -6 -5 0.3\nspawn -9 "
+      "-7 9 7\ngoal -7 0 2\ngoal 7 0\nneed rest 0.05\nneed fun 0.1\nobject bench rest 0.5 30\nslot -2 -3 180 15 "
+      "sit\nslot 0 -3 90\nobject \"the drum\" fun 0.5 20\nslot 8 5 -90 2.5 dance bow 1.5 - 0.25\n" },
 };
 const size_t wild_seed_count = sizeof wild_seeds / sizeof *wild_seeds;
 
