@@ -33,8 +33,8 @@ $(SEEDED)/tests/%: $(BUILD)/tests/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(S
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
-# Which lines of the library a test program runs.
-$(SEEDED)/map/%.lines: $(SEEDED)/tests/% $(SEEDED)/lines/libnoh.so
+# Which lines of the library a test program runs: once for its source and the library, whatever else is linked again.
+$(SEEDED)/map/%.lines: $(BUILD)/tests/%.o $(SEEDED)/lines/libnoh.so | $(SEEDED)/tests/%
 	@mkdir -p $(@D)
 	$(call say,LINES,$@)
 	$(Q)NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" sh tests/mutants_seed.sh --lines $*

@@ -1749,6 +1749,22 @@ static void materials_and_textures(void **state)
     model_free(m);
 }
 
+/* What an image would take is counted before it is decoded: a few bytes cannot take minutes, not even by many textures. */
+static void large_images_are_counted_first(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest,
+           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}},"
+           "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}}],\"textures\":[{\"source\":0},{\"source\":0}],"
+           "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
+           "iVBORw0KGgoAAAANSUhEUgAAIAAAACAAAQAAAAAAAAAAAAAAAElFTkQAAAAA"); /* 8192 x 8192, without a pixel */
+    model *m = load(s);
+    assert_true(has_warning(m, "the image data is damaged (texture 0 image 0)"));
+    assert_true(has_warning(m, "cannot honestly hold (texture 1 image 0)"));
+    model_free(m);
+}
+
 /* A shade of the base colour's image needs no texture of its own; a matcap takes its factor. */
 static void mtoon_has_textures(void **state)
 {
@@ -2771,7 +2787,8 @@ int main(void)
         cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
-        cmocka_unit_test(mtoon_has_textures),
+        cmocka_unit_test(large_images_are_counted_first),
+    cmocka_unit_test(mtoon_has_textures),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

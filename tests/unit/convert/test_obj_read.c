@@ -205,6 +205,19 @@ static void materials_are_submeshes(void **state)
     model_free(m);
 }
 
+/* What an image would take is counted before it is decoded: a few bytes cannot take gigabytes by many names. */
+static void large_images_are_counted_first(void **state)
+{
+    static const char png[] = "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\x20\0\0\0\x20\0\1\0\0\0\0\0\0\0\0\0\0\0\0IEND\0\0\0";
+    (void)state;
+    test_write_file(test_path("face.png"), png, sizeof png);
+    save("face.mtl", "newmtl a\nmap_Kd face.png\nnewmtl b\nmap_Kd ./face.png\n");
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    assert_true(has_warning(m, "the texture face.png was left out: the image data is damaged"));
+    assert_true(has_warning(m, "the texture ./face.png was left out: the image has 8192 x 8192 pixels; the limit is"));
+    model_free(m);
+}
+
 static void missing_materials_are_told(void **state)
 {
     (void)state;
@@ -407,6 +420,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(broken_polygons_are_cut_somehow),
     cmocka_unit_test(corners_become_vertices),
     cmocka_unit_test(materials_are_submeshes),
+    cmocka_unit_test(large_images_are_counted_first),
     cmocka_unit_test(missing_materials_are_told),
     cmocka_unit_test(colours_of_positions),
     cmocka_unit_test(units_and_sizes),

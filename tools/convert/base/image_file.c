@@ -7,8 +7,6 @@
 
 #include "convert/base/input_file.h"
 
-#define PIXELS_MAX ((uint64_t)64u << 20)
-
 /* stb_image's other decoders are kept from files of unknown origin. */
 static int is_png_or_jpeg(const char *bytes, size_t count)
 {
@@ -16,24 +14,30 @@ static int is_png_or_jpeg(const char *bytes, size_t count)
     return count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0);
 }
 
-static int check_size(const unsigned char *bytes, size_t count, model_error *error)
+static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels_left, model_error *error)
 {
     int width = 0, height = 0, channels = 0;
+    uint64_t pixels;
     if (count > 0x7fffffffu || !stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) || width < 1 ||
         height < 1) {
         return model_fail(error, "", "the image data is damaged");
     }
-    if ((uint64_t)width * (uint64_t)height > PIXELS_MAX) {
-        return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu", width, height,
-                          (unsigned long long)PIXELS_MAX);
+    pixels = (uint64_t)width * (uint64_t)height;
+    *pixels_left += 64u * (uint64_t)count;
+    if (pixels > IMAGE_PIXELS || pixels > *pixels_left) {
+        return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu%s", width, height,
+                          (unsigned long long)(pixels > IMAGE_PIXELS ? IMAGE_PIXELS : *pixels_left),
+                          pixels > IMAGE_PIXELS ? "" : ", after those before it, for files of this size");
     }
+    *pixels_left -= pixels;
     return 0;
 }
 
-static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
+static int decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
+                  model_error *error)
 {
     int width = 0, height = 0, channels = 0;
-    if (check_size(bytes, count, error)) return 1;
+    if (check_size(bytes, count, pixels_left, error)) return 1;
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
     image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
     if (!image->rgba) {
@@ -45,7 +49,7 @@ static int decode(const unsigned char *bytes, size_t count, image_file *image, m
     return 0;
 }
 
-int image_read(const char *path, image_file *image, model_error *error)
+int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error)
 {
     size_t count = 0;
     char *bytes = input_read(path, &count, error);
@@ -54,16 +58,23 @@ int image_read(const char *path, image_file *image, model_error *error)
     if (!bytes) {
         return 1;
     }
-    failed = is_png_or_jpeg(bytes, count) ? decode((const unsigned char *)bytes, count, image, error)
+    failed = is_png_or_jpeg(bytes, count) ? decode((const unsigned char *)bytes, count, pixels_left, image, error)
                                           : model_fail(error, "", "it is neither PNG nor JPEG");
     free(bytes);
     return failed;
 }
 
+int image_read(const char *path, image_file *image, model_error *error)
+{
+    uint64_t pixels_left = IMAGE_PIXELS;
+    return image_read_next(path, &pixels_left, image, error);
+}
+
 static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2], uint16_t **grey, model_error *error)
 {
     int width = 0, height = 0, channels = 0;
-    if (check_size(bytes, count, error)) return 1;
+    uint64_t pixels_left = IMAGE_PIXELS;
+    if (check_size(bytes, count, &pixels_left, error)) return 1;
     *grey = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
     if (!*grey) return model_fail(error, "", "the image data is damaged, or there is not enough memory");
     size[0] = (uint32_t)width;

@@ -20,6 +20,11 @@ typedef struct image_file {
 /* Read a file of at most 64 Mi pixels. Returns 0, or 1 and *error; then image->rgba is NULL. */
 int image_read(const char *path, image_file *image, model_error *error);
 
+/* The same for the files of one model, so that a few small ones do not take any memory and time. *pixels_left, at first
+ * IMAGE_PIXELS, grows by 64 for each byte of a file, and shrinks by its pixels before they are decoded. */
+#define IMAGE_PIXELS ((uint64_t)64u << 20)
+int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error);
+
 /* The brightness of each pixel of a .png file, 0 to 65535 (of 8 bits: 257 times the byte). 0: *grey [height][width],
  * the top row first, to be freed; or 1 and *error, and *grey is NULL. */
 int image_read_grey(const char *path, uint32_t *width, uint32_t *height, uint16_t **grey, model_error *error);

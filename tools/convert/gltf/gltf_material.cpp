@@ -43,7 +43,8 @@ static bool is_png_or_jpeg(const bytes &data)
     return data.size() > 8 && (memcmp(data.data(), png, 4) == 0 || memcmp(data.data(), jpeg, 3) == 0);
 }
 
-static void check_image_size(const bytes &data, const std::string &where)
+/* Charges the pixels, so that damaged images and images that many textures have are counted before they take time. */
+static void check_image_size(file &f, const bytes &data, const std::string &where)
 {
     int width = 0, height = 0, channels = 0;
     if (!stbi_info_from_memory(data.data(), static_cast<int>(data.size()), &width, &height, &channels) || width < 1 ||
@@ -52,6 +53,7 @@ static void check_image_size(const bytes &data, const std::string &where)
     if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > pixels_max)
         fail(where, text("the image has %d x %d pixels; the limit is %llu", width, height,
                          static_cast<unsigned long long>(pixels_max)));
+    charge(f, static_cast<uint64_t>(width) * static_cast<uint64_t>(height), 4, where);
 }
 
 static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture &out, const std::string &where)
@@ -60,6 +62,7 @@ static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture 
     bool wide = decoded.bits == 16;
     if (decoded.component != 4 || decoded.image.size() != channels * (wide ? 2 : 1))
         fail(where, "the image could not be decoded to RGBA");
+    f.output_bytes -= channels; /* charged before it was decoded */
     out.rgba = allocate<uint8_t>(f, channels, where);
     out.width = static_cast<uint32_t>(decoded.width);
     out.height = static_cast<uint32_t>(decoded.height);
@@ -91,7 +94,7 @@ static void decode_image(file &f, const image &source, model_texture &out, const
         return;
     }
     if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG, JPEG nor WebP");
-    check_image_size(data, where);
+    check_image_size(f, data, where);
     tinygltf::Image decoded;
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()),

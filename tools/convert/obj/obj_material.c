@@ -15,7 +15,8 @@ typedef struct library {
     const char *folder; /* with its slash, or "" */
     text_scan scan;
     model *m;
-    model_material *at; /* the one that the lines are about; NULL: none that is used */
+    model_material *at;   /* the one that the lines are about; NULL: none that is used */
+    uint64_t pixels_left; /* of textures (image_read_next) */
 } library;
 
 /* ---- materials by name ---- */
@@ -58,7 +59,7 @@ static model_material *material_of(model *m, text_word name)
 /* ---- textures ---- */
 
 /* Exporters may write a path from another machine: then the file of that name in the model's folder is used. */
-static int read_image(const char *folder, const char *name, image_file *image, model_error *error)
+static int read_image(library *l, const char *name, image_file *image, model_error *error)
 {
     char path[4096];
     const char *last = name;
@@ -66,11 +67,11 @@ static int read_image(const char *folder, const char *name, image_file *image, m
     for (const char *c = name; *c; c++) {
         if (*c == '/' || *c == '\\') last = c + 1;
     }
-    (void)snprintf(path, sizeof path, "%s%s", folder, name);
-    if (!absolute && image_read(path, image, error) == 0) return 0;
+    (void)snprintf(path, sizeof path, "%s%s", l->folder, name);
+    if (!absolute && image_read_next(path, &l->pixels_left, image, error) == 0) return 0;
     if (last == name && !absolute) return 1;
-    (void)snprintf(path, sizeof path, "%s%s", folder, last);
-    return image_read(path, image, error);
+    (void)snprintf(path, sizeof path, "%s%s", l->folder, last);
+    return image_read_next(path, &l->pixels_left, image, error);
 }
 
 static uint32_t find_texture(const model *m, const char *name)
@@ -86,7 +87,7 @@ static int add_texture(library *l, const char *name)
     image_file image;
     model_error error = { "", "" };
     model_texture *t = &l->m->textures[l->m->texture_count];
-    if (read_image(l->folder, name, &image, &error)) {
+    if (read_image(l, name, &image, &error)) {
         return model_warn(l->m, "material '%.60s': the texture %.80s was left out: %s", l->at->name, name, error.what);
     }
     t->name = model_string(name);
@@ -191,7 +192,7 @@ int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
 {
     char folder[4096], path[8192];
     const char *slash = strrchr(obj_path, '/');
-    library l = { .folder = folder, .m = m };
+    library l = { .folder = folder, .m = m, .pixels_left = IMAGE_PIXELS };
     model_error error = { "", "" };
     size_t bytes = 0;
     char *text;
