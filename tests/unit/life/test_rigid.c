@@ -426,6 +426,23 @@ static void ends_of_rods_bounce(void **state)
     }
 }
 
+/* What gravity brings within four steps does not bounce, so that a point comes to rest; what comes faster does. */
+static void points_at_rest_do_not_bounce(void **state)
+{
+    static const float steps_a_second[3] = { 60.0f, 600.0f, 4800.0f };
+    const noh_world world = ground_world(0.0f, 0.5f);
+    (void)state;
+    for (int s = 0; s < 3; s++) {
+        const float h = 1.0f / steps_a_second[s], brought = 9.82f * h;
+        for (int n = 1; n < 10; n++) {
+            const float speed = brought * ((float)n + 0.5f);
+            float p[3] = { 0.0f, 0.0499f, 0.0f }, v[3] = { 0.0f, -speed, 0.0f };
+            assert_int_equal(noh_point_touch(&world, 0.05f, p, v, h), 1);
+            assert_true(fabsf(v[1] - (n < 4 ? 0.0f : 0.5f * speed)) <= 1e-6f * speed);
+        }
+    }
+}
+
 static void points_leave_what_they_begin_in(void **state)
 {
     const noh_obb box = { { 100000.0f, 0.0f, 0.0f }, { 1.0f, 1.0f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
@@ -444,7 +461,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(anything_comes_to_rest),          cmocka_unit_test(it_leaves_what_it_begins_in),
     cmocka_unit_test(pieces_and_places_do_not_matter), cmocka_unit_test(bad_bodies_are_refused),
     cmocka_unit_test(points_bounce_and_slide),         cmocka_unit_test(ends_of_rods_bounce),
-    cmocka_unit_test(points_leave_what_they_begin_in),
+    cmocka_unit_test(points_at_rest_do_not_bounce),    cmocka_unit_test(points_leave_what_they_begin_in),
 };
 
 TEST_MAIN(tests, NULL, NULL)

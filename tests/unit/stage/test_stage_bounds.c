@@ -214,6 +214,26 @@ static void everything_shown_lies_in_the_sphere(void **state)
     figure_close(&f);
 }
 
+/* Before the first frame the sphere has room for any pose: all bones in a line, and not more than twice that. */
+static void who_is_not_posed_yet_has_a_sphere_of_its_length(void **state)
+{
+    static const float here[3] = { 0.0f, 0.0f, 0.0f };
+    figure f;
+    (void)state;
+    figure_open(&f, NULL, 1.0f, 0, 0.0f);
+    cast_make(&f.c, NULL);
+    for (int i = 0; i < 3; i++) {
+        const float scale = 0.5f * (float)(1 << i);
+        const noh_actor actor = come(&f.c, 0, here, 0.0f, scale);
+        float sphere[4];
+        assert_int_equal(noh_actor_sphere(f.c.stage, actor, sphere, NULL), NOH_OK);
+        print_message("scale %g: %g\n", (double)scale, (double)sphere[3]);
+        assert_true(sphere[3] > 1.5f * scale && sphere[3] < 2.0f * 1.7320508f * 1.7f * scale);
+        assert_int_equal(noh_stage_despawn(f.c.stage, actor, NULL), NOH_OK);
+    }
+    figure_close(&f);
+}
+
 /* ---- a view of a vertex sees it; a ray at it hits ---- */
 
 typedef struct some {
@@ -714,6 +734,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_shown_lies_in_the_sphere),
+        cmocka_unit_test(who_is_not_posed_yet_has_a_sphere_of_its_length),
         cmocka_unit_test(a_view_of_any_vertex_sees_it_in_the_first_frame),
         cmocka_unit_test(a_ray_at_any_vertex_hits),
         cmocka_unit_test(a_weight_of_a_clip_takes_nobody_out_of_view),
