@@ -7,6 +7,8 @@
 #
 #   golden.sh            all of them (`make golden`)
 #   golden.sh short      what `make check` runs: gcc without and with optimisation; the long play with it only
+#   golden.sh day        24 hours (NOH_DAY_S seconds) with each of three seeds on four processors: gcc's here, aarch64, armv7 and
+#                        wasm; nothing else
 #   golden.sh cross      the libraries that tests/cross.sh made for other processors, compared with gcc's here; the same
 #   golden.sh update     write golden.txt again, after a change that is meant to change results (NOH_LONG=1: the rows of
 #                        24 hours, too; without it they are left out)
@@ -48,7 +50,10 @@ compile() {
 
 # PROGRAM RUNNER: a long time of random commands. Prints nothing where only the first build plays it.
 play_long() {
-    case $how,$first in short,?* | cross,?*) return 0 ;; esac
+    case $how,$first in
+    short,?* | cross,?*) return 0 ;;
+    day,*) ${2:-} "$1" "${NOH_DAY_S:-86400}" 3 "$build/demo/puppet.noh"; return ;;
+    esac
     ${2:-} "$1" 300 1 "$build/demo/puppet.noh" && { [ -z "${NOH_LONG:-}" ] || ${2:-} "$1" 86400 3 "$build/demo/puppet.noh"; }
 }
 
@@ -108,6 +113,7 @@ archive() {
 
 how=${1:-}
 first=
+[ "$how" != day ] || packs=
 case $how in
 short) made=$(ls "$build/amalgam/noh.o" 2>/dev/null) ;; # -O2, too
 *) made=$(archive .) ;;
@@ -117,8 +123,8 @@ if [ "${1:-}" = update ]; then
     [ $failures = 0 ] && cp "$work/gcc-O2.all" "$table" && echo "# $table is written"
     exit $failures
 fi
-against_table
-if [ "${1:-}" != cross ]; then
+[ "$how" = day ] || against_table
+if [ "$how" != cross ] && [ "$how" != day ]; then
     variant gcc-O0 'gcc -O0'
 fi
 if [ -z "${1:-}" ]; then

@@ -55,10 +55,14 @@ deps-long:
 check-long: deps-long
 	@NOH_LONG=1 DEPS="$(DEPS)" FUZZ_SECONDS=300 AFL_SECONDS=300 .ci/run
 
-# The same bits from every compiler, optimisation and processor that is here, and as in tests/golden/golden.txt.
+# The same bits from every compiler, optimisation and processor that is here, and as in tests/golden/golden.txt;
+# golden-day: of 24 hours with three seeds, on four processors (NOH_DAY_S: other seconds).
 golden: deps-cross
 	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh
 	@NOH_BUILD="$(BUILD)" sh tests/golden.sh
+golden-day: deps-cross
+	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/demo/puppet.noh
+	@NOH_BUILD="$(BUILD)" sh tests/golden.sh day
 
 golden-update:
 	@$(MAKE) --no-print-directory -j$(JOBS) amalgam $(BUILD)/mask_levels.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/puppet.noh
