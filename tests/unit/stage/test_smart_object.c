@@ -354,6 +354,13 @@ static void an_object_knows_what_is_done_with_it(void **state)
     assert_int_equal(use.phase, NOH_SMART_GOING);
     noh_smart_leave(smart, 1);
     assert_int_equal(noh_smart_holder(smart, 0), NOH_NONE);
+    noh_smart_enter(smart, 1, NULL);
+    noh_smart_step(smart, 100u);
+    noh_smart_use_of(smart, 1, &use);
+    assert_int_equal(use.ticks, 100);
+    noh_smart_leave(smart, 1); /* nothing is left of it */
+    noh_smart_use_of(smart, 1, &use);
+    assert_true(use.phase == NOH_SMART_AWAY && use.ticks == 0 && use.object == NOH_NONE && use.slot == NOH_NONE);
     free(memory);
 }
 

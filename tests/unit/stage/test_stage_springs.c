@@ -226,6 +226,37 @@ static void expect(const noh_springs_desc *desc, noh_result result)
     assert_true(!springs == (result != NOH_OK));
 }
 
+/* One fault at a time, of any collider. */
+static void bad_colliders_are_refused(void **state)
+{
+    static const float bad[3] = { NAN, INFINITY, -INFINITY };
+    sleeves s;
+    cast c;
+    (void)state;
+    memset(&c, 0, sizeof c);
+    cast_map(&c, PUPPETS, "demo/puppet_levels.noh");
+    sleeves_describe(&s, &c.packs[0], SLEEVES);
+    for (uint32_t i = 0; i < SLEEVES; i++) {
+        const noh_spring_capsule good = s.capsules[i];
+        float *const numbers[7] = { s.capsules[i].from,   s.capsules[i].from + 1, s.capsules[i].from + 2,
+                                    s.capsules[i].to,     s.capsules[i].to + 1,   s.capsules[i].to + 2,
+                                    &s.capsules[i].radius };
+        for (uint32_t n = 0; n < 21; n++) {
+            *numbers[n / 3u] = bad[n % 3u];
+            expect(&s.desc, NOH_ERR_ARG);
+            s.capsules[i] = good;
+        }
+        s.capsules[i].radius = -0.01f;
+        expect(&s.desc, NOH_ERR_ARG);
+        s.capsules[i] = good;
+        s.capsules[i].joint = s.desc.skeleton.joint_count;
+        expect(&s.desc, NOH_ERR_ARG);
+        s.capsules[i] = good;
+        expect(&s.desc, NOH_OK);
+    }
+    noh_file_unmap(&c.files[0]);
+}
+
 static void bad_descs_are_refused(void **state)
 {
     sleeves s;
@@ -509,6 +540,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(sleeves_stay_out_of_colliders),
         cmocka_unit_test(swinging_states_are_put_back),
         cmocka_unit_test(bad_descs_are_refused),
+        cmocka_unit_test(bad_colliders_are_refused),
         cmocka_unit_test(a_kind_swings_by_itself),
         cmocka_unit_test(far_away_they_fade_without_a_pop),
         cmocka_unit_test(time_stops_and_sizes_differ),
