@@ -65,18 +65,20 @@ float noh_shadow_tap(vec3 at, float x, float y)
 #endif
 
 #if NOH_SHADOW_TAPS == 4
-/* A tent four texels wide, in two dimensions the product of two, from four hardware-filtered taps: each reads the
+/* noh_lighting[2].w: the map's side, pixels.
+ * A tent four texels wide, in two dimensions the product of two, from four hardware-filtered taps: each reads the
  * two texels between which it lies with the weights of the tent (I. Castano: Shadow mapping summary, part 1, 2013). */
 float noh_shadow_tent(vec3 at)
 {
     float texel = noh_lighting[13].w / 0.75;
-    vec2 p = at.xy / texel, base = floor(p + 0.5), f = p + 0.5 - base;
-    vec2 low = 3.0 - 2.0 * f, high = 1.0 + 2.0 * f;
-    vec2 from = base - 0.5 + (2.0 - f) / low - 1.0, to = base - 0.5 + f / high + 1.0;
-    float sum = low.x * low.y * texture(noh_shadow_map, vec3(from * texel, at.z));
-    sum += high.x * low.y * texture(noh_shadow_map, vec3(to.x * texel, from.y * texel, at.z));
-    sum += low.x * high.y * texture(noh_shadow_map, vec3(from.x * texel, to.y * texel, at.z));
-    return (sum + high.x * high.y * texture(noh_shadow_map, vec3(to * texel, at.z))) / 4.0;
+    vec2 p = at.xy * noh_lighting[2].w + 0.5, base = floor(p), f = p - base;
+    vec2 from = (base - 1.0 + 0.5 / (3.0 - 2.0 * f)) * texel, to = (base + 1.0 - 0.5 / (1.0 + 2.0 * f)) * texel;
+    float low = texture(noh_shadow_map, vec3(from, at.z)), low_right = texture(noh_shadow_map, vec3(to.x, from.y, at.z));
+    float high = texture(noh_shadow_map, vec3(from.x, to.y, at.z)), high_right = texture(noh_shadow_map, vec3(to, at.z));
+    vec2 share = 0.25 + 0.5 * f; /* of the farther two texels */
+    low += share.x * (low_right - low); /* a Mali-G52 takes two products for a mix, one for this */
+    high += share.x * (high_right - high);
+    return low + share.y * (high - low);
 }
 #endif
 
@@ -89,7 +91,7 @@ float noh_key_shadow(vec3 position, vec3 normal)
     }
     float facing = clamp(dot(normal, noh_key), 0.0, 1.0), slope = sqrt(1.0 - facing * facing);
     vec4 p = vec4(position + normal * (noh_lighting[13].z * (0.7 + 2.0 * slope)), 1.0);
-    vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz * 0.5 + 0.5;
+    vec3 at = (noh_lighting[14] * p.x + noh_lighting[15] * p.y + noh_lighting[16] * p.z + noh_lighting[17]).xyz;
 #if NOH_SHADOW_TAPS == 0
     float sum = noh_shadow_soft(at);
 #else
@@ -97,30 +99,29 @@ float noh_key_shadow(vec3 position, vec3 normal)
 #if NOH_SHADOW_TAPS == 1
     float sum = noh_shadow_tap(at, 0.0, 0.0);
 #elif NOH_SHADOW_TAPS == 2
-    float sum = noh_shadow_tap(at, -0.9, -0.4) + noh_shadow_tap(at, 0.9, 0.4);
+    float sum = 0.5 * (noh_shadow_tap(at, -0.9, -0.4) + noh_shadow_tap(at, 0.9, 0.4));
 #elif NOH_SHADOW_TAPS == 3
     float sum = noh_shadow_tap(at, 0.4, -1.0) + noh_shadow_tap(at, 0.67, 0.85) + noh_shadow_tap(at, -1.07, 0.15);
+    sum /= 3.0;
 #else
     float sum = noh_shadow_tent(at);
 #endif
 #endif
     vec2 edge = noh_lighting[13].w * 2.0 + abs(at.xy - 0.5);
     bool inside = edge.x < 0.5 && edge.y < 0.5; /* outside the map there is no shadow */
-    return inside ? sum / float(max(NOH_SHADOW_TAPS, 1)) : 1.0;
+    return inside ? sum : 1.0;
 }
 
 /* Khronos PBR Neutral Tone Mapper, 2024: colours up to 0.8 less the reflection of a dielectric stay, peaks above are
  * compressed, and lose saturation the brighter they were. */
 vec3 noh_neutral(vec3 c)
 {
-    float least = min(c.r, min(c.g, c.b)), offset = least < 0.08 ? least - 6.25 * least * least : 0.04;
-    c -= offset;
-    float peak = max(c.r, max(c.g, c.b));
-    if (peak < 0.76) {
-        return c;
-    }
+    float least = min(min(c.r, min(c.g, c.b)), 0.08);
+    c -= least - 6.25 * least * least;
+    float peak = max(max(c.r, max(c.g, c.b)), 0.76); /* at 0.76 nothing is compressed */
     float compressed = 1.0 - 0.0576 / (peak - 0.52);
-    return mix(vec3(compressed), c * (compressed / peak), 1.0 / (0.15 * (peak - compressed) + 1.0));
+    float less = compressed / (peak * (0.15 * (peak - compressed) + 1.0));
+    return c * less + (compressed - peak * less);
 }
 
 /* A linear colour after exposure and tone map. */
@@ -130,8 +131,8 @@ vec3 noh_expose(vec3 c)
     if (noh_lighting[13].y > 1.5) {
         return noh_neutral(c);
     }
-    vec3 filmic = c * 0.6; /* K. Narkowicz: ACES filmic tone mapping curve, 2015 */
-    filmic = (filmic * (2.51 * filmic + 0.03)) / (filmic * (2.43 * filmic + 0.59) + 0.14);
+    /* K. Narkowicz: ACES filmic tone mapping curve, 2015, of 0.6 c, less its limit */
+    vec3 filmic = 1.0329218 - (0.3974101 * c + 0.1653053) / (c * (c + 0.4046639) + 0.1600366);
     return noh_lighting[13].y > 0.5 ? filmic : c;
 }
 #endif

@@ -40,9 +40,8 @@ vec3 noh_bounced(vec3 albedo, float open)
 #ifdef NOH_PHONE
     return mix(vec3(0.24, 0.08, 0.07), vec3(1.0), open);
 #else
-    albedo = min(albedo, vec3(0.6));
-    vec3 a = 2.0404 * albedo - 0.3324, b = 0.6417 - 4.7951 * albedo, c = 2.7552 * albedo + 0.6903;
-    return max(max(vec3(open), ((open * a + b) * open + c) * open), vec3(0.24, 0.08, 0.07));
+    float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open, black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
+    return max(max(vec3(open), min(albedo, vec3(0.6)) * white + black), vec3(0.24, 0.08, 0.07));
 #endif
 }
 #endif
@@ -73,29 +72,33 @@ vec3 noh_hair_light(noh_surface s, vec3 even, vec3 key)
 
 #ifdef NOH_LIT
 /* The isotropic GGX distribution times Smith's visibility, correlated in height (Heitz: Understanding the
- * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv. In the phone tier the
- * visibility is the fit of Hammon (PBR diffuse lighting for GGX+Smith microsurfaces, GDC 2017). */
+ * masking-shadowing function in microfacet-based BRDFs, JCGT 3, 2014), divided by 4 nl nv, times pi. In the phone tier,
+ * and for skin, the visibility is the fit of Hammon (PBR diffuse lighting for GGX+Smith microsurfaces, GDC 2017). */
 float noh_gloss(float nh, float nl, float nv, float roughness)
 {
-    float a = roughness * roughness, a2 = a * a;
-    float d = nh * nh * (a2 - 1.0) + 1.0;
-#ifdef NOH_PHONE
+    float a = roughness * roughness, a2 = a * a, nh2 = nh * nh, d = nh2 * a2 + (1.0 - nh2);
+#if defined(NOH_PHONE) || defined(NOH_SKIN)
     float v = mix(2.0 * nl * nv, nl + nv, a);
 #else
     float v = nl * sqrt(nv * nv * (1.0 - a2) + a2) + nv * sqrt(nl * nl * (1.0 - a2) + a2);
 #endif
-    return a2 * (0.5 / 3.14159265) / (d * d * max(v, 1e-5));
+    return 0.5 * a2 / (d * d * max(v, 1e-5));
 }
 
 /* The share of uniform ambient light that a GGX surface reflects. x: at a reflectance of 1 at normal incidence; y: what
  * is added at 0. Polynomials fitted to our own integral, for roughness from 0.08: errors at most 0.03, 0.011 on average
- * (tested by test_gl_light). In the phone tier at most 0.1, 0.02 on average. */
+ * (tested by test_gl_light). In the phone tier at most 0.1, 0.02 on average. For skin, which
+ * reflects 0.03 of x, at most 0.07 in x and 0.05 in y, 0.04 and 0.01 on average. */
 vec2 noh_albedo_of(float roughness, float nv)
 {
 #ifdef NOH_PHONE
     float r = roughness, away = 1.0 - nv, away2 = away * away, grazing = away2 * away2;
     vec2 all_edge = vec2(grazing * r * (1.4894 * r - 0.7315) + r * (0.1437 - 0.8209 * r) + 1.0066,
                          grazing * (r * (1.2122 * r - 2.2171) + 1.0498));
+    return clamp(all_edge, 0.0, 1.0);
+#elif defined(NOH_SKIN)
+    float r = roughness, y = 1.0 - nv, y2 = y * y;
+    vec2 all_edge = vec2(r * r * r * (0.5985 * y2 - 0.6819) + 0.945, y2 * y2 * ((1.2504 * r - 2.3135) * r + 1.0701));
     return clamp(all_edge, 0.0, 1.0);
 #else
     vec4 r = vec4(1.0, roughness, roughness * roughness, roughness * roughness * roughness);
@@ -123,12 +126,13 @@ vec3 noh_key_matte(noh_surface s, float shadow)
 {
 #ifdef NOH_SKIN
     float facing = dot(s.geometric, noh_key);
-    float part = mix(1.0, shadow, smoothstep(-0.1, 0.1, facing));
+    float part = 1.0 + smoothstep(-0.1, 0.1, facing) * (shadow - 1.0);
 #ifdef NOH_PHONE
     float root = sqrt(part);
     vec3 through = vec3(0.2 * part + 0.8 * root, part, part * (0.8 + 0.2 * part));
 #else
-    vec3 through = pow(vec3(part), vec3(0.6, 1.0, 1.2));
+    float red = pow(part, 0.6);
+    vec3 through = vec3(red, part, red * red);
 #endif
     return noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric)) * through;
 #else
@@ -204,10 +208,10 @@ vec3 noh_matte_light(noh_surface s, float shadow)
 #endif
 }
 
-/* The highlight of the key light, divided by its colour, without reflectance. normal: for reflections */
-float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
+/* The highlight of the key light, divided by its colour, without reflectance. nh, nl, nv: cosines between the normal
+ * for reflections, the half vector, the light and the eye */
+float noh_key_glossed(float nh, float nl, float nv, float roughness)
 {
-    float nl = max(dot(normal, noh_key), 0.0), nh = clamp(dot(normal, h), 0.0, 1.0);
 #ifdef NOH_SKIN
     vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
     return nl * mix(noh_gloss(nh, nl, nv, lobes.y), noh_gloss(nh, nl, nv, lobes.x), noh_narrow_lobe);
@@ -249,19 +253,20 @@ vec3 noh_light(noh_surface s)
     mirror = noh_eye_light(s);
 #endif
     float roughness = clamp(s.roughness, 0.08, 1.0);
-    float nv = clamp(abs(dot(mirror, s.view)), 1e-3, 1.0); /* outlines of thin parts, past grazing, are no mirrors */
-    vec3 f0 = mix(s.f0, s.albedo, s.metallic), h = normalize(noh_key + s.view);
+    float across = dot(mirror, s.view);
+    float nv = clamp(abs(across), 1e-3, 1.0); /* outlines of thin parts, past grazing, are no mirrors */
+    vec3 f0 = mix(s.f0, s.albedo, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
     vec3 gloss = f0 * (part.x - part.y) + f90 * part.y; /* uniform light, reflected once */
-#ifdef NOH_PHONE
-    float again = 1.0;
+#if defined(NOH_PHONE) || defined(NOH_SKIN)
+    float again = 1.0; /* for skin at most 1.02 */
 #else
     vec3 again = 1.0 + f0 * (1.0 / max(part.x, 0.1) - 1.0); /* and after further bounces between the facets */
 #endif
     float shadow = noh_key_shadow(s.position, s.geometric); /* here, because later it spills a register of a Mali G52 */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
-    vec3 mirrored = noh_mirror(reflect(-s.view, mirror), roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
+    vec3 mirrored = noh_mirror(2.0 * across * mirror - s.view, roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
     vec3 color = matte * noh_matte_light(s, shadow);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     float open = noh_open();
@@ -273,8 +278,11 @@ vec3 noh_light(noh_surface s)
 #endif
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
-        vec3 fresnel = noh_fresnel(f0, f90, dot(h, s.view));
-        color += fresnel * again * noh_key_color * (3.14159265 * noh_key_gloss * shadow * noh_key_glossed(mirror, h, nv, roughness));
+        /* The half vector h is noh_key + s.view, divided by its length: its cosines need no vector. */
+        float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(max(2.0 * lv, 1e-6)), nl = dot(mirror, noh_key);
+        float nh = clamp((nl + across) * shorter, 0.0, 1.0);
+        vec3 fresnel = noh_fresnel(f0, f90, lv * shorter);
+        color += fresnel * again * noh_key_color * (noh_key_gloss * shadow * noh_key_glossed(nh, max(nl, 0.0), nv, roughness));
     }
     return noh_expose(color + s.emissive);
 }

@@ -150,8 +150,16 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
 #endif
     s.alpha = base.a;
     s.roughness = noh_material.x;
+#ifdef NOH_SKIN
+    s.metallic = 0.0; /* whatever the material says: skin is no metal */
+#else
     s.metallic = noh_material.y;
+#endif
+#ifdef NOH_SKIN
+    s.f0 = vec3(noh_f0.g); /* white */
+#else
     s.f0 = noh_f0;
+#endif
     s.f90 = noh_f90;
     s.occlusion = 1.0;
     s.emissive = vec3(0.0);
@@ -181,7 +189,9 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     vec4 map = texture(noh_surface_texture, uv);
     s.occlusion = 1.0 + noh_maps.y * (map.r - 1.0);
     s.roughness *= map.g;
+#ifndef NOH_SKIN
     s.metallic *= map.b;
+#endif
     s.f0 *= map.a;
     s.f90 *= map.a;
 #endif

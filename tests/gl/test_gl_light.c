@@ -100,6 +100,42 @@ static void the_fitted_integral_is_near(void **state)
     assert_true(worst < 0.03);
 }
 
+/* Skin, whose reflectance is low, has shorter polynomials: x to the right is nv, y upwards the roughness. */
+static void the_integral_of_skin_is_near(void **state)
+{
+    static const char own[] = "layout(location = 0) out vec4 o_color;\n"
+                              "void main()\n"
+                              "{\n"
+                              "    vec2 at = gl_FragCoord.xy / 65.0;\n"
+                              "    o_color = vec4(noh_encode(vec3(noh_albedo_of(at.y, at.x), 0.0)), 1.0);\n"
+                              "}\n";
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
+    model_material skin = scene_material(values);
+    double worst[2] = { 0.0, 0.0 };
+    noh_lighting lighting;
+    uint8_t *rgba;
+    scene s;
+    (void)state;
+    skin.surface = NOH_SURFACE_SKIN;
+    scene_open(&s, &skin, &scene_black, 0, own);
+    key_alone(front, &lighting);
+    rgba = scene_draw(&s, SQUARE, scene_identity, &lighting);
+    for (uint32_t row = 0; row < SIDE; row += 4) {
+        for (uint32_t x = 1; x < SIDE; x += 4) {
+            const double roughness = 0.5 - 0.5 * pixel_at(row), nv = 0.5 + 0.5 * pixel_at(x);
+            const uint8_t *pixel = rgba + 4 * (row * SIDE + x);
+            double right[2];
+            if (roughness < 0.08) continue;
+            integrate(roughness, nv, &right[0], &right[1]);
+            for (int i = 0; i < 2; i++) worst[i] = fmax(worst[i], fabs(decoded(pixel[i]) - right[i]));
+        }
+    }
+    print_message("skin's fit is off by %.4f and %.4f at most\n", worst[0], worst[1]);
+    assert_true(worst[0] < 0.075 && worst[1] < 0.055);
+    free(rgba);
+    scene_close(&s);
+}
+
 /* ---- a plane and a wall ---- */
 
 /* A hemisphere of light above: what faces up reflects all of it, a wall half, a ceiling none. */
@@ -291,6 +327,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_furnace_is_white_at_every_pixel),
         cmocka_unit_test(the_fitted_integral_is_near),
+        cmocka_unit_test(the_integral_of_skin_is_near),
         cmocka_unit_test(a_plane_and_a_wall_are_the_analytic_ones),
         cmocka_unit_test(a_key_light_falls_by_the_cosine),
         cmocka_unit_test(a_square_casts_its_shadow),

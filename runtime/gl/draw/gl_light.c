@@ -61,7 +61,9 @@ void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float r
     rows[13][1] = (float)l->tonemap;
     rows[13][2] = shadow_px ? l->shadow_texel : 0.0f;
     rows[13][3] = shadow_px ? 0.75f / (float)shadow_px : 0.0f;
-    memcpy(rows[14], l->shadow, sizeof l->shadow);
+    rows[2][3] = (float)shadow_px;
+    /* From the world to the map's coordinates and depth, 0 to 1. */
+    for (uint32_t i = 0; i < 16u; i++) rows[14u + i / 4u][i % 4u] = 0.5f * l->shadow[i] + (i > 11u ? 0.5f : 0.0f);
 }
 
 void noh_lighting_pack_rest(const noh_lighting *lighting, float rows[NOH_SH_COUNT_MAX][4])
