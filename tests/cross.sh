@@ -1,8 +1,8 @@
 #!/bin/sh
 # cross.sh: builds the library for other processors and systems without a warning, and runs the tests there that
 # tests/cross_tests.sh lists: aarch64 (NEON) and armv7 (scalar) under qemu-user, wasm (scalar) under node, Windows under
-# Wine. x86 of 64 and of 32 bits is built alone. The library is -O2 everywhere, -O3 for x86 and -Os for i386, too
-# (NOH_LONG: more levels; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
+# Wine. The library is -O2 everywhere, and -O3 for x86, too (NOH_LONG: more levels, and i386, whose amalgam
+# check_install.sh builds; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
 # missing is skipped and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -131,12 +131,13 @@ target() {
 
 mkdir -p "$build"
 echo '== x86'
-# make check's is -O2; its amalgam for 32 bits is -O0.
+# make check's is -O2.
 # shellcheck disable=SC2046 # words
 at_levels x86_64 gcc ar $([ -z "${NOH_LONG:-}" ] || echo -O0 -Os) -O3
-if echo '#include <stdint.h>' | gcc -m32 -E - >/dev/null 2>&1; then
-    # shellcheck disable=SC2046 # words
-    at_levels i386 'gcc -m32 -msse2 -mfpmath=sse' ar -Os $([ -z "${NOH_LONG:-}" ] || echo -O0 -O2 -O3)
+if [ -z "${NOH_LONG:-}" ]; then
+    :
+elif echo '#include <stdint.h>' | gcc -m32 -E - >/dev/null 2>&1; then
+    at_levels i386 'gcc -m32 -msse2 -mfpmath=sse' ar -O0 -Os -O2 -O3
 else
     echo '    skipped: no headers of 32 bits here (gcc-multilib)'
     skipped=$((skipped + 1))

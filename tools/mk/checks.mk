@@ -140,8 +140,8 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
-# The tests of bits with the library as plain C (tests/check_plain_c.sh, which makes that one).
-$(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/plain/libnoh.a
+# The tests of bits with rooms of the library as plain C (tests/check_plain_c.sh, which makes that one).
+$(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/plain/libnoh.a $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
@@ -157,6 +157,8 @@ CROSS_O     := $(CROSS_C:%.c=$(BUILD)/%.o) $(KERNELS) $(TEST_KERNELS)
 ifneq ($(CROSS),)
 INCLUDES    += $(addprefix -I,$(wildcard tests/cross/$(CROSS))) -Itests/cross -idirafter /usr/include
 $(BUILD)/tests/%.o $(BUILD)/tools/%.o: INCLUDES += $(addprefix -include ,$(filter %.h,$(CROSS_OWN)))
+# Half of the time of -O2: the tests there are of the library.
+$(BUILD)/tools/convert/%.o: OPT := $(if $(NOH_LONG),$(OPT),-O1 -g1)
 endif
 
 cross-tests: $(if $(CROSS),$(patsubst tests/%.c,$(BUILD)/cross/%,$(shell sh tests/cross_tests.sh $(CROSS) $(CROSS_C))))
