@@ -206,11 +206,13 @@ typedef struct noh_kind_desc {
                            * set is drawn whole. Without GPU, and for meshes with `finer`, none. Default (0) none */
     /* 1: its index is a slot: noh_stage_set_kind takes the kind out while the stage runs, and puts others in. The plan
      * reserves room for the largest of this kind and `others`, keeps it whole under bounds, and the slot shares no clips
-     * with other kinds. Only of a stage without `gpu`. 2: the same, and the slot is empty after init: this kind only
-     * sizes it. Default (0): the kind stays */
+     * with other kinds. 2: the same, and the slot is empty after init: this kind only sizes it. Default (0): the kind
+     * stays. With `gpu` such a stage has one morph path, never streams, and no finished vertices; bounds leave halves as
+     * they are; and a slot's kinds have no `finer` */
     int changes;
     const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes and others are ignored.
-                                         * Read by plans, not kept. Default (NULL) none */
+                                         * Read by plans, with `gpu` also by init, and their packs by
+                                         * noh_stage_shader_create; not kept. Default (NULL) none */
     uint32_t other_count;
 } noh_kind_desc;
 
@@ -233,8 +235,8 @@ typedef struct noh_stage_desc {
     uint32_t height_px;   /* view height that slots are planned for; default (0) 1,080 */
     uint32_t job_count;   /* jobs that may run at once (noh_stage_job); default (0) 1 */
     uint32_t event_count; /* most callback keys of one step in noh_stage_events; default (0) 64 plus one per actor */
-    uint32_t load_bytes;  /* most bytes uploaded per frame by noh_stage_load_level; below 256 counts as 256; default (0)
-                           * 65,536 */
+    uint32_t load_bytes;  /* most bytes uploaded per frame after noh_stage_load_level and noh_stage_set_kind; below 256
+                           * counts as 256; default (0) 65,536 */
     uint64_t update_budget_ns; /* bound on posing per frame, estimated from counts, not measured; default (0) none */
     uint32_t slot_moves;       /* most slots reassigned per frame; each is accumulated again. Waiting actors are drawn
                                 * coarser, or without targets until they have a slot. 1 counts as 2; default (0) no
@@ -293,6 +295,7 @@ typedef struct noh_kind_room {
     uint64_t view_bytes;                                 /* of its clips' views, for each job */
     uint64_t scratch_bytes, module_scratch_bytes;        /* for each job, shared by all kinds */
     uint64_t pick_bytes, inertia_bytes;                  /* shared by all kinds */
+    uint64_t mesh_count, drawn_bytes, gpu_bytes;         /* with `gpu`: meshes; what draws them, on the CPU, on the GPU */
 } noh_kind_room;
 
 /* The plan of a kind. */
@@ -317,7 +320,7 @@ typedef struct noh_concession {
 /* Plain data, 10 KiB, that can be printed, compared and stored with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
-    uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts */
+    uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots, at most */
     uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
     uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer` */
     uint32_t halves;      /* 1: 16-bit accumulators */
@@ -387,7 +390,8 @@ typedef struct noh_stage_stats {
     uint32_t moved, waiting;               /* slots reassigned; actors waiting for one (slot_moves) */
     uint32_t resting;                      /* actors without a slot yet: drawn without targets */
     uint32_t left_out;                     /* actors in view but not drawn: visible_max is too small */
-    uint32_t loading;                      /* kinds whose finer levels are loading (noh_stage_load_level) */
+    uint32_t loading;                      /* kinds that are loading, or finer levels of them (noh_stage_load_level) */
+    uint32_t coming;                       /* bit k: kind k is not drawn yet (noh_stage_set_kind) */
     uint32_t load_bytes;                   /* bytes of them uploaded */
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
@@ -819,12 +823,16 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
 /* Put a kind into an empty slot (noh_kind_desc.changes), or empty the slot. Everything else stays where it is, and what
  * runs goes on with the same bits; the kind then equals one that was there from init. The state holds which kinds are
  * in the slots, and is restored only where they are the same. Ids of its former actors stay gone.
+ * With `gpu` its GL objects are made now and filled in pieces by the frames that follow. Its actors move and are posed
+ * meanwhile, but nothing is drawn of them until all is there (noh_stage_stats.coming); an error of GL sends a piece
+ * again. Programs are those that the kinds of the plan need: none is compiled.
  * kind    the index of the slot
  * desc    as in noh_stage_desc.kinds; any kind that fits, planned for or not. NULL: empty the slot. No actor may be of
  *         its kind, and no hair, walkers or other objects that were made for it may be used any more
  * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
  *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
- *         where: what there is); as noh_stage_init. The slot is then as it was */
+ *         where: what there is), or the driver is out of memory; UNSUPPORTED it needs a program that no kind of the
+ *         plan needs, or has `finer`; GL the driver refused an object; as noh_stage_init. The slot is then as it was */
 noh_result noh_stage_set_kind(noh_stage *stage, uint32_t kind, const noh_kind_desc *desc, noh_error *error);
 
 /* ---- state ---- */

@@ -37,6 +37,17 @@ void noh_gl_draw_before(noh_gl_renderer *renderer, const noh_gl_before *before);
  * errors  UNSUPPORTED the texture has ASTC blocks and `astc` is 0 */
 noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error);
 
+/* A texture without pixels; errors as noh_gl_picture_create. */
+noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                       noh_gl_texture *out, noh_error *error);
+
+/* Upload the next piece of its pixels.
+ * ranges   *at: initially 0, then as left by the previous call; *bytes: most bytes to send, at least 64 for progress;
+ *          the bytes sent are subtracted
+ * returns  1 once everything is uploaded */
+int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, const noh_gl_texture *picture, uint32_t *at,
+                        uint32_t *bytes);
+
 #ifdef __cplusplus
 }
 #endif

@@ -13,6 +13,7 @@
 
 #include "gl/device/gl_state_internal.h"
 #include "gl/device/gl_debug_internal.h"
+#include "core/pack/pack_internal.h"
 #include "gl/draw/gl_draw_internal.h"
 
 #define STRIP_BLOCKS 16u
@@ -69,43 +70,118 @@ static GLint wrap_of(uint32_t wrap)
     return wrap == NOH_WRAP_CLAMP ? GL_CLAMP_TO_EDGE : wrap == NOH_WRAP_MIRROR ? GL_MIRRORED_REPEAT : GL_REPEAT;
 }
 
-/* A strip of up to 16 blocks of a level, as texels. The last column and row may extend beyond the level's edges. */
-static void send_strip(const noh_gl_api *api, uint32_t format, GLint index, const noh_texture_level *level, uint32_t x,
-                       uint32_t y)
+/* ---- pieces ---- */
+
+static uint32_t unit_side(uint32_t format)
 {
-    uint32_t texels[4u * STRIP_BLOCKS * 4u];
-    const uint32_t columns = (level->width + 3u) / 4u, left = columns - x;
-    const uint32_t count = left < STRIP_BLOCKS ? left : STRIP_BLOCKS;
-    const uint32_t width = level->width - 4u * x, height = level->height - 4u * y;
-    const uint32_t block = noh_texture_block_bytes(format);
-    const int halves = format == NOH_TEXTURE_EAC_RG;
-    api->decode(format, level->pixels + ((size_t)y * columns + x) * block, count, (uint8_t *)texels);
-    api->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)(4u * count));
-    api->TexSubImage2D(GL_TEXTURE_2D, index, (GLint)(4u * x), (GLint)(4u * y),
-                       (GLsizei)(width < 4u * count ? width : 4u * count), (GLsizei)(height < 4u ? height : 4u),
-                       halves ? GL_RG : GL_RGBA, halves ? GL_HALF_FLOAT : GL_UNSIGNED_BYTE, texels);
+    return format == NOH_TEXTURE_RGBA8 ? 1u : noh_texture_block_side(format);
 }
 
-static void send_decoded(const noh_gl_api *api, uint32_t format, GLint index, const noh_texture_level *level)
+static uint32_t unit_bytes(uint32_t format)
 {
-    for (uint32_t y = 0; 4u * y < level->height; y++) {
-        for (uint32_t x = 0; 4u * x < level->width; x += STRIP_BLOCKS) send_strip(api, format, index, level, x, y);
+    return format == NOH_TEXTURE_RGBA8 ? 4u : noh_texture_block_bytes(format);
+}
+
+/* A piece of a level in units: texels, or blocks. */
+typedef struct piece {
+    uint32_t x, y, columns, rows;
+    uint32_t side, across; /* texels of a unit's side; units of a row of the level */
+    uint32_t bytes;        /* of a unit in the pack */
+} piece;
+
+/* Blocks of one row as texels, 16 at a time. The last column and row may extend beyond the level's edges. */
+static void send_strips(const noh_gl_api *api, uint32_t format, GLint index, const noh_texture_level *level, piece of,
+                        uint32_t y)
+{
+    uint32_t texels[4u * STRIP_BLOCKS * 4u];
+    const int halves = format == NOH_TEXTURE_EAC_RG;
+    for (uint32_t x = of.x; x < of.x + of.columns; x += STRIP_BLOCKS) {
+        const uint32_t left = of.x + of.columns - x, count = left < STRIP_BLOCKS ? left : STRIP_BLOCKS;
+        const uint32_t width = level->width - 4u * x, height = level->height - 4u * y;
+        api->decode(format, level->pixels + ((size_t)y * of.across + x) * of.bytes, count, (uint8_t *)texels);
+        api->PixelStorei(GL_UNPACK_ROW_LENGTH, (GLint)(4u * count));
+        api->TexSubImage2D(GL_TEXTURE_2D, index, (GLint)(4u * x), (GLint)(4u * y),
+                           (GLsizei)(width < 4u * count ? width : 4u * count), (GLsizei)(height < 4u ? height : 4u),
+                           halves ? GL_RG : GL_RGBA, halves ? GL_HALF_FLOAT : GL_UNSIGNED_BYTE, texels);
     }
     api->PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-static void send_level(const noh_gl_api *api, const noh_texture *texture, uint32_t index)
+static GLsizei texels_of(uint32_t first, uint32_t count, uint32_t side, uint32_t end)
 {
-    const noh_texture_level level = noh_texture_level_at(texture, index);
-    const GLsizei width = (GLsizei)level.width, height = (GLsizei)level.height;
-    if (texture->header->format == NOH_TEXTURE_RGBA8) {
-        api->TexSubImage2D(GL_TEXTURE_2D, (GLint)index, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, level.pixels);
+    const uint32_t left = end - first * side;
+    return (GLsizei)(left < count * side ? left : count * side);
+}
+
+static void send_piece(const noh_gl_api *api, const noh_texture *texture, uint32_t index,
+                       const noh_texture_level *level, piece of)
+{
+    const uint32_t format = texture->header->format;
+    const GLint x = (GLint)(of.x * of.side), y = (GLint)(of.y * of.side);
+    const GLsizei width = texels_of(of.x, of.columns, of.side, level->width);
+    const GLsizei height = texels_of(of.y, of.rows, of.side, level->height);
+    const uint8_t *pixels = level->pixels + ((size_t)of.y * of.across + of.x) * of.bytes;
+    if (format == NOH_TEXTURE_RGBA8) {
+        api->TexSubImage2D(GL_TEXTURE_2D, (GLint)index, x, y, width, height, GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     } else if (is_taken(texture->header, api->etc2)) {
-        api->CompressedTexSubImage2D(GL_TEXTURE_2D, (GLint)index, 0, 0, width, height, blocks_format(texture->header),
-                                     (GLsizei)level.bytes, level.pixels);
+        api->CompressedTexSubImage2D(GL_TEXTURE_2D, (GLint)index, x, y, width, height, blocks_format(texture->header),
+                                     (GLsizei)(of.columns * of.rows * of.bytes), pixels);
     } else {
-        send_decoded(api, texture->header->format, (GLint)index, &level);
+        for (uint32_t row = of.y; row < of.y + of.rows; row++) send_strips(api, format, (GLint)index, level, of, row);
     }
+}
+
+/* The next piece from unit `from` of a level on, within `bytes`: whole rows, or a part of one. Returns the bytes that it
+ * sends; 0: not even a unit fits. */
+static uint32_t next_piece(const noh_texture *texture, int etc2, const noh_texture_level *level, uint32_t from,
+                           uint32_t bytes, piece *of)
+{
+    const noh_texture_header *h = texture->header;
+    const uint32_t side = unit_side(h->format);
+    const uint32_t down = (level->height + side - 1u) / side;
+    const uint32_t sent = h->format && !is_taken(h, etc2) ? 64u : unit_bytes(h->format);
+    of->side = side;
+    of->across = (level->width + side - 1u) / side;
+    of->bytes = unit_bytes(h->format);
+    of->x = from % of->across;
+    of->y = from / of->across;
+    of->columns = of->across - of->x;
+    of->rows = 1;
+    if (of->columns > bytes / sent) of->columns = bytes / sent;
+    if (of->columns == of->across) {
+        const uint32_t fit = bytes / sent / of->across;
+        of->rows = down - of->y < fit ? down - of->y : fit;
+    }
+    return of->columns * of->rows * sent;
+}
+
+int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, const noh_gl_texture *picture, uint32_t *at,
+                        uint32_t *bytes)
+{
+    uint32_t first = 0; /* units of the levels before */
+    noh_gl_pixels kept;
+    int done = 1;
+    api->ActiveTexture(GL_TEXTURE0);
+    api->BindTexture(GL_TEXTURE_2D, picture->name);
+    noh_gl_unpack_begin(api, &kept);
+    for (uint32_t i = 0; i < texture->header->level_count && done; i++) {
+        const noh_texture_level level = noh_texture_level_at(texture, i);
+        const uint32_t side = unit_side(texture->header->format);
+        const uint32_t units = (level.width + side - 1u) / side * ((level.height + side - 1u) / side);
+        while (*at < first + units) {
+            piece of;
+            const uint32_t sent = next_piece(texture, api->etc2, &level, *at - first, *bytes, &of);
+            if (!sent) break;
+            send_piece(api, texture, i, &level, of);
+            *at += of.columns * of.rows;
+            *bytes -= sent;
+        }
+        first += units;
+        done = *at >= first;
+    }
+    noh_gl_unpack_end(api, &kept);
+    api->BindTexture(GL_TEXTURE_2D, 0);
+    return done;
 }
 
 noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error)
@@ -116,11 +192,10 @@ noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error 
                     0);
 }
 
-noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                 noh_gl_texture *out, noh_error *error)
+noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                       noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture picture;
-    noh_gl_pixels kept;
     noh_result result;
     NOH_ASSERT(api && ledger && texture && texture->header && out);
     result = noh_gl_picture_check(texture, api->astc, error);
@@ -136,18 +211,27 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     }
     api->BindTexture(GL_TEXTURE_2D, picture.name);
     noh_gl_label(api, GL_TEXTURE, picture.name, "texture", texture->name);
-    noh_gl_unpack_begin(api, &kept);
-    for (uint32_t i = 0; i < desc.levels; i++) send_level(api, texture, i);
-    noh_gl_unpack_end(api, &kept);
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, wrap_of(texture->header->wrap_s));
     api->TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, wrap_of(texture->header->wrap_t));
     api->BindTexture(GL_TEXTURE_2D, 0);
+    picture.premultiplied = (texture->header->format == NOH_TEXTURE_ETC2_RGBA1) & 1u;
+    *out = picture;
+    return NOH_OK;
+}
+
+noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                 noh_gl_texture *out, noh_error *error)
+{
+    noh_gl_texture picture;
+    uint32_t at = 0, bytes = UINT32_MAX;
+    noh_result result = noh_gl_picture_create_empty(api, ledger, texture, &picture, error);
+    if (result) return result;
+    while (!noh_gl_picture_fill(api, texture, &picture, &at, &bytes)) bytes = UINT32_MAX;
     result = noh_gl_error_check(api, "the driver refused the pixels of a texture", picture.bytes, error);
     if (result) {
         noh_gl_texture_delete(api, ledger, &picture);
         return result;
     }
-    picture.premultiplied = (texture->header->format == NOH_TEXTURE_ETC2_RGBA1) & 1u;
     *out = picture;
     return NOH_OK;
 }

@@ -53,6 +53,11 @@ static void label_objects(const noh_gl_morph *m)
 static noh_result make_gl_objects(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     const int streams = m->plan.path == NOH_MORPH_STREAMS, direct = m->plan.path == NOH_MORPH_DIRECT;
+    m->program = m->programs ? m->programs[m->plan.occlusion] : 0;
+    if (m->programs && !m->program && noh_gl_morph_has_program(m->plan.path)) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED,
+                        "the targets of a kind need a program that no kind of the plan needs", 0, 0);
+    }
     noh_result result = streams               ? noh_gl_morph_init_streams(m, error)
                         : m->plan.vertex_ring ? noh_gl_morph_init_vertices(m, error)
                         : direct              ? noh_gl_morph_init_direct(m, error)
@@ -134,8 +139,9 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
     return m;
 }
 
-noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
-                             noh_gl_morph **morph, noh_error *error)
+noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_device *device,
+                                   const noh_gl_morph_desc *desc, const GLuint *programs, noh_gl_morph **morph,
+                                   noh_error *error)
 {
     noh_gl_morph_plan plan;
     noh_gl_morph *m;
@@ -152,6 +158,7 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
         return result;
     }
     m = build(arena, device, desc, plan);
+    m->programs = programs;
     result = make_gl_objects(m, device->log, device->log_bytes, error);
     if (result) {
         noh_gl_morph_delete(m);
@@ -161,12 +168,38 @@ noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *de
     return NOH_OK;
 }
 
+noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
+                             noh_gl_morph **morph, noh_error *error)
+{
+    return noh_gl_morph_init_empty(memory, bytes, device, desc, NULL, morph, error);
+}
+
+noh_result noh_gl_morph_compile(const noh_gl_device *device, noh_morph_path path, const noh_gl_morph_desc *desc,
+                                int occlusion, GLuint *program, noh_error *error)
+{
+    noh_gl_morph m;
+    noh_result result;
+    memset(&m, 0, sizeof m);
+    m.gl = device->api;
+    m.ledger = device->ledger;
+    m.plan.path = path;
+    m.plan.accumulate = desc->accumulate == NOH_ACCUMULATE_F16 ? NOH_ACCUMULATE_F16 : NOH_ACCUMULATE_F32;
+    m.plan.layer_count = desc->without_tangents ? 2u : 3u;
+    m.plan.occlusion = (uint32_t)occlusion;
+    noh_gl_morph_set_formats(device->caps, &m.plan);
+    result = path == NOH_MORPH_GATHER ? noh_gl_morph_compile_gather(&m, device->log, device->log_bytes, error)
+                                      : noh_gl_morph_compile_blend(&m, device->log, device->log_bytes, error);
+    *program = m.program;
+    return result;
+}
+
 static void delete_objects(noh_gl_morph *m, const noh_gl_api *gl)
 {
     for (int i = 0; i < 3; i++) {
         noh_gl_framebuffer_delete(gl, m->ledger, &m->framebuffers[i]);
     }
-    noh_gl_program_delete(gl, m->ledger, &m->program);
+    if (!m->programs) noh_gl_program_delete(gl, m->ledger, &m->program);
+    m->program = 0;
     if (m->vertex_array) {
         gl->DeleteVertexArrays(1, &m->vertex_array);
         m->vertex_array = 0;
@@ -287,7 +320,7 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
 {
     noh_mesh finest;
     int done = 1;
-    NOH_ASSERT(morph && morph->table_count > morph->mesh_count && from && at && bytes);
+    NOH_ASSERT(morph && (morph->programs || morph->table_count > morph->mesh_count) && from && at && bytes);
     finest = noh_mesh_at_lod(from, morph->meshes[morph->meshes[0].owner].mesh.header->level);
     if (morph->plan.path != NOH_MORPH_CPU) {
         done = noh_gl_morph_fill_tiles(morph, &morph->meshes[morph->meshes[0].owner], &finest, at, bytes);

@@ -45,7 +45,7 @@
         }                                                                               \
     }
 
-static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+noh_result noh_gl_morph_compile_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "u_deltas", "u_records" };
     static const char *const defines[5][2][2] = { DEFINES_OF(""), DEFINES_OF("#define MORPH_MRT\n"),
@@ -113,7 +113,7 @@ noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes,
 {
     noh_result result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->plan.weight_count, &m->record_table,
                                             error);
-    if (!result) result = create_program(m, log, log_bytes, error);
+    if (!result && !m->program) result = noh_gl_morph_compile_blend(m, log, log_bytes, error);
     if (!result) result = create_framebuffers(m, error);
     if (!result) result = noh_gl_morph_stream(m, "a_block", 3, m->batch.bytes, 0, error);
     if (!result && !m->plan.points) result = create_indices(m, error);

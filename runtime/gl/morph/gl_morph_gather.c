@@ -16,7 +16,7 @@
 
 /* ---- making ---- */
 
-static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+noh_result noh_gl_morph_compile_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
     static const char *const samplers[] = { "noh_deltas", "noh_lists", "noh_starts" };
     static const char *const defines[2][2][2] = {
@@ -40,7 +40,7 @@ static noh_result create_program(noh_gl_morph *m, char *log, size_t log_bytes, n
 
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
 {
-    noh_result result = create_program(m, log, log_bytes, error);
+    noh_result result = m->program ? NOH_OK : noh_gl_morph_compile_gather(m, log, log_bytes, error);
     if (!result) result = noh_gl_morph_framebuffer(m, NOH_LAYERS_ALL, &m->framebuffers[0], error);
     if (!result) {
         result = noh_gl_table_create(m->gl, m->ledger, GL_RGBA32UI, m->batch.entries, &m->record_table, error);

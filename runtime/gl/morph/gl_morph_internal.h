@@ -47,7 +47,26 @@ uint32_t noh_gl_morph_blocks(const noh_mesh *mesh);
 /* Rows of such blocks, summed over rectangles; each is a quad on the blended paths. */
 uint32_t noh_gl_morph_strips(const noh_mesh *mesh);
 
-/* With desc.coarse: upload the next piece of the delta data of the finest of `meshes`, which is not used yet.
+/* As noh_gl_morph_init, without delta data, for meshes that are levels of one: noh_gl_morph_fill uploads it, and only
+ * then an update may be made.
+ * programs  [2] without and with changes of occlusion (noh_gl_morph_compile); borrowed, also by restores: their names
+ *           may change. NULL: as noh_gl_morph_init
+ * errors    UNSUPPORTED the program that it needs is 0; as noh_gl_morph_init */
+noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_device *device,
+                                   const noh_gl_morph_desc *desc, const GLuint *programs, noh_gl_morph **morph,
+                                   noh_error *error);
+
+/* Whether a path sums by a program of its own. */
+int noh_gl_morph_has_program(noh_morph_path path);
+/* Whether a desc's sums have a layer of occlusion, and so the second of the programs above. */
+int noh_gl_morph_has_occlusion(const noh_gl_morph_desc *desc);
+/* Compile a program for accumulators that share it. Delete it by noh_gl_program_delete.
+ * errors  as noh_gl_morph_init */
+noh_result noh_gl_morph_compile(const noh_gl_device *device, noh_morph_path path, const noh_gl_morph_desc *desc,
+                                int occlusion, GLuint *program, noh_error *error);
+
+/* With desc.coarse: upload the next piece of the delta data of the finest of `meshes`, which is not used yet; after
+ * noh_gl_morph_init_empty, of all.
  * ranges   from: the whole mesh, at the finest level of `meshes` or a finer one; *at: initially 0, then as left by the
  *          previous call; *bytes: most bytes to send, at least 256 for progress; the bytes sent are subtracted
  * state    texture 0 of unit 0, the active one
@@ -132,11 +151,12 @@ struct noh_gl_morph {
     noh_gl_table record_table;     /* records of active targets, or lists */
     noh_gl_table starts;           /* where lists begin, by block */
     noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */
+    const GLuint *programs;        /* [2] borrowed, by plan.occlusion; NULL: `program` is its own */
     GLuint vertex_array, program;
     GLuint framebuffers[3];
     GLuint a_stream; /* attribute of the stream */
     int flushes;     /* flush between draws of points (gl_morph_blend.c) */
-    GLint u_layer;
+    GLint u_layer, u_tables, u_atlas;
 };
 
 /* Place tiles and tables, and count. `meshes` NULL only counts. */
@@ -157,6 +177,9 @@ noh_gl_blocks noh_gl_blocks_of(const noh_rect *rect);
 
 noh_gl_batch noh_gl_morph_batch(const noh_gl_morph_desc *desc, const noh_gl_morph_plan *plan);
 
+/* Fill plan->layer_format, wide and points, by its path, accumulate and occlusion. */
+void noh_gl_morph_set_formats(const noh_gl_caps *caps, noh_gl_morph_plan *plan);
+
 /* Number of blocks of an instance's tile in the atlas. */
 uint32_t noh_gl_morph_positions(const noh_mesh_header *h);
 
@@ -174,7 +197,7 @@ uint32_t noh_gl_morph_pitch(const noh_mesh_header *header);
 /* Whether the tables of a mesh of the desc, or of desc.coarse after them, are uploaded at creation. */
 static inline int noh_gl_morph_is_there(const noh_gl_morph *m, uint32_t mesh)
 {
-    return m->meshes[mesh].owner == mesh && (m->table_count == m->mesh_count || mesh == m->mesh_count);
+    return !m->programs && m->meshes[mesh].owner == mesh && (m->table_count == m->mesh_count || mesh == m->mesh_count);
 }
 
 /* An instance's mesh at its accumulated LOD level. */
@@ -200,7 +223,7 @@ void noh_gl_morph_put_record(uint32_t record[4], const noh_target *target, float
 
 uint32_t noh_gl_morph_target_bits(const noh_target *target);
 
-/* Set u_tables and u_atlas of the path's program. */
+/* Find u_tables and u_atlas of the path's program, and set them. */
 void noh_gl_morph_constants(noh_gl_morph *m);
 
 /* Make the buffer of the draws and its vertex array, with one attribute of `components` uint32_t; `instanced` 1: per
@@ -242,6 +265,8 @@ uint32_t noh_gl_morph_count_lists(const noh_mesh *mesh, const float *weights, no
 void noh_gl_morph_put_lists(noh_gl_morph *m, uint32_t instance, noh_gl_lists *l, noh_gl_morph_stats *stats);
 
 /* The paths: make their GL objects, and do one update. */
+noh_result noh_gl_morph_compile_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
+noh_result noh_gl_morph_compile_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 noh_result noh_gl_morph_init_blend(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 noh_result noh_gl_morph_init_gather(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error);
 void noh_gl_morph_update_blend(noh_gl_morph *m, noh_gl_morph_stats *stats);

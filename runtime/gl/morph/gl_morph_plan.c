@@ -208,6 +208,19 @@ static GLenum layer_format(const noh_gl_morph_plan *plan, const noh_gl_caps *cap
     return caps->render_f32 ? GL_RGBA32F : GL_RGBA32UI;
 }
 
+void noh_gl_morph_set_formats(const noh_gl_caps *caps, noh_gl_morph_plan *plan)
+{
+    const int software = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE) != NULL;
+    plan->layer_format = layer_format(plan, caps);
+    plan->wide = plan->occlusion || software;
+    plan->points = plan->path != NOH_MORPH_LAYERED && blends(plan->path) && caps->block_points && software;
+}
+
+int noh_gl_morph_has_program(noh_morph_path path)
+{
+    return blends(path) || path == NOH_MORPH_GATHER;
+}
+
 /* ---- sizes ---- */
 
 static noh_result check_desc(const noh_gl_morph_desc *desc, noh_error *error)
@@ -323,6 +336,11 @@ static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
     uint32_t has = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) has |= desc->meshes[i].transfer != NULL;
     return has;
+}
+
+int noh_gl_morph_has_occlusion(const noh_gl_morph_desc *desc)
+{
+    return has_occlusion(desc) != 0;
 }
 
 /* Place an owner of tiles after the previous owners. `to` may be NULL. */
@@ -660,10 +678,7 @@ noh_result noh_gl_morph_plan_make(const noh_gl_morph_desc *desc, const noh_gl_ca
     }
     p.occlusion = has_occlusion(desc);
     p.vertex_ring = vertex_ring(desc, caps, &p);
-    p.layer_format = layer_format(&p, caps);
-    p.wide = p.occlusion || noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
-    p.points = p.path != NOH_MORPH_LAYERED && blends(p.path) && caps->block_points &&
-               noh_gl_quirk_find(caps->renderer, NOH_QUIRK_SOFTWARE);
+    noh_gl_morph_set_formats(caps, &p);
     if (p.path == NOH_MORPH_DIRECT && !lists_fit(desc)) {
         return noh_fail(error, NOH_ERR_LIMIT,
                         "the lists of the path direct do not fit a texture: use fewer instances, or another path",

@@ -60,13 +60,19 @@ uint32_t noh_gl_morph_target_bits(const noh_target *t)
     return t->position_bits | (uint32_t)t->normal_bits << 8 | (uint32_t)t->tangent_bits << 16;
 }
 
+static void set_constants(const noh_gl_morph *m)
+{
+    m->gl->Uniform3i(m->u_tables, (GLint)m->record_table.width_log2, (GLint)m->starts.width_log2,
+                     (GLint)m->tiles_across_log2);
+    m->gl->Uniform2f(m->u_atlas, 2.0f / (float)m->plan.atlas_width, 2.0f / (float)m->plan.atlas_height);
+}
+
 void noh_gl_morph_constants(noh_gl_morph *m)
 {
+    m->u_tables = m->gl->GetUniformLocation(m->program, "u_tables");
+    m->u_atlas = m->gl->GetUniformLocation(m->program, "u_atlas");
     m->gl->UseProgram(m->program);
-    m->gl->Uniform3i(m->gl->GetUniformLocation(m->program, "u_tables"), (GLint)m->record_table.width_log2,
-                     (GLint)m->starts.width_log2, (GLint)m->tiles_across_log2);
-    m->gl->Uniform2f(m->gl->GetUniformLocation(m->program, "u_atlas"), 2.0f / (float)m->plan.atlas_width,
-                     2.0f / (float)m->plan.atlas_height);
+    set_constants(m);
     m->gl->UseProgram(0);
 }
 
@@ -139,6 +145,7 @@ void noh_gl_morph_begin(const noh_gl_morph *m, noh_gl_offscreen *kept)
     noh_gl_offscreen_begin(m->gl, kept);
     m->gl->Viewport(0, 0, (GLsizei)m->plan.atlas_width, (GLsizei)m->plan.atlas_height);
     m->gl->UseProgram(m->program);
+    if (m->programs) set_constants(m); /* another one may have used it since */
     m->gl->BindVertexArray(m->vertex_array);
 }
 

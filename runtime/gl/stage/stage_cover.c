@@ -47,7 +47,7 @@ static uint64_t bytes_of(const noh_stage_desc *desc, const noh_stage_plan *plan,
     const noh_mesh drawn = noh_gl_site_mesh(desc, plan, site), mesh = whole_mesh(desc, site);
     if (!desc->kinds[site.kind].cover_count || desc->kinds[site.kind].finer) return 0;
     for (uint32_t g = 0; g < desc->kind_count; g++) {
-        if (cover_of(desc, g, site.kind, &mesh))
+        if (desc->kinds[g].changes || cover_of(desc, g, site.kind, &mesh)) /* in a slot any garment may come */
             return index_count(drawn.header, drawn.header->level_count) * drawn.header->index_bytes;
     }
     return 0;
@@ -68,9 +68,10 @@ noh_result noh_gl_covers_create(const noh_stage_desc *desc, const noh_stage_plan
     noh_result result = NOH_OK;
     device->api->BindVertexArray(0);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        for (uint32_t m = 0; desc->kinds[i].cover_count && m < plan->kinds[i].mesh_count; m++) {
+        for (uint32_t m = 0; kinds[i].covers && desc->kinds[i].cover_count && m < plan->kinds[i].mesh_count; m++) {
             const uint64_t bytes = bytes_of(desc, plan, (noh_gl_site){ i, m });
             for (uint32_t c = 0; bytes && c < desc->kinds[i].cover_count && result == NOH_OK; c++) {
+                if (kinds[i].covers[c].indices[m].name) continue; /* another kind came into a slot */
                 result = noh_gl_buffer_create(device->api, device->ledger, GL_ELEMENT_ARRAY_BUFFER, bytes, NULL,
                                               GL_DYNAMIC_DRAW, &kinds[i].covers[c].indices[m], error);
             }
@@ -80,11 +81,15 @@ noh_result noh_gl_covers_create(const noh_stage_desc *desc, const noh_stage_plan
 }
 
 void noh_gl_covers_delete(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
-                          noh_gl_kind *kinds)
+                          noh_gl_kind *kinds, uint32_t kind)
 {
     for (uint32_t i = 0; i < desc->kind_count; i++) {
-        for (uint32_t c = 0; c < desc->kinds[i].cover_count; c++) {
+        for (uint32_t c = 0; kinds[i].covers && c < desc->kinds[i].cover_count; c++) {
             noh_gl_cover *cover = &kinds[i].covers[c];
+            if (kind != NOH_NONE && i != kind) { /* what it hid of others does not count for who comes next */
+                if (cover->garments >> kind & 1u) cover->garments = 0;
+                continue;
+            }
             cover->garments = 0;
             for (uint32_t m = 0; m < plan->kinds[i].mesh_count; m++) {
                 if (cover->indices[m].name) noh_gl_buffer_delete(device->api, device->ledger, &cover->indices[m]);

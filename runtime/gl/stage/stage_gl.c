@@ -24,6 +24,7 @@
 
 typedef struct measure {
     const noh_stage_desc *desc;
+    const noh_stage_desc *asked; /* with the `others` of its kinds */
     const noh_stage_plan *plan;
     const noh_gl_caps *caps;
     noh_arena arena;      /* CPU memory */
@@ -49,6 +50,7 @@ static uint32_t count_models(const measure *m)
     uint32_t count = 0;
     while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
         const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
+        if (m->desc->kinds[site.kind].changes) continue;
         count += owner.kind == site.kind && owner.item == site.item;
     }
     return count;
@@ -59,9 +61,11 @@ static uint32_t model_index(const measure *m, noh_gl_site owner)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     uint32_t index = 0;
+    if (m->desc->kinds[owner.kind].changes) return m->gl ? m->gl->kinds[owner.kind].first_model + owner.item : 0;
     while (noh_gl_next_site(m->plan, m->desc->kind_count, &site) &&
            (site.kind != owner.kind || site.item != owner.item)) {
         const noh_gl_site of = noh_gl_owner(m->desc, m->plan, site);
+        if (m->desc->kinds[site.kind].changes) continue;
         index += of.kind == site.kind && of.item == site.item;
     }
     return index;
@@ -92,14 +96,18 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     void *memory;
     uint8_t *sides;
     noh_mesh coarse;
+    const int slot = m->desc->kinds[site.kind].changes != 0;
     const int later = noh_gl_site_coarse(m->desc, m->plan, site, &coarse);
     void *room = noh_arena_carve(&m->arena, later ? noh_gl_room_size(&mesh) : 0, 16);
     add(m, "mesh buffers", site.kind, from, noh_gl_mesh_bytes(&mesh));
     if (model) {
+        const noh_gl_device *on = &m->gl->device;
         model->load_kind = NOH_NONE;
+        model->waits = slot;
         if (later) set_later(m, site, &mesh, &coarse, room, model);
-        result = later ? noh_gl_model_make_mesh(&m->gl->device, model, error)
-                       : noh_gl_mesh_create(m->gl->device.api, m->gl->device.ledger, &mesh, &model->mesh, error);
+        result = later  ? noh_gl_model_make_mesh(on, model, error)
+                 : slot ? noh_gl_mesh_create_empty(on->api, on->ledger, &mesh, &mesh, &model->mesh, error)
+                        : noh_gl_mesh_create(on->api, on->ledger, &mesh, &model->mesh, error);
     }
     if (result != NOH_OK || mesh.header->touched_count == 0) {
         return result;
@@ -124,7 +132,8 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
         plan.layer_bytes + plan.vertex_bytes);
     if (!model) return NOH_OK;
     if (m->desc->motion) model->sides = memset(sides, 0, plan.instance_count / 2u);
-    result = noh_gl_morph_init(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, &model->morph, error);
+    result = noh_gl_morph_init_empty(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, slot ? m->gl->programs : NULL,
+                                     &model->morph, error);
     model->part_count = d.mesh_count;
     return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
 }
@@ -151,29 +160,53 @@ static noh_result visit_item(measure *m, noh_gl_site site, noh_gl_item *item, no
 
 /* ---- arrays of objects ---- */
 
+static void carve_kind(measure *m, uint32_t i, noh_gl_kind *kind)
+{
+    const uint32_t meshes = m->plan->kinds[i].mesh_count, cover_count = m->desc->kinds[i].cover_count;
+    const uint32_t count = noh_gl_pictures_count(&m->desc->kinds[i]);
+    const uint32_t last_count = m->desc->motion ? m->desc->kinds[i].actor_count : 0;
+    noh_gl_item *items = CARVE(m, meshes, noh_gl_item);
+    noh_gl_texture *pictures = CARVE(m, count, noh_gl_texture);
+    noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
+    noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
+    noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
+    if (!kind) return;
+    kind->last = last_count ? memset(last, 0, last_count * sizeof *last) : NULL;
+    kind->covers = covers;
+    memset(indices, 0, cover_count * meshes * sizeof *indices);
+    for (uint32_t c = 0; c < cover_count; c++) covers[c] = (noh_gl_cover){ 0, 0, indices + c * meshes };
+    kind->items = items;
+    kind->pictures = pictures;
+    memset(items, 0, meshes * sizeof *items);
+    memset(pictures, 0, count * sizeof *pictures);
+}
+
 static void carve_kinds(measure *m)
 {
     noh_gl_kind *kinds = CARVE(m, m->desc->kind_count, noh_gl_kind);
+    if (kinds) memset(kinds, 0, m->desc->kind_count * sizeof *kinds);
     for (uint32_t i = 0; i < m->desc->kind_count; i++) {
-        noh_gl_item *items = CARVE(m, m->plan->kinds[i].mesh_count, noh_gl_item);
-        const uint32_t count = noh_gl_pictures_count(&m->desc->kinds[i]);
-        noh_gl_texture *pictures = CARVE(m, count, noh_gl_texture);
-        const uint32_t cover_count = m->desc->kinds[i].cover_count, meshes = m->plan->kinds[i].mesh_count;
-        noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
-        noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
-        const uint32_t last_count = m->desc->motion ? m->desc->kinds[i].actor_count : 0;
-        noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
-        if (!kinds) continue;
-        kinds[i].last = last_count ? memset(last, 0, last_count * sizeof *last) : NULL;
-        kinds[i].covers = covers;
-        memset(indices, 0, cover_count * meshes * sizeof *indices);
-        for (uint32_t c = 0; c < cover_count; c++) covers[c] = (noh_gl_cover){ 0, 0, indices + c * meshes };
-        kinds[i].items = items;
-        kinds[i].pictures = pictures;
-        memset(items, 0, m->plan->kinds[i].mesh_count * sizeof *items);
-        memset(pictures, 0, count * sizeof *pictures);
+        if (!m->desc->kinds[i].changes) carve_kind(m, i, kinds ? &kinds[i] : NULL);
     }
     if (m->gl) m->gl->kinds = kinds;
+}
+
+/* Memory for what draws the kinds of slots, and a model for each of their meshes after the `stay` others. */
+static void carve_slots(measure *m)
+{
+    uint32_t model = m->gl ? m->gl->model_count : 0;
+    for (uint32_t i = 0; i < m->desc->kind_count; i++) {
+        const noh_kind_room *room = &m->plan->kinds[i].room;
+        const size_t from = m->arena.used;
+        uint8_t *slot;
+        if (!m->desc->kinds[i].changes) continue;
+        slot = noh_arena_carve(&m->arena, (size_t)room->drawn_bytes, 16);
+        add(m, "slot", i, from, room->gpu_bytes);
+        if (!m->gl) continue;
+        m->gl->kinds[i].slot = slot;
+        model -= (uint32_t)room->mesh_count;
+        m->gl->kinds[i].first_model = model;
+    }
 }
 
 /* Whether a kind's detail may choose fewer influences (open_lod of stage_kind.c): it has one skinned mesh, with levels.
@@ -202,7 +235,9 @@ static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_
     d.lit = desc->light != NULL;
     d.shading = desc->shading;
     d.passes = desc->without_depth ? NOH_PASSES_COLOR : NOH_PASSES_ALL;
+    noh_gl_candidates_want(desc, &d);
     for (uint32_t i = 0; i < desc->kind_count; i++) {
+        if (desc->kinds[i].changes) continue;
         d.crowds |= desc->kinds[i].actor_count > 1u;
         d.fades |= plan->kinds[i].level_count > 1u && !desc->full_detail;
         d.fewer_influences |= may_drop_influences(desc, plan, i);
@@ -213,23 +248,34 @@ static noh_gl_renderer_desc renderer_desc(const noh_stage_desc *desc, const noh_
 /* Variants of the renderer of all meshes. noh_gl_renderer_create reports too many. */
 NOH_NEVER_INLINE static size_t variants_size(const measure *m)
 {
-    const noh_gl_renderer_desc d = renderer_desc(m->desc, m->plan);
+    const noh_gl_renderer_desc d = renderer_desc(m->asked, m->plan);
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     noh_gl_variant_list list;
     list.count = 0;
+    noh_gl_candidates_list(m->asked, &d, &list);
     while (noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
+        if (m->desc->kinds[site.kind].changes) continue;
         const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
         (void)noh_gl_list_variants(&d, &mesh, &list, NULL);
     }
     return noh_gl_variants_size(&list);
 }
 
+/* Of the largest kind of each slot, in all. */
+static uint32_t slots_meshes(const measure *m)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < m->desc->kind_count; i++) count += (uint32_t)m->plan->kinds[i].room.mesh_count;
+    return count;
+}
+
 static void carve_head(measure *m)
 {
-    const uint32_t models = count_models(m);
+    const uint32_t stay = count_models(m), models = stay + slots_meshes(m);
+    const uint32_t mesh_count = stay + noh_gl_candidate_meshes(m->asked, NULL);
     noh_stage_gl *gl = CARVE(m, 1, noh_stage_gl);
     noh_gl_model *of = CARVE(m, models, noh_gl_model);
-    noh_mesh *meshes = CARVE(m, models, noh_mesh);
+    noh_mesh *meshes = CARVE(m, mesh_count, noh_mesh);
     const size_t variants_bytes = variants_size(m);
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
@@ -240,10 +286,15 @@ static void carve_head(measure *m)
         gl->models = of;
         gl->model_count = models;
         gl->meshes = meshes;
+        gl->mesh_count = mesh_count;
+        (void)noh_gl_candidate_meshes(m->asked, meshes + stay);
+        gl->renderer_desc = renderer_desc(m->asked, m->plan);
+        gl->programs[0] = gl->programs[1] = 0;
         gl->renderer = renderer;
         gl->variants = variants;
         gl->variants_bytes = variants_bytes;
         memset(of, 0, models * sizeof *of);
+        for (uint32_t i = stay; i < models; i++) of[i].load_kind = NOH_NONE;
         memset(renderer, 0, sizeof *renderer);
         gl->light = NULL;
         gl->lighting = NULL;
@@ -282,13 +333,23 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
     noh_result result = NOH_OK;
     if (owner.kind == site.kind && owner.item == site.item) {
         result = visit_model(m, site, model, error);
-        if (model) gl->meshes[index] = mesh_for_renderers(m, site, model);
+        if (model && !m->desc->kinds[site.kind].changes) gl->meshes[index] = mesh_for_renderers(m, site, model);
     }
     if (item) {
         item->model = model;
         item->first_pool = noh_gl_first_pool(m->desc, m->plan, site);
     }
     return result == NOH_OK ? visit_item(m, site, item, error) : result;
+}
+
+static noh_result count_pictures(measure *m, uint32_t kind, noh_error *error)
+{
+    const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, kind);
+    uint64_t bytes;
+    const noh_result result = noh_gl_pictures_plan(m->desc, kind, m->caps, &bytes, error);
+    if (bytes) add(m, "textures", kind, m->arena.used, bytes);
+    if (covers) add(m, "covers", kind, m->arena.used, covers);
+    return result;
 }
 
 static noh_result visit(measure *m, noh_error *error)
@@ -302,34 +363,63 @@ static noh_result visit(measure *m, noh_error *error)
         result = noh_gl_light_create(&m->gl->device, m->desc->light, m->gl->light, error);
     }
     while (result == NOH_OK && noh_gl_next_site(m->plan, m->desc->kind_count, &site)) {
-        result = visit_site(m, site, error);
+        if (!m->desc->kinds[site.kind].changes) result = visit_site(m, site, error);
     }
     for (uint32_t i = 0; i < m->desc->kind_count && result == NOH_OK; i++) {
-        const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, i);
-        uint64_t bytes;
-        result = noh_gl_pictures_plan(m->desc, i, m->caps, &bytes, error);
-        if (bytes) add(m, "textures", i, m->arena.used, bytes);
-        if (covers) add(m, "covers", i, m->arena.used, covers);
+        if (!m->desc->kinds[i].changes) result = count_pictures(m, i, error);
     }
+    carve_slots(m);
     if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
     return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;
+}
+
+noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps,
+                             noh_stage_gl *gl, uint32_t kind, void *memory, noh_kind_room *room, uint32_t *morph_path,
+                             noh_error *error)
+{
+    measure m = { desc, desc, plan, caps, memory ? noh_arena_over(memory, SIZE_MAX) : noh_arena_measure(),
+                  gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps) };
+    noh_gl_site site = { kind, 0 };
+    noh_result result = NOH_OK;
+    carve_kind(&m, kind, gl ? &gl->kinds[kind] : NULL);
+    for (; site.item < plan->kinds[kind].mesh_count && result == NOH_OK; site.item++) {
+        result = visit_site(&m, site, error);
+    }
+    if (result == NOH_OK) result = count_pictures(&m, kind, error);
+    room->mesh_count = plan->kinds[kind].mesh_count;
+    room->drawn_bytes = (m.arena.used + 15u) & ~(size_t)15u;
+    room->gpu_bytes = m.gpu_bytes;
+    if (morph_path && !*morph_path) *morph_path = m.morph_path;
+    return result;
+}
+
+static noh_result measure_slot(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                               noh_kind_room *room, noh_error *error)
+{
+    noh_stage_desc d = *desc;
+    noh_stage_desc_by_plan(&d, plan);
+    if (d.morph_path == NOH_MORPH_STREAMS) {
+        return noh_fail(error, NOH_ERR_UNSUPPORTED,
+                        "morph_path of a stage in which kinds change: streams are not uploaded in pieces", 0, 0);
+    }
+    return noh_gl_visit_slot(&d, plan, caps, NULL, 0, NULL, room, &plan->morph_path, error);
 }
 
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                 uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
 {
-    measure m = { desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0 };
     const noh_result result = visit(&m, error);
     *cpu_bytes = m.arena.used;
     *gpu_bytes = m.gpu_bytes;
-    plan->morph_path = m.morph_path;
+    if (m.morph_path || !noh_stage_has_slots(desc)) plan->morph_path = m.morph_path;
     return result;
 }
 
 static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                        noh_stage_list *list)
 {
-    measure m = { desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0 };
     (void)visit(&m, NULL);
 }
 
@@ -341,13 +431,10 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
 {
     static const noh_gl_shader_desc library = { .defines = NULL };
     noh_gl_shader_desc complexions = own ? *own : library;
-    noh_gl_renderer_desc d = renderer_desc(&s->desc, s->plan);
+    noh_gl_renderer_desc d = gl->renderer_desc;
     if (!complexions.defines) complexions.defines = "#define NOH_COMPLEXION\n";
-    for (uint32_t i = 0; i < gl->model_count; i++) {
-        if (gl->models[i].morph) d.layers_uint = noh_gl_morph_binding_of(gl->models[i].morph, 0).is_uint;
-    }
     d.meshes = gl->meshes;
-    d.mesh_count = gl->model_count;
+    d.mesh_count = gl->mesh_count;
     d.shaders = s->desc.user_values == NOH_USER_COMPLEXION ? &complexions : own;
     return noh_gl_renderer_create(device, &d, memory, bytes, out, error);
 }
@@ -355,8 +442,9 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
 static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
 {
     noh_stage_gl *gl = stage->gpu;
-    noh_gl_pictures_delete(&stage->desc, d, gl->kinds);
-    noh_gl_covers_delete(&stage->desc, stage->plan, d, gl->kinds);
+    noh_gl_pictures_delete(&stage->desc, d, gl->kinds, NOH_NONE);
+    noh_gl_covers_delete(&stage->desc, stage->plan, d, gl->kinds, NOH_NONE);
+    noh_gl_slots_forget_programs(gl, d);
     for (uint32_t i = 0; i < gl->model_count; i++) {
         if (gl->models[i].mesh.vertex_array) noh_gl_mesh_delete(d->api, d->ledger, &gl->models[i].mesh);
     }
@@ -368,7 +456,7 @@ static void destroy(noh_stage *stage)
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
     if (gl->light && gl->light->gl) noh_gl_light_delete(gl->light);
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
-        for (uint32_t m = 0; m < stage->kinds[i].plan->mesh_count; m++) {
+        for (uint32_t m = 0; gl->kinds[i].items && m < stage->kinds[i].plan->mesh_count; m++) {
             if (gl->kinds[i].items[m].skin) noh_gl_skin_delete(gl->kinds[i].items[m].skin);
         }
     }
@@ -397,18 +485,49 @@ static void forget(noh_stage *stage)
     let_go_meshes(stage, &lost);
 }
 
-static noh_result init(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error)
+/* What sums the targets is known to the models, and of slots by the plan. */
+static int layers_of(const noh_stage *s, const noh_stage_gl *gl)
 {
-    measure m = { &stage->desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
+    const uint32_t path = s->plan->morph_path;
+    int layers = path == NOH_MORPH_DIRECT
+                     ? NOH_LAYERS_DIRECT
+                     : path == NOH_MORPH_GATHER && s->desc.halves <= 0 && !gl->device.caps->render_f32;
+    if (!s->slots) layers = 0;
+    for (uint32_t i = 0; i < gl->model_count; i++) {
+        if (gl->models[i].morph) layers = noh_gl_morph_binding_of(gl->models[i].morph, 0).is_uint;
+    }
+    return layers;
+}
+
+/* The kinds that are there from the start. */
+static noh_result open_slots(noh_stage *s, const noh_stage_desc *asked, noh_error *error)
+{
+    noh_result result = s->slots ? noh_gl_slots_compile(asked, s->gpu, s->plan->morph_path, error) : NOH_OK;
+    for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
+        if (!s->desc.kinds[i].changes || !s->plan->kinds[i].mesh_count) continue;
+        result = noh_gl_slot_open(s, i, error);
+        if (result == NOH_OK) result = noh_gl_slot_fill_all(s, i, error);
+    }
+    return result;
+}
+
+static noh_result init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc, noh_stage *stage,
+                       noh_error *error)
+{
+    noh_stage_desc asked = stage->desc;
+    measure m = { &stage->desc, &asked, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
     NOH_ASSERT(first.device.api && first.device.caps && first.device.ledger);
     m.caps = first.device.caps;
     m.gl = &first;
+    asked.kinds = desc->kinds;
     result = visit(&m, error);
     stage->gpu = m.gl;
+    if (result == NOH_OK) result = open_slots(stage, &asked, error);
     if (result == NOH_OK) {
+        m.gl->renderer_desc.layers_uint = layers_of(stage, m.gl);
         if (!stage->desc.without_shader) {
             result = make_renderer(m.gl, stage, NULL, &m.gl->device, m.gl->variants, m.gl->variants_bytes,
                                    m.gl->renderer, error);
@@ -437,9 +556,10 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
 {
     noh_stage_gl *gl = stage->gpu;
     noh_result result = NOH_OK;
+    if (stage->slots) result = noh_gl_slots_recompile(gl, &stage->desc, stage->plan->morph_path, error);
     for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
         noh_gl_model *model = &gl->models[i];
-        result = noh_gl_model_restore(stage, model, error);
+        if (model->mesh.mesh.header) result = noh_gl_model_restore(stage, model, error);
     }
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);
@@ -447,6 +567,11 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
     if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
     if (result == NOH_OK) result = noh_gl_covers_create(&stage->desc, stage->plan, &gl->device, gl->kinds, error);
+    for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
+        if (!gl->kinds[i].slot || !gl->kinds[i].items) continue;
+        memset(&gl->kinds[i].filling, 0, sizeof gl->kinds[i].filling);
+        if (!stage->kinds[i].comes) result = noh_gl_slot_fill_all(stage, i, error);
+    }
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 
@@ -541,6 +666,7 @@ static void upload_actor(const noh_stage *s, const noh_stage_kind *k, const noh_
 static void upload(noh_stage *s)
 {
     noh_stage_gl *gl = s->gpu;
+    noh_gl_slots_show(s);
     noh_gl_choose_covers(s);
     if (s->desc.motion) noh_gl_motion_begin(s);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
@@ -549,7 +675,7 @@ static void upload(noh_stage *s)
         for (uint32_t m = 0; m < k->plan->mesh_count; m++) noh_gl_skin_update(gl->kinds[i].items[m].skin);
     }
     for (uint32_t i = 0; i < gl->model_count; i++) {
-        if (gl->models[i].morph) noh_gl_morph_update(gl->models[i].morph, NULL);
+        if (gl->models[i].morph && !gl->models[i].waits) noh_gl_morph_update(gl->models[i].morph, NULL);
     }
     if (s->desc.motion) noh_gl_motion_end(s);
 }
@@ -599,8 +725,9 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
         return noh_stage_gone(error, actor);
     }
     shown = &stage->shown[a - stage->actors];
-    if (index >= k->plan->mesh_count || shown->frame != stage->frame || !shown->views) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor has no such mesh, or no view of the last frame saw it",
+    if (index >= k->plan->mesh_count || k->comes || shown->frame != stage->frame || !shown->views) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "the actor has no such mesh, no view of the last frame saw it, or its kind is not uploaded yet",
                         index, k->plan->mesh_count);
     }
     item = &((const noh_stage_gl *)stage->gpu)->kinds[k - stage->kinds].items[index];
@@ -616,8 +743,11 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     return NOH_OK;
 }
 
-const noh_stage_gpu noh_stage_on_gl = { measure_stage, list_parts, init,        destroy,   restore,
-                                        pose,          upload,     noh_gl_load, noh_gl_use };
+const noh_stage_gpu noh_stage_on_gl = { measure_stage,    list_parts,       init,
+                                        destroy,          restore,          pose,
+                                        upload,           noh_gl_load,      noh_gl_use,
+                                        measure_slot,     noh_gl_slot_come, noh_gl_slot_fill,
+                                        noh_gl_slot_close };
 
 /* ---- shaders of your own ---- */
 

@@ -6,6 +6,7 @@
 #include "stage/actors/stage_draws_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "gl/draw/gl_draw_internal.h"
+#include "gl/draw/gl_renderer_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
@@ -25,6 +26,7 @@ typedef struct noh_gl_model {
     uint32_t load_kind;  /* noh_stage_kind.finer.kind where finer levels come later; else NOH_NONE, and the rest is 0 */
     uint32_t mesh_index; /* in the packs */
     int loaded;          /* 1: they are used */
+    int waits;           /* of a slot whose kind is not filled: its sums are not updated */
     noh_mesh coarse;     /* the finest level that the kind's own pack has */
     noh_mesh room;       /* the finest of the plan: copies of its headers and its submeshes, and nothing else */
     uint64_t mesh_at;    /* how far the upload is */
@@ -92,11 +94,23 @@ typedef struct noh_gl_views {
     float view_projection[NOH_STAGE_VIEWS_MAX][16];
 } noh_gl_views;
 
+/* How far the upload of a kind that came into its slot is. */
+typedef struct noh_gl_filling {
+    uint32_t item, picture; /* the next mesh; then the next texture of all sets */
+    uint64_t mesh_at;       /* of the mesh */
+    uint32_t at;            /* of its delta tiles, or of the texture */
+    int done;
+} noh_gl_filling;
+
 typedef struct noh_gl_kind {
     noh_gl_last *last;        /* [actor_count] with motion; else NULL */
     noh_gl_cover *covers;     /* [cover_count] */
     noh_gl_item *items;       /* [mesh_count] */
     noh_gl_texture *pictures; /* [1 + texture_set_count][textures of the pack]: those that others own, too */
+    /* of a slot; the arrays above are NULL while it is empty */
+    uint8_t *slot;        /* [room.drawn_bytes] NULL: the kind stays */
+    uint32_t first_model; /* [room.mesh_count] of its own */
+    noh_gl_filling filling;
 } noh_gl_kind;
 
 typedef struct noh_stage_gl {
@@ -104,7 +118,12 @@ typedef struct noh_stage_gl {
     noh_gl_kind *kinds;
     noh_gl_model *models;
     uint32_t model_count;
-    noh_mesh *meshes; /* [model_count] full, for renderers */
+    noh_mesh *meshes; /* [mesh_count] full, for renderers: of the models of kinds that stay, then of all kinds that the
+                       * slots were planned for */
+    uint32_t mesh_count;
+    noh_gl_renderer_desc renderer_desc; /* without meshes and shaders */
+    unsigned programs[2];               /* of the sums of slots; 0: none needs it, or its context was lost */
+    uint8_t needs_program[2];
     noh_gl_renderer *renderer;
     void *variants;        /* [variants_bytes] of the renderer, if there is one */
     size_t variants_bytes; /* of any renderer of all meshes */
@@ -193,6 +212,40 @@ noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *me
 noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error);
 /* Its mesh is what its accumulators' finished vertices are drawn by. */
 noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
+/* ---- slots (stage_gl_slot.c) ---- */
+
+/* The kinds that a slot of a desc was planned for, one after another; 0 past the last. */
+typedef struct noh_gl_candidate {
+    noh_kind_desc kind;
+    uint32_t mesh_count;
+    noh_stage_item items[NOH_STAGE_MESHES_MAX];
+} noh_gl_candidate;
+int noh_gl_candidate_at(const noh_stage_desc *desc, uint32_t kind, uint32_t index, noh_gl_candidate *out);
+noh_mesh noh_gl_candidate_mesh(const noh_stage_desc *desc, const noh_gl_candidate *of, uint32_t index);
+/* How many meshes they have in all; into meshes[], where it is not NULL. */
+uint32_t noh_gl_candidate_meshes(const noh_stage_desc *desc, noh_mesh *meshes);
+/* What the renderer must be able to do for them. */
+void noh_gl_candidates_want(const noh_stage_desc *desc, noh_gl_renderer_desc *want);
+void noh_gl_candidates_list(const noh_stage_desc *desc, const noh_gl_renderer_desc *want, noh_gl_variant_list *list);
+noh_result noh_gl_slots_compile(const noh_stage_desc *asked, noh_stage_gl *gl, uint32_t path, noh_error *error);
+void noh_gl_slots_forget_programs(noh_stage_gl *gl, const noh_gl_device *device);
+/* Compile the programs of a lost context again. */
+noh_result noh_gl_slots_recompile(noh_stage_gl *gl, const noh_stage_desc *desc, uint32_t path, noh_error *error);
+/* Make what draws it; the second after init, when no program may be missing. */
+noh_result noh_gl_slot_open(noh_stage *s, uint32_t kind, noh_error *error);
+noh_result noh_gl_slot_come(noh_stage *s, uint32_t kind, noh_error *error);
+/* Fill it at once. */
+noh_result noh_gl_slot_fill_all(noh_stage *s, uint32_t kind, noh_error *error);
+int noh_gl_slot_fill(noh_stage *s, uint32_t kind, uint32_t *bytes);
+/* At the begin of a frame: kinds that are filled are drawn from now on. */
+void noh_gl_slots_show(noh_stage *s);
+void noh_gl_slot_close(noh_stage *s, uint32_t kind);
+/* What a kind takes, made where `gl` is not NULL (stage_gl.c).
+ * memory  [bytes] NULL: only measured */
+noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps,
+                             noh_stage_gl *gl, uint32_t kind, void *memory, noh_kind_room *room, uint32_t *morph_path,
+                             noh_error *error);
+
 /* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
 noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
 int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
@@ -202,11 +255,11 @@ void noh_gl_use(noh_stage *stage, uint32_t load_kind, int loaded);
 
 /* The bytes of the covers of a kind. */
 uint64_t noh_gl_covers_bytes(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
-/* Make the buffers of all kinds, also in a new context; delete them. */
+/* Make the buffers of all kinds that have none, also in a new context; delete them: NOH_NONE: of all kinds. */
 noh_result noh_gl_covers_create(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
                                 noh_gl_kind *kinds, noh_error *error);
 void noh_gl_covers_delete(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
-                          noh_gl_kind *kinds);
+                          noh_gl_kind *kinds, uint32_t kind);
 /* Once a frame: give each seen actor the cover of its garments. */
 void noh_gl_choose_covers(noh_stage *stage);
 
@@ -217,12 +270,17 @@ void noh_gl_choose_covers(noh_stage *stage);
 noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
                                 noh_error *error);
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
-/* Make, make again in a new context, delete the textures of all kinds. */
+/* Make, make again in a new context, delete the textures of all kinds (NOH_NONE). Of a slot: make them without pixels,
+ * fill them by a piece. */
 noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
                                   noh_error *error);
 noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
                                    noh_error *error);
-void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds);
+noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                        uint32_t kind, noh_error *error);
+int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind,
+                         noh_gl_filling *f, uint32_t *bytes);
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind);
 
 /* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
 typedef struct noh_gl_tiles {

@@ -13,9 +13,15 @@ typedef struct site {
     uint32_t kind, set, texture;
 } site;
 
+/* 0: an empty slot */
+static uint32_t textures_of(const noh_kind_desc *kind)
+{
+    return kind->mesh ? kind->mesh->runs[NOH_CHUNK_TEXTURE].count : 0;
+}
+
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind)
 {
-    return (1u + kind->texture_set_count) * kind->mesh->runs[NOH_CHUNK_TEXTURE].count;
+    return (1u + kind->texture_set_count) * textures_of(kind);
 }
 
 static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
@@ -45,7 +51,8 @@ static site owner_of(const noh_stage_desc *desc, site where)
     const noh_pack *pack;
     const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
     site s = { 0, 0, 0 };
-    for (; s.kind < where.kind; s.kind++) {
+    for (; s.kind < where.kind; s.kind++) { /* slots share nothing */
+        if (desc->kinds[s.kind].changes || desc->kinds[where.kind].changes) continue;
         for (s.set = 0; s.set <= desc->kinds[s.kind].texture_set_count; s.set++) {
             if (has(&desc->kinds[s.kind], s.set, pack, index, &s.texture)) return s;
         }
@@ -70,7 +77,7 @@ static int owns(const noh_stage_desc *desc, site where, noh_texture *texture)
 static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
 {
     where->texture++;
-    while (where->kind < end && where->texture >= desc->kinds[where->kind].mesh->runs[NOH_CHUNK_TEXTURE].count) {
+    while (where->kind < end && where->texture >= textures_of(&desc->kinds[where->kind])) {
         where->texture = 0;
         if (++where->set > desc->kinds[where->kind].texture_set_count) {
             where->set = 0;
@@ -95,18 +102,26 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
     return result;
 }
 
-static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_gl_kind *kinds, int again,
-                       noh_error *error)
+typedef enum making { CREATE, CREATE_EMPTY, RESTORE } making;
+
+/* kind: NOH_NONE: of all kinds that have room for them. */
+static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_gl_kind *kinds, uint32_t kind,
+                       making how, noh_error *error)
 {
-    site where = { 0, 0, UINT32_MAX };
+    site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
+    const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
     noh_result result = NOH_OK;
-    while (result == NOH_OK && next_site(desc, desc->kind_count, &where)) {
-        noh_gl_texture *to = at(kinds, desc, where);
+    while (result == NOH_OK && next_site(desc, end, &where)) {
+        noh_gl_texture *to;
         noh_texture texture;
+        if (!kinds[where.kind].pictures) continue;
+        to = at(kinds, desc, where);
         if (!owns(desc, where, &texture)) {
             *to = *at(kinds, desc, owner_of(desc, where));
-        } else if (again) {
+        } else if (how == RESTORE) {
             result = noh_gl_picture_restore(d->api, d->ledger, &texture, to, error);
+        } else if (how == CREATE_EMPTY) {
+            result = noh_gl_picture_create_empty(d->api, d->ledger, &texture, to, error);
         } else {
             result = noh_gl_picture_create(d->api, d->ledger, &texture, to, error);
         }
@@ -117,20 +132,45 @@ static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_g
 noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
                                   noh_error *error)
 {
-    return make(desc, device, kinds, 0, error);
+    return make(desc, device, kinds, NOH_NONE, CREATE, error);
+}
+
+noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
+                                        uint32_t kind, noh_error *error)
+{
+    return make(desc, device, kinds, kind, CREATE_EMPTY, error);
 }
 
 noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
                                    noh_error *error)
 {
-    return make(desc, device, kinds, 1, error);
+    return make(desc, device, kinds, NOH_NONE, RESTORE, error);
 }
 
-void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds)
+int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind,
+                         noh_gl_filling *f, uint32_t *bytes)
 {
-    site where = { 0, 0, UINT32_MAX };
-    while (next_site(desc, desc->kind_count, &where)) {
+    site where = { kind, 0, UINT32_MAX };
+    uint32_t index = 0;
+    for (; next_site(desc, kind + 1u, &where); index++) {
         noh_texture texture;
-        if (owns(desc, where, &texture)) noh_gl_texture_delete(device->api, device->ledger, at(kinds, desc, where));
+        if (index < f->picture) continue;
+        if (owns(desc, where, &texture) &&
+            !noh_gl_picture_fill(device->api, &texture, at(kinds, desc, where), &f->at, bytes))
+            return 0;
+        f->at = 0;
+        f->picture = index + 1u;
+    }
+    return 1;
+}
+
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind)
+{
+    site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
+    const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
+    while (next_site(desc, end, &where)) {
+        noh_texture texture;
+        if (!kinds[where.kind].pictures || !owns(desc, where, &texture)) continue;
+        noh_gl_texture_delete(device->api, device->ledger, at(kinds, desc, where));
     }
 }

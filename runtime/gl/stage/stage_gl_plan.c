@@ -17,13 +17,14 @@ int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_sit
 {
     if (site->kind == UINT32_MAX) {
         site->kind = site->item = 0;
-        return 1;
+    } else {
+        site->item++;
     }
-    if (++site->item < plan->kinds[site->kind].mesh_count) {
-        return 1;
+    while (site->kind < kind_count && site->item >= plan->kinds[site->kind].mesh_count) { /* empty slots have none */
+        site->item = 0;
+        site->kind++;
     }
-    site->item = 0;
-    return ++site->kind < kind_count;
+    return site->kind < kind_count;
 }
 
 static noh_stage_item item_of(const noh_stage_desc *desc, noh_gl_site site)
@@ -63,6 +64,7 @@ int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, n
 
 static int same_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site a, noh_gl_site b)
 {
+    if (a.kind != b.kind && (desc->kinds[a.kind].changes || desc->kinds[b.kind].changes)) return 0;
     return desc->kinds[a.kind].mesh->bytes == desc->kinds[b.kind].mesh->bytes &&
            noh_stage_load_kind(desc, a.kind) == noh_stage_load_kind(desc, b.kind) &&
            item_of(desc, a).mesh == item_of(desc, b).mesh && finest_of(plan, a) == finest_of(plan, b);
@@ -119,7 +121,7 @@ static void add_tiles(const noh_stage_desc *desc, const noh_stage_plan *plan, no
 static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
-    int takes = !desc->morph_sums && !desc->motion && desc->halves <= 0;
+    int takes = !desc->morph_sums && !desc->motion && desc->halves <= 0 && !noh_stage_has_slots(desc);
     while (takes && noh_gl_next_site(plan, desc->kind_count, &site)) {
         const noh_mesh mesh = noh_gl_site_mesh(desc, plan, site);
         noh_mesh coarse;

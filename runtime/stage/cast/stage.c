@@ -204,7 +204,8 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
     result = open_all(desc, plan, &b, error);
     if (result == NOH_OK && desc->gpu) {
         const size_t from = (arena.used + 15u) & ~(size_t)15u;
-        result = desc->gpu->init((uint8_t *)memory + from, (size_t)plan->cpu_bytes - from, device, b.stage, error);
+        result = desc->gpu->init((uint8_t *)memory + from, (size_t)plan->cpu_bytes - from, device, desc, b.stage,
+                                 error);
     }
     for (uint32_t i = 0; i < desc->kind_count; i++) b.kind_descs[i].finer = NULL; /* not kept */
     if (result == NOH_OK) {

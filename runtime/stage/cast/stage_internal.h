@@ -207,6 +207,7 @@ typedef struct noh_stage_kind {
     noh_lod_table table;
     uint32_t first_there; /* the finest level that `desc.mesh` has, and the plan */
     noh_stage_finer finer;
+    int comes; /* 1: it is uploaded, and not drawn yet */
     float *joint_radii; /* [joint_count] with all weights 0; NULL: rigid */
     float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips, with their
                          * weights, and all of 0..1 */
@@ -357,7 +358,9 @@ struct noh_stage_gpu {
                           uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error); /* writes plan->morph_path */
     void (*parts)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                   noh_stage_list *list);
-    noh_result (*init)(void *memory, size_t bytes, const void *device, noh_stage *stage, noh_error *error);
+    /* desc: with `others` */
+    noh_result (*init)(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc, noh_stage *stage,
+                       noh_error *error);
     void (*destroy)(noh_stage *stage);
     noh_result (*restore)(noh_stage *stage, noh_error *error);
     void (*pose)(noh_stage *stage, noh_stage_kind *kind, uint32_t index,
@@ -368,6 +371,14 @@ struct noh_stage_gpu {
      */
     int (*load)(noh_stage *stage, uint32_t load_kind, int restart, uint32_t *bytes);
     void (*use)(noh_stage *stage, uint32_t load_kind, int loaded);
+    /* Slots. `room` writes what draws the only kind of a desc; where plan->morph_path is 0, the one that its targets take
+     * becomes the stage's. `open` makes what draws a kind that came into its slot, `fill` uploads a piece as `load` does,
+     * `close` deletes all. */
+    noh_result (*room)(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                       noh_kind_room *room, noh_error *error);
+    noh_result (*open)(noh_stage *stage, uint32_t kind, noh_error *error);
+    int (*fill)(noh_stage *stage, uint32_t kind, uint32_t *bytes);
+    void (*close)(noh_stage *stage, uint32_t kind);
 };
 
 /* ---- private calls ---- */
@@ -491,8 +502,10 @@ uint32_t noh_stage_pools(const noh_kind_plan *plan, uint32_t *levels, uint32_t *
 void noh_stage_room(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind, const noh_stage_needs *needs,
                     noh_kind_room *room);
 noh_result noh_stage_carve_slot(const noh_stage *s, uint32_t kind, noh_stage_kind_blocks *blocks, noh_error *error);
-/* In plan->kinds: the room of each slot. kinds[0] is used meanwhile. */
-noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, noh_stage_plan *plan, noh_error *error);
+int noh_stage_has_slots(const noh_stage_desc *desc);
+/* In plan->kinds: the room of each slot. kinds[0] is used meanwhile. caps: with desc->gpu */
+noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                                noh_error *error);
 /* At init, once all kinds that stay are there: all slots, with what is not absent. */
 noh_result noh_stage_open_slots(noh_stage *s, const noh_stage_desc *desc, noh_error *error);
 noh_result noh_stage_open_pools(noh_stage *s, uint32_t kind, void *memory, noh_error *error);

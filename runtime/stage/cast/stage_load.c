@@ -125,9 +125,14 @@ static void set_first(noh_stage *s, uint32_t load_kind, int loaded)
 void noh_stage_load_piece(noh_stage *s)
 {
     uint32_t bytes = s->desc.load_bytes;
-    s->stats.loading = 0;
+    s->stats.loading = s->stats.coming = 0;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
+        if (k->comes) {
+            (void)s->desc.gpu->fill(s, i, &bytes);
+            s->stats.loading++;
+            s->stats.coming |= 1u << i;
+        }
         if (k->finer.state != NOH_STAGE_LOADING) continue;
         if (!s->gpu || s->desc.gpu->load(s, i, 0, &bytes)) {
             k->finer.state = NOH_STAGE_LOADED;

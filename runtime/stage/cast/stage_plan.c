@@ -16,6 +16,7 @@ void noh_stage_desc_by_plan(noh_stage_desc *desc, const noh_stage_plan *plan)
 {
     desc->halves = plan->halves ? 1 : desc->halves < 0 ? -1 : 0;
     desc->morph_sums |= plan->sums != 0;
+    if (!desc->morph_path && noh_stage_has_slots(desc)) desc->morph_path = plan->morph_path;
 }
 
 typedef struct planner {
@@ -149,7 +150,7 @@ static noh_result give_up_vertices(const planner *p, noh_error *error)
 static noh_result give_up_halves(const planner *p, noh_error *error)
 {
     const uint64_t cpu = p->plan->cpu_bytes, gpu = p->plan->gpu_bytes;
-    if (!p->desc->gpu || p->desc->halves || p->plan->halves || fits(p->desc, p->plan)) {
+    if (!p->desc->gpu || p->desc->halves || p->plan->halves || noh_stage_has_slots(p->desc) || fits(p->desc, p->plan)) {
         return NOH_OK;
     }
     p->plan->halves = 1;
@@ -569,7 +570,7 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     filled = noh_stage_desc_filled(desc);
     memset(plan, 0, sizeof *plan);
     plan->halves = desc->halves > 0;
-    result = noh_stage_plan_rooms(&filled, plan, error);
+    result = noh_stage_plan_rooms(&filled, caps, plan, error);
     for (uint32_t i = 0; i < desc->kind_count && result == NOH_OK; i++) {
         result = begin(&p, i, error);
     }

@@ -28,12 +28,13 @@ static const char *const too_large[] = { "a kind has more actors than its slot",
                                          "picking a kind takes more bytes than its slot has",
                                          "inertia of a kind takes more bytes than its slot has" };
 
-NOH_STATIC_ASSERT(sizeof(noh_kind_room) == 8 * sizeof too_large / sizeof *too_large, kind_room);
+/* What draws comes after them, and is checked where it is made. */
+NOH_STATIC_ASSERT(sizeof(noh_kind_room) == 8 * (3 + sizeof too_large / sizeof *too_large), kind_room);
 
 static noh_result check_room(const noh_kind_room *asked, const noh_kind_room *had, noh_error *error)
 {
     const uint64_t *a = (const uint64_t *)(const void *)asked, *h = (const uint64_t *)(const void *)had;
-    for (uint32_t i = 0; i < sizeof *asked / sizeof *a; i++) {
+    for (uint32_t i = 0; i < sizeof too_large / sizeof *too_large; i++) {
         if (a[i] > h[i]) return noh_fail(error, NOH_ERR_MEMORY, too_large[i], h[i], a[i]);
     }
     return NOH_OK;
@@ -46,26 +47,46 @@ static void widen(const noh_kind_room *by, noh_kind_room *room)
     for (uint32_t i = 0; i < sizeof *by / sizeof *b; i++) r[i] = b[i] > r[i] ? b[i] : r[i];
 }
 
+static noh_result no_finer(noh_error *error)
+{
+    return noh_fail(error, NOH_ERR_UNSUPPORTED,
+                    "finer of a kind: the kinds of a slot are uploaded in pieces anyway; leave it NULL", 0, 0);
+}
+
 /* A kind by itself, in kinds[0] of the plan. */
 NOH_NEVER_INLINE static noh_result plan_alone(const noh_stage_desc *desc, const noh_kind_desc *kind,
-                                              noh_stage_plan *plan, noh_kind_room *room, noh_error *error)
+                                              const struct noh_gl_caps *caps, noh_stage_plan *plan, noh_kind_room *room,
+                                              noh_error *error)
 {
     noh_stage_desc alone = *desc;
+    noh_kind_desc slot = *kind;
     noh_stage_needs needs;
     noh_kind_room one;
     noh_result result;
-    alone.kinds = kind;
+    slot.changes = 1;
+    alone.kinds = &slot;
     alone.kind_count = 1;
+    if (desc->gpu && kind->finer) return no_finer(error);
     memset(&plan->kinds[0], 0, sizeof plan->kinds[0]);
     result = noh_stage_plan_kind(&alone, 0, plan, &needs, error);
     if (result == NOH_OK) {
+        memset(&one, 0, sizeof one);
         noh_stage_room(&alone, plan, 0, &needs, &one);
+        if (desc->gpu) result = desc->gpu->room(&alone, caps, plan, &one, error);
         widen(&one, room);
     }
     return result;
 }
 
-noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, noh_stage_plan *plan, noh_error *error)
+int noh_stage_has_slots(const noh_stage_desc *desc)
+{
+    int has = 0;
+    for (uint32_t i = 0; i < desc->kind_count; i++) has |= desc->kinds[i].changes != 0;
+    return has;
+}
+
+noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
+                                noh_error *error)
 {
     noh_kind_room first;
     noh_result result = NOH_OK;
@@ -74,13 +95,9 @@ noh_result noh_stage_plan_rooms(const noh_stage_desc *desc, noh_stage_plan *plan
         const noh_kind_desc *d = &desc->kinds[i];
         noh_kind_room *room = i ? &plan->kinds[i].room : &first;
         if (!d->changes) continue;
-        if (desc->gpu) {
-            return noh_fail(error, NOH_ERR_UNSUPPORTED, "changes of a kind: a stage that draws cannot change its kinds",
-                            i, 0);
-        }
-        result = plan_alone(desc, d, plan, room, error);
+        result = plan_alone(desc, d, caps, plan, room, error);
         for (uint32_t o = 0; o < d->other_count && result == NOH_OK; o++) {
-            result = plan_alone(desc, &d->others[o], plan, room, error);
+            result = plan_alone(desc, &d->others[o], caps, plan, room, error);
         }
     }
     memset(&plan->kinds[0], 0, sizeof plan->kinds[0]);
@@ -106,6 +123,7 @@ static void empty(noh_stage *s, uint32_t kind)
     noh_stage_kind *k = &s->kinds[kind], cleared;
     noh_kind_plan *plan = &s->slots->plan.kinds[kind];
     const noh_kind_room room = plan->room;
+    if (s->gpu) s->desc.gpu->close(s, kind);
     memset(&cleared, 0, sizeof cleared);
     cleared.desc = k->desc;
     cleared.plan = plan;
@@ -190,8 +208,10 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
     d->changes = 1;
     d->others = NULL;
     d->other_count = 0;
-    result = plan_slot(s, kind, error);
+    result = s->desc.gpu && desc->finer ? no_finer(error) : plan_slot(s, kind, error);
     if (result == NOH_OK) result = open_slot(s, kind, error);
+    if (result == NOH_OK && s->gpu) result = s->desc.gpu->open(s, kind, error);
+    s->kinds[kind].comes = s->gpu != NULL;
     d->finer = NULL;
     if (result != NOH_OK) empty(s, kind);
     return result;
