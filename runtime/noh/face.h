@@ -184,7 +184,7 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
  * A recipe is a table of rows (channel, target, weight). Three are built in: for ARKit's 52 names, for VRM's presets,
  * and for names of facial action units. Pass several, the best first: each channel uses the first recipe for which the
  * mesh has all targets, else the first for which it has any. A mouth shape without any target uses the targets of the
- * nearest other shape.
+ * nearest other shape; fear and disgust without any use some of surprise's and anger's.
  *
  * Threads: a binding and recipes may be shared. */
 

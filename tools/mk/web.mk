@@ -52,6 +52,10 @@ web-bench: deps-web
 	$(MAKE) --no-print-directory DEPS=0 web WEB_WIRE= WEB_PACK=$(BUILD)/web-bench/$(basename $(notdir $(WEB_BENCH))).noh && \
 	NOH_BUILD="$(BUILD)" sh tests/web_bench.sh "$(WEB_BENCH)"
 
+# Heads of several makers alive, as a table and as strips.
+heads: $(BUILD)/noh $(BUILD)/mask.glb $(BUILD)/demo/nell.glb
+	@NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" sh tests/heads.sh
+
 # Heads and bodies by noh, three.js and model-viewer, in noh's lights, as one sheet. LOOKS="FILE FILE:full": other models;
 # LOOK_MORE=FILES: more of them.
 LOOK_MORE ?=

@@ -12,6 +12,7 @@
 #include "life/face/face_internal.h"
 
 #define TAKEN 0.5f /* by speech, of an emotion's mouth: NOH_MOUTH_BLEND */
+#define LIKE 0.6f  /* of the emotion that is most like another one */
 
 /* ---- channels ---- */
 
@@ -216,19 +217,32 @@ static void add_link(binding *b, uint32_t channel, uint32_t target, float weight
 
 static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, uint32_t channel)
 {
+    const float share = from != channel && from < NOH_CHANNEL_VISEMES ? LIKE : 1.0f;
     for (uint32_t i = 0; i < recipe->row_count; i++) {
         noh_face_row row;
         uint32_t nth = 0, target;
         if (!row_of(recipe, i, from, &row)) continue;
-        while ((target = b->find(b->user, row.target, nth++)) != NOH_NONE) add_link(b, channel, target, row.weight);
+        while ((target = b->find(b->user, row.target, nth++)) != NOH_NONE) {
+            add_link(b, channel, target, share * row.weight);
+        }
     }
+}
+
+/* The emotion that looks most like one for which a mesh has no target at all, as VRM's faces have none for fear. */
+static uint32_t like(const binding *b, uint32_t channel)
+{
+    const uint32_t to = channel == NOH_CHANNEL_UPPER + NOH_EMOTION_FEAR      ? NOH_EMOTION_SURPRISE
+                        : channel == NOH_CHANNEL_UPPER + NOH_EMOTION_DISGUST ? NOH_EMOTION_ANGER
+                                                                             : NOH_EMOTION_COUNT;
+    if (to == NOH_EMOTION_COUNT || choose(b, channel - NOH_CHANNEL_UPPER + NOH_CHANNEL_MOUTH)) return nearest(channel);
+    return NOH_CHANNEL_UPPER + to;
 }
 
 /* Following nearest shapes always ends, at a vowel or at closed lips. */
 static void find_source(const binding *b, uint32_t channel, noh_face_source *source)
 {
     memset(source, 0, sizeof *source);
-    for (uint32_t from = channel; from != NOH_NONE && !source->recipe; from = nearest(from)) {
+    for (uint32_t from = channel; from != NOH_NONE && !source->recipe; from = like(b, from)) {
         source->channel = from;
         source->recipe = choose(b, from);
         if (source->recipe) count_rows(b, source->recipe, from, &source->row_count, &source->found_count);

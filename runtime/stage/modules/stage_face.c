@@ -8,6 +8,7 @@
 #include "noh/base.h"
 #include "noh/face.h"
 #include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
 
@@ -31,6 +32,7 @@
 #define LIDS_SHUT 0.6f   /* by a clip: counts as a blink */
 #define LIDS_FOLLOW 0.4f /* of a blink, at the lowest look */
 #define CHEST_RAD 0.012f /* of a breath */
+#define CHEST_RISE 0.05f /* likewise, of the distance of the eyes */
 #define REACH_MAX 1e5f   /* model units: what is further off is looked at as if it were there */
 #define NEAREST_M 0.06f
 
@@ -117,12 +119,41 @@ static void turn(noh_modifier_work *w, const noh_stage_face_joint *j, const floa
     noh_quat_normalize(own);
 }
 
-static void breathe(noh_modifier_work *w, const noh_stage_face_kind *f, float breath)
+/* Move a joint, and what is on it, by a vector in model space. */
+static void move(const noh_stage_kind *k, noh_modifier_work *w, uint32_t joint, const float by[3])
 {
+    const uint32_t parent = w->skeleton->parents[joint];
+    float carrier[4], way[3], at[3];
+    memcpy(way, by, sizeof way);
+    if (parent != NOH_JOINT_ROOT) {
+        noh_stage_joint_at(k, w->local, parent, carrier, at);
+        noh_quat_conjugate(carrier, carrier);
+        noh_quat_rotate(carrier, way, way);
+    }
+    for (uint32_t on = parent; on != NOH_JOINT_ROOT; on = w->skeleton->parents[on]) {
+        for (int i = 0; i < 3; i++) way[i] /= w->local[on].scale[0];
+    }
+    for (int i = 0; i < 3; i++) w->local[joint].translation[i] += way[i];
+}
+
+static void breathe(const noh_stage_kind *k, noh_modifier_work *w, float breath)
+{
+    const noh_stage_face_kind *f = noh_stage_face_kind_of(k);
+    const float rise[3] = { 0.0f, CHEST_RISE * breath * (f->desc.eyes[0][0] - f->desc.eyes[1][0]), 0.0f };
     float rotation[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     if (!turns(w, &f->chest)) return;
     noh_sin_cos(-0.5f * CHEST_RAD * breath, &rotation[0], &rotation[3]);
     turn(w, &f->chest, rotation);
+    move(k, w, f->chest.joint, rise);
+}
+
+/* A head drifts and rises on a breath, whether it has joints or not: the lowest that turns it moves a little. */
+static void drift(const noh_stage_kind *k, noh_modifier_work *w, const neck_space *n, const float by[3])
+{
+    const noh_stage_face_kind *shared = noh_stage_face_kind_of(k);
+    float way[3];
+    noh_quat_rotate(n->rotation, by, way);
+    move(k, w, turns(w, &shared->neck) ? shared->neck.joint : shared->head.joint, way);
 }
 
 /* The neck's share, about its own joint, and what that moves the head by, in the neck's space. */
@@ -355,21 +386,21 @@ void noh_stage_run_face(noh_modifier_work *w)
     noh_stage_face *f = w->state;
     noh_face_pose pose;
     neck_space n;
-    float moved[3];
+    float moved[3], turned[3] = { 0.0f, 0.0f, 0.0f };
     live(k, f, w->clock);
-    breathe(w, noh_stage_face_kind_of(k), noh_face_breath(&f->face, &noh_stage_face_kind_of(k)->desc));
+    breathe(k, w, noh_face_breath(&f->face, &noh_stage_face_kind_of(k)->desc));
     neck_space_of(k, w, &n);
     look(w->stage, k, f, w, &n);
     speak(noh_stage_face_kind_of(k), f, w);
     noh_face_pose_of(&f->face, &noh_stage_face_kind_of(k)->desc, &pose);
     if (noh_stage_turns(k) || turns(w, &noh_stage_face_kind_of(k)->head)) {
         noh_face aimed = f->face;
-        if (noh_stage_turns(k)) {
-            noh_face_drift(&f->face, &noh_stage_face_kind_of(k)->desc, moved);
-        } else {
-            turn_head(k, w, &n, pose.head, moved);
+        noh_face_drift(&f->face, &noh_stage_face_kind_of(k)->desc, moved);
+        if (!noh_stage_turns(k)) {
+            turn_head(k, w, &n, pose.head, turned);
+            drift(k, w, &n, moved);
         }
-        for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i];
+        for (int i = 0; i < 3; i++) aimed.target[i] -= moved[i] + turned[i];
         noh_face_pose_of(&aimed, &noh_stage_face_kind_of(k)->desc, &pose);
     }
     turn_eyes(k, w, &pose);

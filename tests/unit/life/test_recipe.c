@@ -129,6 +129,26 @@ static void missing_shapes_take_the_nearest(void **state)
     assert_int_equal(noh_face_recipe_bind(NULL, 0, NULL, 0, links, LINKS), 0);
 }
 
+/* VRM's faces have no fear and no disgust: they show some surprise and anger. One of fear's own targets is enough. */
+static void missing_emotions_take_a_like_one(void **state)
+{
+    const char *names[] = { "surprised", "angry", "mouthStretchLeft" };
+    noh_face_link links[LINKS];
+    (void)state;
+    for (uint32_t own = 0; own < 2; own++) {
+        const uint32_t count = noh_face_recipe_bind(NULL, 0, names, 2 + own, links, LINKS);
+        assert_int_equal(links_of(links, count, NOH_CHANNEL_UPPER + NOH_EMOTION_FEAR), own ? 0 : 1);
+        assert_int_equal(links_of(links, count, NOH_CHANNEL_UPPER + NOH_EMOTION_DISGUST), 1);
+        assert_int_equal(links_of(links, count, NOH_CHANNEL_UPPER + NOH_EMOTION_CONTEMPT), 0);
+        for (uint32_t i = 0; i < count; i++) {
+            const uint32_t emotion = links[i].channel - NOH_CHANNEL_UPPER;
+            if (emotion != NOH_EMOTION_FEAR && emotion != NOH_EMOTION_DISGUST) continue;
+            assert_int_equal(links[i].target, emotion == NOH_EMOTION_FEAR ? 0 : 1);
+            assert_true(links[i].weight > 0.3f && links[i].weight < 0.9f);
+        }
+    }
+}
+
 static void a_recipe_that_is_whole_goes_before_one_in_part(void **state)
 {
     /* jawOpen alone is a part of ARKit's aa; VRM's is whole */
@@ -376,6 +396,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(sources_tell_what_falls_back),
         cmocka_unit_test(each_naming_is_bound_by_its_own_recipe),
         cmocka_unit_test(missing_shapes_take_the_nearest),
+        cmocka_unit_test(missing_emotions_take_a_like_one),
         cmocka_unit_test(a_recipe_that_is_whole_goes_before_one_in_part),
         cmocka_unit_test(an_artists_rows_come_first),
         cmocka_unit_test(eyes_move_their_four_channels),

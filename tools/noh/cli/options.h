@@ -76,12 +76,12 @@
         .example = "grown", .needs = "--decal"                                                                       \
     }
 
-#define OPTION_FEEL(T, m)                                                                       \
+#define OPTION_FEEL(T, m, ...)                                                                  \
     {                                                                                           \
         .name = "--feel", .kind = OPTION_LIST, .at = offsetof(T, m), .value = "EMOTION=AMOUNT", \
-        .what = "an emotion for --face on: joy, sadness, surprise, fear, anger, disgust, "      \
+        .what = "an emotion of a live face: joy, sadness, surprise, fear, anger, disgust, "     \
                 "contempt; may repeat",                                                         \
-        .example = "joy=0.7", .needs = "--face"                                                 \
+        .example = "joy=0.7", __VA_ARGS__                                                       \
     }
 
 #define OPTION_CLIP(T, m, ...)                                                                         \

@@ -20,6 +20,7 @@
 typedef struct face_args {
     const char *pack;
     double idle_s;
+    option_list anims, clips, feels;
     int as_json;
 } face_args;
 
@@ -373,7 +374,8 @@ static int json_idle(const face_idle *idle, const face_args *a)
 static int report_idle(const face_args *a, const pack_file *file)
 {
     face_idle idle;
-    const int status = face_idle_measure(file, a->idle_s, &idle);
+    const face_idle_desc desc = { file, a->idle_s, &a->anims, &a->clips, &a->feels };
+    const int status = face_idle_measure(&desc, &idle);
     if (status) return status;
     if (a->as_json) return json_idle(&idle, a);
     printf("idle for %g s, %u pairs of pictures; without motion:", a->idle_s, idle.pairs);
@@ -443,8 +445,17 @@ static const option options[] = {
       .at = offsetof(face_args, idle_s),
       .value = "S",
       .what =
-          "instead, let the face live for S seconds without a clip: the share of pairs of pictures, 30 a second and 512 pixels high, in which outline, brows, lids, eyes or mouth do not move",
+          "instead, let the face live for S seconds: the share of pairs of pictures, 30 a second and 512 pixels high, in which outline, brows, lids, eyes or mouth do not move",
       .example = "10" },
+    { .name = "--clip",
+      .kind = OPTION_LIST,
+      .at = offsetof(face_args, clips),
+      .value = "NAME",
+      .what = "what it says or does meanwhile; may repeat",
+      .example = "speech",
+      .needs = "--idle" },
+    OPTION_ANIMS(face_args, anims, .needs = "--clip"),
+    OPTION_FEEL(face_args, feels, .needs = "--idle"),
     OPTION_JSON(face_args, as_json),
 };
 
@@ -454,7 +465,8 @@ const verb verb_face = {
     .what = "show which targets of a face make blinks, gaze, emotions and mouth shapes, with the recipe of each",
     .more =
         "Each channel uses the first recipe that fits the targets' names: the pack's own (noh build --recipe), then the built-in recipes for ARKit, VRM and facial units. A mouth shape without a recipe uses the nearest other shape.",
-    .example = "head.noh\nhead.noh --json\nhead.noh --idle 10",
+    .example =
+        "head.noh\nhead.noh --json\nhead.noh --idle 10\nhead.noh --idle 3 --anim line.noh --clip speech --feel joy=0.8",
     .options = options,
     .option_count = sizeof options / sizeof options[0],
     .file_max = 1,

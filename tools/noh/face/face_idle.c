@@ -175,22 +175,34 @@ static int measure(meter *m, double seconds, face_idle *out)
     return status;
 }
 
-int face_idle_measure(const pack_file *file, double seconds, face_idle *out)
+static int play(meter *m, const face_idle_desc *desc)
 {
-    const figure_desc desc = { .file = file, .alive = 1 };
+    const int status = figure_feel(&m->f, desc->feels);
+    return status ? status : figure_play_options(&m->f, desc->clips, 0.0);
+}
+
+int face_idle_measure(const face_idle_desc *desc, face_idle *out)
+{
+    figure_anims *anims = calloc(1, sizeof *anims);
     meter *m = calloc(1, sizeof *m);
-    int status = m ? figure_open(&m->f, &desc, NULL) : tool_fail(file->path, "out of memory");
+    figure_desc made = { .file = desc->file, .alive = 1, .face_layer = 1 };
+    const char *path = desc->file->path;
+    int opened = 0, status = m && anims ? 0 : tool_fail(path, "out of memory");
     memset(out, 0, sizeof *out);
     out->is_there[FACE_OUTLINE] = 1;
-    if (!status) {
-        status = m->f.faces_found ? measure(m, seconds, out)
-                                  : tool_fail(file->path, "no eyes were found, so it has no live face");
-        figure_close(&m->f);
-    }
+    if (!status && desc->clips->count) status = figure_open_anims(anims, desc->anims, desc->file, &made);
+    if (!status) status = figure_open(&m->f, &made, NULL);
+    opened = !status;
+    if (!status && !m->f.faces_found) status = tool_fail(path, "no eyes were found, so it has no live face");
+    if (!status) status = play(m, desc);
+    if (!status) status = measure(m, desc->seconds, out);
+    if (opened) figure_close(&m->f);
+    if (anims) figure_close_anims(anims);
     for (uint32_t i = 0; m && i < m->part_count; i++) {
         free(m->parts[i].regions);
         free(m->parts[i].before);
     }
     free(m);
+    free(anims);
     return status;
 }

@@ -284,7 +284,7 @@ static const option options[] = {
           "arms lowered; rest, as it was modelled",
       .example = "rest" },
     OPTION_FACE(render_args, face, "off"),
-    OPTION_FEEL(render_args, emotions),
+    OPTION_FEEL(render_args, emotions, .needs = "--face"),
     OPTION_SPRINGS(render_args, springs),
     OPTION_WEIGHT_RULES(render_args, figure.weight_rules),
     OPTIONS_BODY(render_args, body_wants),

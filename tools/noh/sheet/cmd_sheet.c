@@ -346,7 +346,7 @@ static const option options[] = {
     OPTION_SPRINGS(sheet_args, springs),
     OPTION_WEIGHT_RULES(sheet_args, s.figure.weight_rules),
     OPTION_HAIR(sheet_args, hair, "on"),
-    OPTION_FEEL(sheet_args, s.tiles.emotions),
+    OPTION_FEEL(sheet_args, s.tiles.emotions, .needs = "--face"),
     { .name = "--tiles",
       .kind = OPTION_NUMBER,
       .at = offsetof(sheet_args, tiles),
