@@ -1,5 +1,5 @@
 /* fuzz_import.c: any bytes as the files that noh build reads: glTF, VRM, FBX, OBJ with targets, BVH, facial capture,
- * markers, raw clips, pictures, and text files; and as those of other verbs: places, sound, packets of a capture. What
+ * markers, raw clips, pictures, and text files; and what other verbs read: places, sound, packets of a capture. What
  * is read is converted, and the pack used in full.
  *
  * The kind follows from the first bytes, so that seeds are files as they are. A .glb is tried as it is, then with the

@@ -48,7 +48,7 @@ static int load(sndfile *s)
 
 #define BLOCK 4096u
 #define RATE_MIN 4000
-#define RATE_MAX 192000 /* ten minutes of more take gigabytes, of which a FLAC's silence has none */
+#define RATE_MAX 192000 /* ten minutes of more take gigabytes, also from a FLAC of some kilobytes */
 #define CHANNELS_MAX 64
 
 static int grow(sound *s, size_t *room, size_t more)
