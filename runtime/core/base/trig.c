@@ -28,24 +28,9 @@ static float cos_poly(float x)
 static void rotate_quarters(uint32_t quarters, float x, float *sine, float *cosine)
 {
     float s = sin_poly(x), c = cos_poly(x);
-    switch (quarters & 3u) {
-    case 0:
-        *sine = s;
-        *cosine = c;
-        break;
-    case 1:
-        *sine = c;
-        *cosine = -s;
-        break;
-    case 2:
-        *sine = -s;
-        *cosine = -c;
-        break;
-    default:
-        *sine = -c;
-        *cosine = s;
-        break;
-    }
+    const float a = quarters & 1u ? c : s, b = quarters & 1u ? s : c;
+    *sine = quarters & 2u ? -a : a;
+    *cosine = (quarters + 1u) & 2u ? -b : b;
 }
 
 static int in_range(float radians)

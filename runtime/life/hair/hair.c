@@ -21,15 +21,6 @@ size_t noh_hair_size(const noh_hair_desc *desc)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
-/* Numbers whose squares, and the squares of their differences, stay finite. */
-static int are_sound(const float *v, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        if (!(v[i] > -1e15f && v[i] < 1e15f)) return 0;
-    }
-    return 1;
-}
-
 static int is_share(float x)
 {
     return x >= 0.0f && x <= 1.0f;
@@ -43,11 +34,11 @@ static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
                         NOH_HAIRS_MAX);
     }
     if (!is_share(d->pull) || !is_share(d->pull_at_tip) || !(d->damping >= 0.0f) || !(d->gravity >= 0.0f) ||
-        !are_sound(&d->damping, 1) || !are_sound(&d->gravity, 1)) {
+        !noh_are_sound(&d->damping, 1) || !noh_are_sound(&d->gravity, 1)) {
         return noh_fail(error, NOH_ERR_ARG, "pull, damping or gravity of a hair desc is out of its range", 0, 0);
     }
     for (uint32_t i = 0; i < d->sphere_count; i++) {
-        if (!are_sound(d->spheres[i].centre, 3) || !are_sound(&d->spheres[i].radius, 1) ||
+        if (!noh_are_sound(d->spheres[i].centre, 3) || !noh_are_sound(&d->spheres[i].radius, 1) ||
             d->spheres[i].radius < 0.0f) {
             return noh_fail(error, NOH_ERR_ARG, "a sphere of a hair desc is not finite, or its radius is below 0", i,
                             0);
@@ -56,7 +47,7 @@ static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
     for (uint32_t i = 0; i < d->hair_count * d->point_count; i++) {
         const float *p = d->rest + 3 * (size_t)i;
         float way[3];
-        if (!are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "a rest point of a hair desc is not finite", i, 0);
+        if (!noh_are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "a rest point of a hair desc is not finite", i, 0);
         if (i % d->point_count == 0) continue;
         noh_sub3(p, p - 3, way);
         if (!(noh_dot3(way, way) > 1e-12f)) {
@@ -157,7 +148,7 @@ const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
     const noh_hair_carrier *carriers[2] = { &hair->last, &hair->stepped };
     for (int i = 0; i < 2; i++) {
         const float square = noh_quat_dot(carriers[i]->rotation, carriers[i]->rotation);
-        if (!are_sound(carriers[i]->position, 3) || !are_sound(carriers[i]->wind, 3) ||
+        if (!noh_are_sound(carriers[i]->position, 3) || !noh_are_sound(carriers[i]->wind, 3) ||
             !(square > 0.9f && square < 1.1f)) {
             return "hair: the head's transform is out of range";
         }
@@ -168,7 +159,7 @@ const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
         const float *rest = desc->rest + 3 * (size_t)i;
         float way[3] = { 0.0f, 0.0f, 0.0f };
         if (i % hair->point_count) noh_sub3(rest, rest - 3, way);
-        if (!are_sound(p->now, 3) || !are_sound(p->before, 3) || !are_sound(p->velocity, 3) ||
+        if (!noh_are_sound(p->now, 3) || !noh_are_sound(p->before, 3) || !noh_are_sound(p->velocity, 3) ||
             p->length != noh_length3(way)) {
             return "hair: a point is out of range";
         }

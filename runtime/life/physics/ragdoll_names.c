@@ -131,12 +131,6 @@ static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means)
     return up == NOH_JOINT_ROOT;
 }
 
-static int is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)
-{
-    while (below != NOH_JOINT_ROOT && below != joint) below = k->parents[below];
-    return below == joint;
-}
-
 /* The lowest common ancestor of all first joints of a kind; NOH_NONE if there are fewer than two. */
 static uint32_t where_meet(const noh_ragdoll_source *s, part means)
 {
@@ -147,7 +141,7 @@ static uint32_t where_meet(const noh_ragdoll_source *s, part means)
             meet = s->joints.parents[i];
             continue;
         }
-        while (meet != NOH_NONE && meet != NOH_JOINT_ROOT && !is_above(&s->joints, meet, i)) {
+        while (meet != NOH_NONE && meet != NOH_JOINT_ROOT && !noh_joint_is_above(&s->joints, meet, i)) {
             meet = s->joints.parents[meet];
         }
     }
@@ -171,7 +165,7 @@ static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
     if (joint == t->chest) return CHEST;
     if (joint == t->spine) return SPINE;
     const part means = part_at(s, joint);
-    return means != NONE && is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means : NONE;
+    return means != NONE && noh_joint_is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means : NONE;
 }
 
 /* ---- a table in the pack ---- */
@@ -215,7 +209,7 @@ noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_r
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no two joints have the names of thighs: build the pack with --ragdoll FILE", 0, 0);
     }
-    if (t.chest != NOH_NONE && (t.chest == t.pelvis || !is_above(&source->joints, t.pelvis, t.chest))) {
+    if (t.chest != NOH_NONE && (t.chest == t.pelvis || !noh_joint_is_above(&source->joints, t.pelvis, t.chest))) {
         t.chest = NOH_NONE;
     }
     if (t.chest != NOH_NONE) t.spine = next_towards(&source->joints, t.pelvis, t.chest);

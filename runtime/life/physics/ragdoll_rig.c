@@ -95,12 +95,8 @@ static void take(probe *p, const float point[3], int counts)
 static void place_vertex(const maker *m, const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, uint32_t slot,
                          float point[3])
 {
-    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
-    float local[3], position[3], rotation[4];
-    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
-    noh_ragdoll_bind(&m->source->joints, skin->joints[slot], position, rotation);
-    noh_quat_rotate(rotation, local, local);
-    for (int i = 0; i < 3; i++) point[i] = (position[i] + local[i]) * m->source->metres;
+    noh_rig_vertex(&m->source->joints, mesh, skin, vertex, slot, point);
+    for (int i = 0; i < 3; i++) point[i] *= m->source->metres;
 }
 
 static void probe_mesh(const maker *m, const noh_mesh *mesh, const noh_skin *skin, probe *p, int counts)
@@ -484,17 +480,11 @@ static void find_pairs(noh_ragdoll_rig *rig)
 
 /* ---- all ---- */
 
-static int is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)
-{
-    while (below != NOH_JOINT_ROOT && below != joint) below = k->parents[below];
-    return below == joint;
-}
-
 static int good_row(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint32_t i)
 {
     const noh_ragdoll_row *r = &rows[i];
     return r->joint < s->joints.joint_count && (!i || r->joint > rows[i - 1u].joint) &&
-           is_above(&s->joints, rows[0].joint, r->joint) && r->toward <= NOH_RAGDOLL_UPWARD && r->bend_min <= 0.0f &&
+           noh_joint_is_above(&s->joints, rows[0].joint, r->joint) && r->toward <= NOH_RAGDOLL_UPWARD && r->bend_min <= 0.0f &&
            r->bend_min >= -NOH_PI && r->bend_max >= 0.0f && r->bend_max <= NOH_PI && r->side >= 0.0f &&
            r->side <= NOH_PI && r->twist >= 0.0f && r->twist <= NOH_PI && r->friction >= 0.0f &&
            noh_is_finite(r->friction);

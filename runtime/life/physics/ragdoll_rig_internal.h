@@ -2,8 +2,13 @@
 #ifndef NOH_SIM_RAGDOLL_RIG_INTERNAL_H
 #define NOH_SIM_RAGDOLL_RIG_INTERNAL_H
 
+#include "core/base/compiler_internal.h"
+#include "life/physics/vector_internal.h"
 #include "noh/clip.h"
+#include "noh/low_core.h"
+#include "noh/low_motion.h"
 #include "noh/low_life.h"
+#include "noh/pack.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,6 +20,25 @@ void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float positi
 /* The row of the nearest joint above one, or NOH_NONE. */
 uint32_t noh_ragdoll_row_above(const noh_ragdoll_source *source, const noh_ragdoll_row *rows, uint32_t count,
                                uint32_t joint);
+
+/* The position of a vertex in the bind pose, by its heaviest joint. */
+NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
+                                             uint32_t vertex, uint32_t slot, float point[3])
+{
+    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
+    float local[3], position[3], rotation[4];
+    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
+    noh_ragdoll_bind(k, skin->joints[slot], position, rotation);
+    noh_quat_rotate(rotation, local, local);
+    noh_madd3(position, 1.0f, local, point);
+}
+
+/* Whether a joint is `below` itself, or one of the joints above it. */
+static inline int noh_joint_is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)
+{
+    while (below != NOH_JOINT_ROOT && below != joint) below = k->parents[below];
+    return below == joint;
+}
 
 #ifdef __cplusplus
 }

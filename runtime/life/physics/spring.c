@@ -99,15 +99,6 @@ void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh
 
 /* ---- springs from outside ---- */
 
-/* Numbers that steps can continue from: squares of their differences stay finite. */
-static int are_sound(const float *v, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        if (!(v[i] > -1e15f && v[i] < 1e15f)) return 0;
-    }
-    return 1;
-}
-
 static int turns(const float q[4])
 {
     const float square = noh_quat_dot(q, q);
@@ -122,20 +113,20 @@ const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *de
         return "the spring was made with another desc";
     }
     if (s->collides > 1u || s->left >= NOH_SPRING_STEP_TICKS || !turns(s->last.rotation) ||
-        !turns(s->stepped.rotation) || !turns(s->turned) || !are_sound(s->last.position, 3) ||
-        !are_sound(s->stepped.position, 3) || !are_sound(s->moved, 3)) {
+        !turns(s->stepped.rotation) || !turns(s->turned) || !noh_are_sound(s->last.position, 3) ||
+        !noh_are_sound(s->stepped.position, 3) || !noh_are_sound(s->moved, 3)) {
         return "a spring's time or carrier is out of range";
     }
     for (uint32_t i = 0; i < s->joint_count; i++) {
         const noh_spring_point *p = &noh_spring_const_points(s)[i];
-        if (!are_sound(p->now, 3) || !are_sound(p->before, 3) || p->length != noh_length3(desc->joints[i].bone)) {
+        if (!noh_are_sound(p->now, 3) || !noh_are_sound(p->before, 3) || p->length != noh_length3(desc->joints[i].bone)) {
             return "a spring's joint is out of range";
         }
     }
     const noh_spring_collider *c = (const noh_spring_collider *)(const void *)(noh_spring_const_points(s) +
                                                                                s->joint_count);
     for (uint32_t i = 0; i < s->collider_count; i++) {
-        if (!are_sound(c[i].from, 3) || !are_sound(c[i].to, 3) || !are_sound(&c[i].radius, 1)) {
+        if (!noh_are_sound(c[i].from, 3) || !noh_are_sound(c[i].to, 3) || !noh_are_sound(&c[i].radius, 1)) {
             return "a spring's collider is out of range";
         }
     }

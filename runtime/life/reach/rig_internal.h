@@ -16,18 +16,6 @@
 /* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */
 void noh_ik_share(const float rotation[4], float share, float out[4]);
 
-/* The position of a vertex in the bind pose, by its heaviest joint. */
-NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
-                                             uint32_t vertex, uint32_t slot, float point[3])
-{
-    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
-    float local[3], position[3], rotation[4];
-    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
-    noh_ragdoll_bind(k, skin->joints[slot], position, rotation);
-    noh_quat_rotate(rotation, local, local);
-    noh_madd3(position, 1.0f, local, point);
-}
-
 /* The transform of a pose's joint in model space. */
 NOH_UNUSED static inline void noh_rig_joint(const noh_skeleton *k, const noh_transform *local, uint32_t joint,
                                             float position[3], float rotation[4])

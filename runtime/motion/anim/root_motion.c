@@ -54,24 +54,9 @@ static void sin_cos_half(uint64_t half_turns, double *sine, double *cosine)
     double rest = ((double)wrapped - (double)(quarters << 31)) * 7.31459039633579841e-10; /* 2 pi / 2^33 */
     double s, c;
     sin_cos_double(rest, &s, &c);
-    switch (quarters & 3u) {
-    case 0:
-        *sine = s;
-        *cosine = c;
-        break;
-    case 1:
-        *sine = c;
-        *cosine = -s;
-        break;
-    case 2:
-        *sine = -s;
-        *cosine = -c;
-        break;
-    default:
-        *sine = -c;
-        *cosine = s;
-        break;
-    }
+    const double a = quarters & 1u ? c : s, b = quarters & 1u ? s : c;
+    *sine = quarters & 2u ? -a : a;
+    *cosine = (quarters + 1u) & 2u ? -b : b;
 }
 
 static void turn_vector(uint32_t up, uint64_t half_turns, double v[3])
