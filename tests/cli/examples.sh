@@ -115,6 +115,14 @@ else
     expect 2 'what has no eyes is refused'
     check 'and says so' grep -q '^eyes: ' "$work/err"
 
+    run crowd "$build/demo/puppet_falls.noh" -o square
+    expect 0 'crowd lets people react'
+    check 'some fall, some hurry away, some turn' awk 'NR == 1 { ok = $1 > 2 && $3 > 2 && $6 > 2 && $1 + $3 + $6 == 24 } END { exit !ok }' "$work/out"
+    check 'and all are up again' grep -qx '0 are down' "$work/out"
+    check 'and its pictures show it' differ "$work/square0.png" "$work/square1.png"
+    run crowd "$build/mask.noh"
+    expect 2 'a pack without the clips is refused'
+
     field() { sed -n "s/.*\"$1\": \([0-9]*\).*/\1/p" "$work/out"; }
     run cast "$build/demo/puppet_levels.noh" --json --seconds 1 -o cast.png
     expect 0 'cast plays for a second'
