@@ -701,6 +701,29 @@ static void it_falls_by_half_g_t_squared(void **state)
     }
 }
 
+/* What a far float cannot represent of a shift is kept, also of the goals that bodies are held at. */
+static void a_shift_far_away_takes_goals_along(void **state)
+{
+    const float far[3] = { 100000.0f, -70000.0f, 50000.0f }, back[3] = { -100000.0f, 70000.0f, -50000.0f };
+    const float little[3] = { 0.3337f, -0.2112f, 0.4181f };
+    const noh_ragdoll_rig rig = figure_rig();
+    noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX], there[NOH_RAGDOLL_BODIES_MAX];
+    (void)state;
+    noh_ragdolls *set = made(&rig, 1, 10);
+    rest_poses(&rig, poses);
+    noh_ragdoll_place(set, 0, poses, NULL, NULL);
+    assert_int_equal(noh_ragdoll_follow(set, 0, poses, 1, NULL, NULL), NOH_OK);
+    noh_ragdolls_shift(set, far);
+    noh_ragdolls_shift(set, little);
+    for (int i = 0; i < 30; i++) noh_ragdolls_step(set, NULL, FRAME);
+    noh_ragdolls_shift(set, back);
+    noh_ragdoll_bodies(set, 0, there);
+    for (int k = 0; k < 3; k++) {
+        assert_true(fabsf(there[0].position[k] - (poses[0].position[k] + little[k])) < 0.0001f);
+    }
+    free(set);
+}
+
 /* Moved by any offset, even one that floats at the new place cannot represent, it moves as it would have. */
 static void a_shifted_space_goes_on(void **state)
 {
@@ -1062,6 +1085,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_falls_far_away_as_at_the_origin),
     cmocka_unit_test(it_falls_by_half_g_t_squared),
     cmocka_unit_test(a_shifted_space_goes_on),
+    cmocka_unit_test(a_shift_far_away_takes_goals_along),
     cmocka_unit_test(what_starts_inside_is_not_thrown),
     cmocka_unit_test(what_starts_in_a_wall_leaves_by_one_side),
     cmocka_unit_test(what_starts_in_itself_is_not_thrown),
