@@ -371,8 +371,13 @@ static void caps_leave_the_state_alone(void **state)
     GLint viewport[4], value;
     noh_gl_caps again;
     c->gl.Viewport(3, 5, 70, 90);
+    c->gl.ActiveTexture(GL_TEXTURE3); /* whatever unit a game has left active */
     assert_int_equal(noh_gl_caps_probe(&c->gl, &again, NULL), NOH_OK);
     assert_memory_equal(&again, &c->caps, sizeof again);
+    c->gl.ActiveTexture(GL_TEXTURE3);
+    c->gl.GetIntegerv(GL_TEXTURE_BINDING_2D, &value);
+    assert_int_equal(value, 0);
+    c->gl.ActiveTexture(GL_TEXTURE0);
     for (size_t i = 0; i < sizeof bindings / sizeof *bindings; i++) {
         value = -1;
         c->gl.GetIntegerv(bindings[i], &value);
