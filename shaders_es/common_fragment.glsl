@@ -11,8 +11,8 @@ uniform vec3 noh_camera;                             /* world */
 uniform vec3 noh_key;                                /* unit, towards the light, world */
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
-uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff or -1, 1: unlit, -1: strands;
-                                                      * plus 0.25 if the texture's colours are premultiplied */
+uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff (plus 2 where alpha
+                                                      * becomes coverage) or -1, 1: unlit, -1: strands; plus 0.25 if the texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
 /* The alpha of strands is painted for blending in sRGB, as in most programs. Blended in linear light, dark strands on
@@ -57,14 +57,25 @@ vec4 noh_base(vec2 uv, vec4 color)
 #endif
 }
 
-/* Discard the pixels that an alpha-cut material does not draw. */
-void noh_cut(float alpha)
+/* Discard the pixels that an alpha-cut material does not draw. Returns the alpha to write: 1 where nothing blends; where
+ * alpha becomes coverage, the share of the pixel inside the line of the cutoff, from how fast alpha changes there. */
+float noh_cut(float alpha)
 {
+    float written = 1.0;
 #ifdef NOH_ALPHA_CUT
-    if (alpha < noh_material.z) {
+    float least = noh_material.z;
+    if (least > 1.5) {
+        alpha = clamp((alpha - least + 2.0) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
+        least = 1e-3;
+        written = alpha;
+    } else if (least < 0.0) {
+        written = alpha;
+    }
+    if (alpha < least) {
         discard;
     }
 #endif
+    return written;
 }
 
 /* Discard the pixels that another LOD level draws. Read textures with mip levels before: the mip level depends on the

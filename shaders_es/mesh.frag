@@ -95,12 +95,7 @@ void main()
     o_color = vec4(vec3(s.occlusion), 1.0);
 #endif
 #else
-    noh_cut(base.a);
-#ifdef NOH_ALPHA_CUT
-    float alpha = noh_material.z < 0.0 ? base.a : 1.0;
-#else
-    const float alpha = 1.0;
-#endif
+    float alpha = noh_cut(base.a);
     o_color = vec4(noh_material.w > 0.5 ? base.rgb : noh_light(s), alpha);
 #endif
     o_color.rgb = noh_encode(o_color.rgb);

@@ -475,8 +475,8 @@ const char *noh_gl_shader_text(const char *name);
  *   noh_stage_patches_draw,       control, front face, cull       instance is mirrored;
  *   noh_stage_hair_draw,          mode, colour mask, scissor,     in a depth pass the colour
  *   noh_stage_terrain_draw        stencil, polygon offset,        mask; in a blended pass the
- *                                 sRGB write, sample state,       depth mask and, where
- *                                 blending (3)                    GL_BLEND is off, blending
+ *                                 sRGB write, sample state        depth mask and, where
+ *                                 (4), blending (3)               GL_BLEND is off, blending
  *   noh_stage_blob_draw,          the same, except blending     the same, and blending        (1)
  *   noh_stage_floor_draw,         and the depth mask
  *   noh_backdrop_draw
@@ -502,6 +502,9 @@ const char *noh_gl_shader_text(const char *name);
  *     after NOH_PASS_DEPTH, which has the same depths to the bit, and NOH_PASS_BLENDED with another function.
  * (3) If GL_BLEND is on, its functions and equations are yours, for each draw buffer. If it is off, blended passes
  *     blend straight alpha, and restore the state of draw buffer 0 for all.
+ * (4) With GL_SAMPLE_ALPHA_TO_COVERAGE on, edges of alpha-cut materials are as smooth as the target's samples; all but
+ *     opaque passes turn it off. The alpha of such edges is written, too: where a page is seen through the target's
+ *     alpha, turn off alpha's colour mask, or leave this off.
  *
  * No transform feedback may be active. On desktop GL, polygons must be filled (glPolygonMode).
  *

@@ -301,6 +301,57 @@ static void dark_strands_are_as_they_were_painted(void **state)
     fixture_expect_no_errors();
 }
 
+/* A ramp of alpha at a slant over the quad, cut in its middle or blended. */
+static uint8_t *draw_ramp(model_alpha alpha, int covers)
+{
+    static const float ramp[16] = { 1, 1, 1, 0.1f, 1, 1, 1, 0.8f, 1, 1, 1, 0.3f, 1, 1, 1, 1 };
+    const noh_gl_api *gl = &fixture_gpu()->gl;
+    lit_quad q = lit_quad_of();
+    uint8_t *rgba;
+    q.color = ramp;
+    q.alpha = alpha;
+    q.cutoff = 0.5f;
+    q.unlit = 1;
+    if (covers) gl->Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    rgba = lit_quad_draw(fixture_gpu(), &q, alpha == MODEL_ALPHA_BLEND ? NOH_DRAW_BLENDED : NOH_DRAW_OPAQUE);
+    assert_int_equal(gl->IsEnabled(GL_SAMPLE_ALPHA_TO_COVERAGE), covers);
+    gl->Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    fixture_expect_no_errors();
+    return rgba;
+}
+
+/* How many pixels of a row are neither like its first nor like its last. */
+static uint32_t between(const uint8_t *row)
+{
+    uint32_t count = 0;
+    for (uint32_t x = 1; x + 1u < LIT_QUAD_SIDE; x++) {
+        count += abs(row[4u * x] - row[0]) > 1 && abs(row[4u * x] - row[4u * (LIT_QUAD_SIDE - 1u)]) > 1;
+    }
+    return count;
+}
+
+/* The edge of a cut is a pixel wide where alpha becomes coverage, and what blends is as it was. */
+static void cut_edges_take_the_samples_of_the_target(void **state)
+{
+    uint8_t *sharp = draw_ramp(MODEL_ALPHA_MASK, 0), *soft = draw_ramp(MODEL_ALPHA_MASK, 1);
+    uint8_t *blended = draw_ramp(MODEL_ALPHA_BLEND, 0), *again = draw_ramp(MODEL_ALPHA_BLEND, 1);
+    uint32_t all = 0;
+    (void)state;
+    for (uint32_t row = 0; row < LIT_QUAD_SIDE; row++) {
+        const size_t at = 4u * (size_t)row * LIT_QUAD_SIDE;
+        assert_int_equal(between(sharp + at), 0);
+        assert_in_range(between(soft + at), 0, 2);
+        all += between(soft + at);
+    }
+    print_message("# %u pixels of %u rows are partly covered\n", all, LIT_QUAD_SIDE);
+    assert_true(2u * all > LIT_QUAD_SIDE);
+    assert_memory_equal(blended, again, 4u * LIT_QUAD_SIDE * LIT_QUAD_SIDE);
+    free(sharp);
+    free(soft);
+    free(blended);
+    free(again);
+}
+
 static void programs_have_what_materials_have(void **state)
 {
     static const char *const names[] = { "noh_normal_texture", "noh_surface_texture", "noh_emissive_texture",
@@ -376,6 +427,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(surface_maps_and_emissive_colours_count),
     cmocka_unit_test(specular_maps_count),
     cmocka_unit_test(dark_strands_are_as_they_were_painted),
+    cmocka_unit_test(cut_edges_take_the_samples_of_the_target),
     cmocka_unit_test(programs_have_what_materials_have),
     cmocka_unit_test(features_follow_material_and_mesh),
 };

@@ -11,9 +11,7 @@
 /* mesh.frag with another main behind its own. What is clear altogether is no layer. The materials are opaque here, and
  * keep their alpha all the same. */
 static const char before[] = "#define main mesh_main\n"
-                             "#ifndef NOH_ALPHA_CUT\n"
-                             "#define NOH_ALPHA_CUT\n"
-                             "#endif\n";
+                             "#define noh_cut(alpha) (alpha)\n";
 static const char behind[] = "\n#undef main\n"
                              "uniform highp sampler2D u_opaque;\n"
                              "uniform highp sampler2D u_peeled;\n"

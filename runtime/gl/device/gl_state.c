@@ -1,6 +1,6 @@
 /* gl_state.c: saves and restores the GL state that noh changes.
  *
- * Draws save each part of the state on its first change: an opaque pass makes five GL queries. */
+ * Draws save each part of the state on its first change: an opaque pass makes six GL queries. */
 #include "core/base/assert_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "noh/gl_device.h"
@@ -29,9 +29,11 @@ static const gl_switch switches[] = {
     { PRIMITIVE_RESTART, NOH_KEEP_TESTS }, { GL_SCISSOR_TEST, NOH_KEEP_REST },
     { GL_STENCIL_TEST, NOH_KEEP_REST },    { GL_RASTERIZER_DISCARD, NOH_KEEP_REST },
     { COLOR_LOGIC_OP, NOH_KEEP_REST },     { NOH_GL_PROGRAM_POINT_SIZE, NOH_KEEP_REST },
+    { GL_SAMPLE_ALPHA_TO_COVERAGE, NOH_KEEP_COVERAGE },
 };
 #define SWITCHES (sizeof switches / sizeof switches[0])
 #define BIT_BLEND 1u
+#define BIT_COVERAGE (1u << (SWITCHES - 1u))
 
 static int has_switch(const noh_gl_api *gl, uint32_t cap)
 {
@@ -117,7 +119,7 @@ void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *r)
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     r->kept = r->enabled = 0;
-    noh_gl_raster_keep(gl, r, NOH_KEEP_TESTS);
+    noh_gl_raster_keep(gl, r, NOH_KEEP_TESTS | NOH_KEEP_COVERAGE);
     for (uint32_t i = 0; i < SWITCHES; i++) {
         const uint32_t cap = switches[i].cap;
         if (cap == GL_DEPTH_TEST) {
@@ -128,6 +130,17 @@ void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *r)
     }
     if (r->depth_func == GL_LESS) gl->DepthFunc(GL_LEQUAL);
     if (r->depth_func == GL_GREATER) gl->DepthFunc(GL_GEQUAL);
+}
+
+int noh_gl_is_covering(const noh_gl_raster *r)
+{
+    return (r->enabled & BIT_COVERAGE) != 0;
+}
+
+/* Alpha is no share of the pixel where it blends, and nothing where only depth is drawn. */
+static void set_coverage(const noh_gl_api *gl, const noh_gl_raster *r, int on)
+{
+    if (noh_gl_is_covering(r)) set_switch(gl, GL_SAMPLE_ALPHA_TO_COVERAGE, on);
 }
 
 int noh_gl_is_reversed(const noh_gl_raster *r)
@@ -143,12 +156,14 @@ void noh_gl_blend_begin(const noh_gl_api *gl, noh_gl_raster *r)
         gl->BlendEquation(GL_FUNC_ADD);
         gl->BlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     }
+    set_coverage(gl, r, 0);
     gl->DepthMask(GL_FALSE);
 }
 
 void noh_gl_blend_end(const noh_gl_api *gl, const noh_gl_raster *r)
 {
     if (!(r->enabled & BIT_BLEND)) gl->Disable(GL_BLEND);
+    set_coverage(gl, r, 1);
     gl->DepthMask(r->depth_mask);
 }
 
@@ -157,6 +172,7 @@ void noh_gl_multiply_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     noh_gl_tests_begin(gl, r);
     noh_gl_raster_keep(gl, r, NOH_KEEP_BLEND | NOH_KEEP_FUNCTIONS);
+    set_coverage(gl, r, 0);
     gl->Disable(GL_CULL_FACE);
     gl->DepthMask(GL_FALSE);
     gl->Enable(GL_BLEND);
@@ -167,6 +183,7 @@ void noh_gl_behind_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     noh_gl_tests_begin(gl, r);
     noh_gl_raster_keep(gl, r, NOH_KEEP_BLEND);
+    set_coverage(gl, r, 0);
     gl->Disable(GL_DEPTH_TEST);
     gl->Disable(GL_BLEND);
     gl->Disable(GL_CULL_FACE);
@@ -175,11 +192,13 @@ void noh_gl_behind_begin(const noh_gl_api *gl, noh_gl_raster *r)
 void noh_gl_depth_only_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     noh_gl_raster_keep(gl, r, NOH_KEEP_COLORS);
+    set_coverage(gl, r, 0);
     put_colors(gl, 0);
 }
 
 void noh_gl_depth_only_end(const noh_gl_api *gl, const noh_gl_raster *r)
 {
+    set_coverage(gl, r, 1);
     put_colors(gl, r->color_mask);
 }
 

@@ -13,7 +13,8 @@ enum {
     NOH_KEEP_BLEND = 8,      /* blending, the depth mask */
     NOH_KEEP_REST = 16,      /* scissor and stencil tests, discard, logic operation, point size */
     NOH_KEEP_FUNCTIONS = 32, /* blend functions, even if blending is on */
-    NOH_KEEP_ALL = 63
+    NOH_KEEP_COVERAGE = 64,  /* alpha to coverage */
+    NOH_KEEP_ALL = 127
 };
 
 /* Save the parts not yet saved. Initialise `kept` to 0. */
@@ -21,8 +22,11 @@ void noh_gl_raster_keep(const noh_gl_api *gl, noh_gl_raster *raster, uint32_t pa
 /* Restore the saved parts. */
 void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *raster);
 
-/* Enable the depth test with the caller's function, adjusted as in gl_device.h. Saves only NOH_KEEP_TESTS. */
+/* Enable the depth test with the caller's function, adjusted as in gl_device.h. Saves only NOH_KEEP_TESTS and
+ * NOH_KEEP_COVERAGE. */
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *raster);
+/* 1: the caller has alpha to coverage on; other passes than opaque ones turn it off. */
+int noh_gl_is_covering(const noh_gl_raster *raster);
 /* 1: the caller's depth decreases with distance. */
 int noh_gl_is_reversed(const noh_gl_raster *raster);
 /* Blend without writing depth, with the caller's blending or else straight alpha. End it before other passes. */

@@ -388,13 +388,15 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Pixels with a lower alpha are not drawn; -1: all are drawn. */
-static float cutoff_of(const noh_material *m, draw_part part)
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage. */
+#define SOFT 2.0f
+static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_part part)
 {
+    const int is_soft = part == PART_OPAQUE && noh_gl_is_covering(&r->raster);
     if (part != PART_BLENDED && noh_material_has_core(m)) {
         return NOH_CORE_ALPHA;
     }
-    return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff : -1.0f;
+    return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff + (is_soft ? SOFT : 0.0f) : -1.0f;
 }
 
 static int is_in_depth(draw_part part)
@@ -501,7 +503,7 @@ static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_
                           draw_part part)
 {
     const noh_material *m = noh_mesh_material(&j->mesh->mesh, s);
-    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(m, part), j->pictures);
+    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(j->r, m, part), j->pictures);
     const GLint shows = v->u_user >= 0 ? complexion_part(&j->mesh->mesh, m) << COMPLEXION_SHIFT : 0;
     j->r->gl->Uniform1i(v->u_blends, shows | ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
                                          ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));

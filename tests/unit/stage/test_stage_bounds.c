@@ -215,7 +215,7 @@ static void everything_shown_lies_in_the_sphere(void **state)
 }
 
 /* Before the first frame the sphere has room for any pose: all bones in a line, and not more than twice that. */
-static void who_is_not_posed_yet_has_a_sphere_of_its_length(void **state)
+static void unposed_figures_have_spheres_of_their_length(void **state)
 {
     static const float here[3] = { 0.0f, 0.0f, 0.0f };
     figure f;
@@ -734,7 +734,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(everything_shown_lies_in_the_sphere),
-        cmocka_unit_test(who_is_not_posed_yet_has_a_sphere_of_its_length),
+        cmocka_unit_test(unposed_figures_have_spheres_of_their_length),
         cmocka_unit_test(a_view_of_any_vertex_sees_it_in_the_first_frame),
         cmocka_unit_test(a_ray_at_any_vertex_hits),
         cmocka_unit_test(a_weight_of_a_clip_takes_nobody_out_of_view),
