@@ -430,6 +430,7 @@ static void any_order_with_a_driver_that_fails(void **state)
         open_act(&a, &g, null_ways[w]);
         with_slots(&a, 2);
         a.c.desc.load_bytes = 40000;
+        a.c.desc.motion = a.c.desc.user_values = w % 2u;
         assert_true(make_act(&a));
         enter(&a, PUPPETS, actors);
         for (uint32_t f = 0; f < 150; f++) {

@@ -396,13 +396,11 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
 static noh_result measure_slot(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_kind_room *room, noh_error *error)
 {
-    noh_stage_desc d = *desc;
-    noh_stage_desc_by_plan(&d, plan);
-    if (d.morph_path == NOH_MORPH_STREAMS) {
+    if (desc->morph_path == NOH_MORPH_STREAMS) {
         return noh_fail(error, NOH_ERR_UNSUPPORTED,
                         "morph_path of a stage in which kinds change: streams are not uploaded in pieces", 0, 0);
     }
-    return noh_gl_visit_slot(&d, plan, caps, NULL, 0, NULL, room, &plan->morph_path, error);
+    return noh_gl_visit_slot(desc, plan, caps, NULL, 0, NULL, room, &plan->morph_path, error);
 }
 
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
@@ -514,18 +512,16 @@ static noh_result open_slots(noh_stage *s, const noh_stage_desc *asked, noh_erro
 static noh_result init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc, noh_stage *stage,
                        noh_error *error)
 {
-    noh_stage_desc asked = stage->desc;
-    measure m = { &stage->desc, &asked, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
+    measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
     NOH_ASSERT(first.device.api && first.device.caps && first.device.ledger);
     m.caps = first.device.caps;
     m.gl = &first;
-    asked.kinds = desc->kinds;
     result = visit(&m, error);
     stage->gpu = m.gl;
-    if (result == NOH_OK) result = open_slots(stage, &asked, error);
+    if (result == NOH_OK) result = open_slots(stage, desc, error);
     if (result == NOH_OK) {
         m.gl->renderer_desc.layers_uint = layers_of(stage, m.gl);
         if (!stage->desc.without_shader) {

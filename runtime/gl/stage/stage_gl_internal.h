@@ -216,8 +216,8 @@ noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
 
 /* The kinds that a slot of a desc was planned for, one after another; 0 past the last. */
 typedef struct noh_gl_candidate {
-    noh_kind_desc kind;
-    uint32_t mesh_count;
+    const noh_pack *pack;
+    uint32_t actor_count, mesh_count;
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
 } noh_gl_candidate;
 int noh_gl_candidate_at(const noh_stage_desc *desc, uint32_t kind, uint32_t index, noh_gl_candidate *out);

@@ -21,22 +21,27 @@
 
 /* ---- kinds of the plan ---- */
 
-int noh_gl_candidate_at(const noh_stage_desc *desc, uint32_t kind, uint32_t index, noh_gl_candidate *out)
+/* Not inlined: two descs lie on the stack, and callers have deep ones. */
+NOH_NEVER_INLINE int noh_gl_candidate_at(const noh_stage_desc *desc, uint32_t kind, uint32_t index,
+                                         noh_gl_candidate *out)
 {
     const noh_kind_desc *d = &desc->kinds[kind];
     noh_stage_desc alone = *desc;
+    noh_kind_desc filled;
     if (!d->changes || index > d->other_count) return 0;
     alone.kinds = index ? &d->others[index - 1u] : d;
     alone.kind_count = 1;
-    out->kind = noh_stage_kind_desc(&alone, 0);
-    out->mesh_count = noh_stage_items(&out->kind, out->items);
+    filled = noh_stage_kind_desc(&alone, 0);
+    out->pack = filled.mesh;
+    out->actor_count = filled.actor_count;
+    out->mesh_count = noh_stage_items(&filled, out->items);
     return 1;
 }
 
 noh_mesh noh_gl_candidate_mesh(const noh_stage_desc *desc, const noh_gl_candidate *of, uint32_t index)
 {
     noh_mesh mesh;
-    (void)noh_pack_mesh_at(of->kind.mesh, of->items[index].mesh, &mesh, NULL);
+    (void)noh_pack_mesh_at(of->pack, of->items[index].mesh, &mesh, NULL);
     return noh_gl_as_lit(desc, &mesh, mesh.header->level);
 }
 
@@ -65,7 +70,7 @@ static void want_of(const noh_stage_desc *desc, const noh_gl_candidate *of, noh_
         skinned++;
         fewer += mesh.header->level_count > 1u && mesh.header->influence_count > 1u;
     }
-    want->crowds |= of->kind.actor_count > 1u;
+    want->crowds |= of->actor_count > 1u;
     want->fewer_influences |= skinned == 1u && fewer == 1u;
 }
 

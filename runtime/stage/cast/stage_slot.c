@@ -53,6 +53,16 @@ static noh_result no_finer(noh_error *error)
                     "finer of a kind: the kinds of a slot are uploaded in pieces anyway; leave it NULL", 0, 0);
 }
 
+/* Not inlined: what measures what draws a kind has a deep stack, and a noh_stage_needs need not lie below it. */
+NOH_NEVER_INLINE static noh_result plan_posed(const noh_stage_desc *alone, noh_stage_plan *plan, noh_kind_room *room,
+                                              noh_error *error)
+{
+    noh_stage_needs needs;
+    const noh_result result = noh_stage_plan_kind(alone, 0, plan, &needs, error);
+    if (result == NOH_OK) noh_stage_room(alone, plan, 0, &needs, room);
+    return result;
+}
+
 /* A kind by itself, in kinds[0] of the plan. */
 NOH_NEVER_INLINE static noh_result plan_alone(const noh_stage_desc *desc, const noh_kind_desc *kind,
                                               const struct noh_gl_caps *caps, noh_stage_plan *plan, noh_kind_room *room,
@@ -60,7 +70,6 @@ NOH_NEVER_INLINE static noh_result plan_alone(const noh_stage_desc *desc, const 
 {
     noh_stage_desc alone = *desc;
     noh_kind_desc slot = *kind;
-    noh_stage_needs needs;
     noh_kind_room one;
     noh_result result;
     slot.changes = 1;
@@ -68,13 +77,11 @@ NOH_NEVER_INLINE static noh_result plan_alone(const noh_stage_desc *desc, const 
     alone.kind_count = 1;
     if (desc->gpu && kind->finer) return no_finer(error);
     memset(&plan->kinds[0], 0, sizeof plan->kinds[0]);
-    result = noh_stage_plan_kind(&alone, 0, plan, &needs, error);
-    if (result == NOH_OK) {
-        memset(&one, 0, sizeof one);
-        noh_stage_room(&alone, plan, 0, &needs, &one);
-        if (desc->gpu) result = desc->gpu->room(&alone, caps, plan, &one, error);
-        widen(&one, room);
-    }
+    memset(&one, 0, sizeof one);
+    result = plan_posed(&alone, plan, &one, error);
+    noh_stage_desc_by_plan(&alone, plan);
+    if (result == NOH_OK && desc->gpu) result = desc->gpu->room(&alone, caps, plan, &one, error);
+    if (result == NOH_OK) widen(&one, room);
     return result;
 }
 
