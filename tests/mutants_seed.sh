@@ -10,9 +10,9 @@
 # program runs is a survivor. Headers that more than 12 files include are left out, because a mutant there compiles them
 # all (NOH_LONG=1: they are not).
 #
-# A mutant's place in the draw follows from the seed, its function and its line: an edit elsewhere draws the same mutants.
-# What is killed is kept in NOH_BUILD/mutants_seed/judged until its file changes, so that a run that was interrupted goes
-# on, and after new tests only survivors are run again (to judge all: remove the file).
+# A mutant's place in the draw follows from the seed, its function and its line: an edit elsewhere draws the same
+# mutants. What is killed is kept in NOH_BUILD/mutants_seed/judged until its file changes, so that a run that was
+# interrupted goes on, and after new tests only survivors are run again (to judge all: remove the file).
 #
 # tests/survivors.txt lists survivors that were looked at, with the reason: they are run with NOH_LONG=1 alone. Prints a
 # table by room and operator, survivors, the largest functions that no test runs, and "N passed, N failed, N skipped".

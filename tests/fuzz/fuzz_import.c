@@ -300,9 +300,9 @@ static size_t seed_of(size_t which, uint8_t *to, const char **name)
     return strlen(wild_seeds[which].text);
 }
 
-/* Every kind of text with grammatical edits, and of bytes with edits of fields, cases first to first + count - 1. What a
- * case takes is limited: a file of a few kilobytes is refused or converted in seconds. The file as it is has to be read.
- * A case that fails leaves its file in the folder that is printed. */
+/* Every kind of text with grammatical edits, and of bytes with edits of fields, cases first to first + count - 1. What
+ * a case takes is limited: a file of a few kilobytes is refused or converted in seconds. The file as it is has to be
+ * read. A case that fails leaves its file in the folder that is printed. */
 static int run_wild(uint32_t first, uint32_t count)
 {
     static uint8_t bytes[1u << 16];

@@ -1,5 +1,5 @@
-/* What a stage draws alone: a mesh is mirrored if, and only if, the sizes along its axes have a negative product, however
- * it is turned. */
+/* What a stage draws alone: a mesh is mirrored if, and only if, the sizes along its axes have a negative product,
+ * however it is turned. */
 #include "stage/actors/stage_draws_internal.h"
 
 #include <string.h>
