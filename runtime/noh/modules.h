@@ -95,6 +95,9 @@ typedef struct noh_modifier {
     uint32_t scratch_bytes; /* of each job; modifiers of all kinds share it */
     /* noh_stage_shift_origin was called: subtract `by` from world points in the state */
     void (*shift)(const void *user, void *state, const float by[3]);
+    /* Asked by plans and init: what is wrong in a stage with job_count jobs, as a string constant; NULL: nothing.
+     * Without this function nothing is */
+    const char *(*refuse)(const void *user, uint32_t job_count);
 } noh_modifier;
 
 /* Get the state of an actor's modifier, to read and to write. Valid until the actor is despawned.
@@ -174,7 +177,8 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
  * smoothly.
  * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
  * whose actors are attached to others: a modifier does not know their own place.
- * Threads: the ground is read by jobs at the same time; a world's physics only if it allows that (body.h). */
+ * Threads: the ground is read by jobs at the same time. Plans and init refuse a world whose physics answers one thread
+ * (body.h) in a stage with several jobs; one that is set later is not asked. */
 
 /* Data shared by the feet of a kind's actors. */
 typedef struct noh_kind_feet {

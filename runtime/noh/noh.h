@@ -207,7 +207,7 @@ typedef struct noh_kind_desc {
     /* 1: its index is a slot: noh_stage_set_kind takes the kind out while the stage runs, and puts others in. The plan
      * reserves room for the largest of this kind and `others`, keeps it whole under bounds, and the slot shares no clips
      * with other kinds. 2: the same, and the slot is empty after init: this kind only sizes it. Default (0): the kind
-     * stays. With `gpu` such a stage has one morph path, never streams, and no finished vertices; bounds leave halves as
+     * stays. With `gpu` such a stage has one morph path, not streams, and no finished vertices; bounds leave halves as
      * they are; and a slot's kinds have no `finer` */
     int changes;
     const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes and others are ignored.
@@ -295,7 +295,7 @@ typedef struct noh_kind_room {
     uint64_t view_bytes;                                 /* of its clips' views, for each job */
     uint64_t scratch_bytes, module_scratch_bytes;        /* for each job, shared by all kinds */
     uint64_t pick_bytes, inertia_bytes;                  /* shared by all kinds */
-    uint64_t mesh_count, drawn_bytes, gpu_bytes;         /* with `gpu`: meshes; what draws them, on the CPU, on the GPU */
+    uint64_t mesh_count, drawn_bytes, gpu_bytes;         /* with `gpu`: meshes; what draws them, on CPU and GPU */
 } noh_kind_room;
 
 /* The plan of a kind. */

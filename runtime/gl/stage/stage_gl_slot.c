@@ -3,7 +3,7 @@
  * A slot has memory for the objects of its largest kind, and the plan counts their bytes on the GPU. GL objects differ
  * from kind to kind, so they are made when a kind comes, empty, and deleted when it goes; frames fill them in pieces.
  * Until all is there, the kind's actors are posed and given slots as ever, and not drawn: from then on the kind has the
- * sums and pictures of one that was there from the start. Programs are made with the stage, for all kinds of its plan. */
+ * sums and pictures of one that was there from the start. Programs are made with the stage, for all kinds of a plan. */
 #include <string.h>
 
 #include "core/base/assert_internal.h"

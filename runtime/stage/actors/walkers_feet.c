@@ -84,7 +84,12 @@ noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
 {
     NOH_ASSERT(feet);
     return (noh_modifier){
-        .name = "feet of near walkers", .modify = modify, .check = check, .user = feet, .state_bytes = sizeof(near_feet)
+        .name = "feet of near walkers",
+        .modify = modify,
+        .check = check,
+        .user = feet,
+        .state_bytes = sizeof(near_feet),
+        .refuse = noh_modifier_feet_refuse,
     };
 }
 

@@ -645,6 +645,8 @@ struct noh_feet;
 /* A pose is put on the ground: noh_feet_step, from the actor's home. */
 void noh_modifier_feet(noh_modifier_work *w, struct noh_feet *feet, const struct noh_kind_feet *f, float seconds,
                        int cut);
+/* noh_modifier.refuse of those that use a noh_kind_feet */
+const char *noh_modifier_feet_refuse(const void *user, uint32_t job_count);
 int noh_modifier_home_moved(const noh_modifier_work *w);
 
 /* After the radii of joints, floats and meshes are there. */
