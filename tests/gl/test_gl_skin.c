@@ -617,6 +617,11 @@ static void plans_choose_and_refuse(void **state)
     assert_int_equal(plan.mode, NOH_PALETTE_UNIFORM);
     assert_int_equal(plan.texel_count, 12 + 8 + 12 + 8); /* 9, 6, 12 and 8 rows, each at a multiple of 4 */
     assert_int_equal(plan.gpu_bytes, 16 * 40 + 16384);
+    strcpy(caps.renderer, "Mali-G52 r1 (Panfrost)");
+    assert_int_equal(noh_gl_skin_plan_make(&desc, &caps, &plan, &error), NOH_OK);
+    assert_int_equal(plan.mode, NOH_PALETTE_TEXTURE);
+    assert_non_null(strstr(plan.reason, "cost this GPU less"));
+    caps.renderer[0] = 0;
     caps.uniform_block_bytes_max = 16383; /* the one with dual quaternions no longer fits */
     assert_int_equal(noh_gl_skin_plan_make(&desc, &caps, &plan, &error), NOH_OK);
     assert_int_equal(plan.mode, NOH_PALETTE_TEXTURE);

@@ -26,7 +26,8 @@ typedef enum noh_quirk {
      * these, the first entry in the table applies */
     NOH_QUIRK_TILE_16,
     NOH_QUIRK_TILE_32,
-    NOH_QUIRK_TILE_64
+    NOH_QUIRK_TILE_64,
+    NOH_QUIRK_BLOCK_DEAR /* uniform blocks read at an index cost more than texels: palettes are in a texture */
 } noh_quirk;
 
 typedef struct noh_gl_quirk {

@@ -6,6 +6,7 @@
  * rows of the last frame follow. The row of user values is the last. */
 #include <string.h>
 
+#include "gl/device/gl_quirks_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 #include "core/base/assert_internal.h"
 #include "noh/base.h"
@@ -65,6 +66,7 @@ static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *c
                               noh_error *error)
 {
     uint32_t block = block_bytes(desc);
+    const noh_gl_quirk *dear = noh_gl_quirk_find(caps->renderer, NOH_QUIRK_BLOCK_DEAR);
     int fits = caps->uniform_block_bytes_max >= block, several = 0;
     for (uint32_t i = 0; i < desc->mesh_count; i++) {
         several |= count_of(desc, i) > 1u;
@@ -73,10 +75,11 @@ static noh_result choose_mode(const noh_gl_skin_desc *desc, const noh_gl_caps *c
         return noh_fail(error, NOH_ERR_UNSUPPORTED, "uniform blocks of this GPU are smaller than a palette",
                         caps->uniform_block_bytes_max, block);
     }
-    plan->mode = desc->mode ? desc->mode : several || !fits ? NOH_PALETTE_TEXTURE : NOH_PALETTE_UNIFORM;
+    plan->mode = desc->mode ? desc->mode : several || !fits || dear ? NOH_PALETTE_TEXTURE : NOH_PALETTE_UNIFORM;
     plan->reason = desc->mode ? "chosen by the desc"
                    : several  ? "a mesh has several instances, which one draw can contain"
                    : !fits    ? "uniform blocks of this GPU are smaller than a palette"
+                   : dear     ? dear->reason
                               : "one instance of each mesh";
     return NOH_OK;
 }
