@@ -115,16 +115,9 @@ vec3 noh_complexioned(vec3 albedo, vec3 normal)
     return mix(albedo, noh_v_complexion.rgb * (1.6 * light / (light + 0.06)), noh_v_complexion.a * iris);
 }
 #else
-/* Eumelanin darkens hair, pheomelanin makes it red; densities of d'Eon et al., "An energy-conserving hair reflectance
- * model", 2011, divided by the density of green. Less melanin is a share of the hair's own density: a power. */
-const vec3 noh_eumelanin = vec3(0.60, 1.0, 1.97), noh_pheomelanin = vec3(0.47, 1.0, 2.63);
-
 vec3 noh_complexioned(vec3 albedo, vec3 normal)
 {
-    vec2 by = noh_v_complexion.xy;
-    if (by == vec2(0.0)) return albedo;
-    vec3 kept = pow(max(albedo, vec3(1e-4)), vec3(exp(min(by.x, 0.0))));
-    return min(kept * exp(-max(by.x, 0.0) * noh_eumelanin - by.y * noh_pheomelanin), vec3(1.0));
+    return noh_hair_of(albedo, noh_v_complexion.xy);
 }
 #endif
 #endif

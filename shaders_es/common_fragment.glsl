@@ -31,6 +31,18 @@ float noh_strand_lobe(vec3 tangent, vec3 h, float sharpness)
     return smoothstep(-1.0, 0.0, c) * pow(max(1.0 - c * c, 0.0), 0.5 * sharpness);
 }
 
+/* Eumelanin darkens hair, pheomelanin makes it red; densities of d'Eon et al., "An energy-conserving hair reflectance
+ * model", 2011, divided by the density of green. Less melanin is a share of the hair's own density: a power.
+ * by  more melanin, or less; red */
+const vec3 noh_eumelanin = vec3(0.60, 1.0, 1.97), noh_pheomelanin = vec3(0.47, 1.0, 2.63);
+
+vec3 noh_hair_of(vec3 albedo, vec2 by)
+{
+    if (by == vec2(0.0)) return albedo;
+    vec3 kept = pow(max(albedo, vec3(1e-4)), vec3(exp(min(by.x, 0.0))));
+    return min(kept * exp(-max(by.x, 0.0) * noh_eumelanin - by.y * noh_pheomelanin), vec3(1.0));
+}
+
 #ifdef NOH_TOON_SHADE
 vec3 noh_pixel_color = vec3(1.0); /* the vertex's, for the shade's own texture */
 #endif

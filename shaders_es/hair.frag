@@ -11,6 +11,7 @@ in vec3 v_tangent;
 in vec3 v_normal;
 in vec2 v_at;
 flat in float v_strip;
+flat in vec2 v_melanin; /* of the head's complexion, as in noh_hair_of */
 flat in float v_fade; /* 0: hidden, the hair painted on the head shows instead */
 
 out vec4 o_color;
@@ -35,7 +36,8 @@ void main()
     }
 #ifndef NOH_DEPTH_ONLY
     vec3 t = normalize(v_tangent), n = normalize(v_normal), view = normalize(u_eye.xyz - v_position);
-    vec3 albedo = mix(u_root.rgb, u_tip.rgb, v_at.y) * mix(1.0, 0.6 + 0.8 * own.x, fine) * (0.8 + 0.4 * v_strip);
+    vec3 albedo = noh_hair_of(mix(u_root.rgb, u_tip.rgb, v_at.y), v_melanin);
+    albedo *= mix(1.0, 0.6 + 0.8 * own.x, fine) * (0.8 + 0.4 * v_strip);
     float deep = mix(1.0, 0.7 + 0.3 * (1.0 - between * between), fine) * mix(0.6, 1.0, smoothstep(0.0, 0.15, v_at.y));
 #ifdef NOH_LIT
     vec3 key = noh_key, key_color = noh_key_color * noh_key_shadow(v_position, n);

@@ -19,6 +19,7 @@ out vec3 v_tangent;
 out vec3 v_normal;
 out vec2 v_at;           /* across, -1 to 1; along, 0 to 1 */
 flat out float v_strip;  /* random number of the strip, 0 to 1 */
+flat out vec2 v_melanin;
 flat out float v_fade;
 
 float share_of(uint bits)
@@ -59,6 +60,7 @@ struct head {
     uint strip;
     int first; /* index of its first control hair */
     float fade, widen;
+    vec2 melanin;
     bool is_drawn;
 };
 
@@ -69,8 +71,11 @@ head head_of(uint instance)
     vec3 a = fetch_from(row, at), b = fetch_from(row, at + 1), c = fetch_from(row, at + 2);
     vec3 d = fetch_from(row, at + 3), own = fetch_from(row, at + 4);
     uint strip = instance - body * each;
-    return head(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, d), strip, int(own.x), own.y, u_crowd.w / max(own.z, 1.0),
-                float(strip) < own.z);
+    int bytes = int(own.y); /* with half of the fade behind the point */
+    ivec2 melanin = ivec2(bytes & 255, bytes >> 8);
+    melanin -= 256 * ivec2(greaterThan(melanin, ivec2(127)));
+    return head(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, d), strip, int(own.x), 2.0 * fract(own.y),
+                u_crowd.w / max(own.z, 1.0), vec2(melanin) / vec2(32.0, 64.0), float(strip) < own.z);
 }
 
 vec3 to_world(head h, vec3 p, float w)
@@ -120,5 +125,6 @@ void main()
     v_normal = dot(normal, normal) > 1e-20 ? normalize(normal) : wide;
     v_strip = b;
     v_fade = h.fade;
+    v_melanin = h.melanin;
     gl_Position = h.is_drawn ? u_view_projection * vec4(v_position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }

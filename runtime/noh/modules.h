@@ -134,7 +134,8 @@ typedef struct noh_hair_head {
     float world[12];        /* from head space (metres), less noh_stage_origin */
     float pixels_per_metre; /* of head space */
     float moves;            /* 0 (at rest) to 1 (in full motion) */
-    uint32_t views;         /* a bit for each view that sees it */
+    uint16_t views;         /* a bit for each view that sees it */
+    uint16_t melanin;       /* of its complexion's hair, two bytes (noh_complexion_random); 0: the haircut's colours */
     uint32_t slot;          /* 0..near_max - 1 if its hair moves; NOH_NONE: at rest */
 } noh_hair_head;
 

@@ -73,4 +73,14 @@ printf 'joint nowhere\nskull 0 0 0 1 1 1\n' >"$work/bad.hair"
 noh build "$build/demo/arm.glb" -o "$work/bad.noh" --hair "$work/bad.hair"
 expect 1 'no such joint'
 says "no skeleton has the joint 'nowhere'"
+
+# People by seed have hair of their own colours: from behind there is nothing else.
+for person in 0 1 2; do
+    noh render "$build/wig.noh" -o "$work/person_$person.png" --person $person --camera face,180,0 --size 64x64
+    expect 0 "person $person"
+done
+check 'they differ' sh -c '! cmp -s "$1" "$2" && ! cmp -s "$2" "$3"' - "$work/person_0.png" "$work/person_1.png" \
+    "$work/person_2.png"
+noh render "$build/wig.noh" -o "$work/x.png" --person 1.5
+expect 2 'a person is a whole number'
 finish

@@ -21,7 +21,7 @@
 #include "shaders.gen.h"
 
 #define SIDE_TEXELS 1024u /* of the texture; only an extreme desc needs more rows */
-#define HEAD_TEXELS 5u    /* 3 rows of 4 from head space; first control hair, fade, strips */
+#define HEAD_TEXELS 5u    /* 3 rows of 4 from head space; first control hair, melanin and fade, strips */
 #define PIECE_TEXELS 128u /* uploaded at a time */
 
 enum {
@@ -241,7 +241,7 @@ static void put_head(noh_stage_hair *h, const layout *l, const noh_hair_head *he
     float *out = h->table + 3u * HEAD_TEXELS * (size_t)at;
     memcpy(out, head->world, sizeof head->world);
     out[12] = (float)((head->slot == NOH_NONE ? l->rest : head->slot) * cut->header->hair_count);
-    out[13] = noh_haircut_fade(head->pixels_per_metre);
+    out[13] = (float)head->melanin + 0.5f * noh_haircut_fade(head->pixels_per_metre);
     out[14] = (float)noh_haircut_strips(cut, head->pixels_per_metre);
 }
 

@@ -231,6 +231,14 @@ static uint32_t slot_of(const noh_actor_hair *h, uint32_t actor)
     return NOH_NONE;
 }
 
+/* Two bytes of a complexion: more melanin of its hair, and red. */
+static uint16_t melanin_of(const noh_stage *stage, const noh_appearance *look)
+{
+    const float bytes = look->user[1];
+    const int is_there = stage->desc.user_values == NOH_USER_COMPLEXION && bytes > 0.0f && bytes < 16777216.0f;
+    return is_there ? (uint16_t)((uint32_t)bytes & 0xffffu) : 0u;
+}
+
 /* The head of an actor as the last frame showed it. Returns 0 if it was not shown. */
 static int see(const noh_actor_hair_desc *d, const noh_stage *stage, noh_actor actor, noh_hair_head *out)
 {
@@ -255,7 +263,8 @@ static int see(const noh_actor_hair_desc *d, const noh_stage *stage, noh_actor a
     }
     noh_matrix_multiply(joint, to_joint, out->world);
     out->pixels_per_metre = shown->scale / d->cut->header->metres * noh_stage_size(stage, a);
-    out->views = shown->views;
+    out->views = (uint16_t)shown->views;
+    out->melanin = melanin_of(stage, &a->look);
     return 1;
 }
 

@@ -13,12 +13,13 @@
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
 #include "convert/base/input_file.h"
+#include "sheet/sheet_faces.h"
 
 typedef struct render_args {
     const char *pack, *output, *pose, *path, *accumulate, *driver, *debug, *joint, *face, *springs, *hair, *wind, *tier,
         *decal_kind;
     uint32_t size[2];
-    double time_s, lod, turn, swing;
+    double person, time_s, lod, turn, swing;
     int show_bones, as_json;
     debug_kind shows;
     option_list weights, clips, anims, emotions, decals;
@@ -97,6 +98,9 @@ static int check_args(render_args *a)
     if (!status && a->clips.count > (int)NOH_LAYER_TRACKS_MAX) {
         status = tool_usage("--clip may be given at most %u times", NOH_LAYER_TRACKS_MAX);
     }
+    if (!status && !(a->person >= 0.0 && a->person < 4294966000.0 && a->person == floor(a->person))) {
+        status = tool_usage("--person must be a whole number from 1 to 4294965999");
+    }
     if (!status && !(a->swing >= 0.0 && a->swing <= 60.0)) status = tool_usage("--swing must be 0 to 60 seconds");
     a->view.width = a->size[0];
     a->view.height = a->size[1];
@@ -160,12 +164,24 @@ static int strike(picture *p, const render_args *a)
     return status ? status : figure_strike(&p->figure, &camera, a->size[0], a->size[1]);
 }
 
+/* The person of a seed; 0: as it was modelled. */
+static int take_person(picture *p, const render_args *a)
+{
+    sheet_faces faces;
+    int status = a->person > 0.0 ? sheet_faces_open(&faces, a->figure.file) : 0;
+    if (status || !(a->person > 0.0)) return status;
+    status = sheet_faces_hold(&faces, &p->figure, (uint32_t)a->person, 0);
+    sheet_faces_close(&faces);
+    return status;
+}
+
 static int draw(picture *p, const render_args *a, noh_gl_camera *camera, uint8_t *rgba)
 {
     const int alive = a->figure.alive;
     const int lives = alive || a->figure.stands || a->body.has_ground;
     const int hangs = !alive && !a->body.has_ground && a->rests && p->figure.hair.is_there;
-    int status = p->shows_bones ? 0 : strike(p, a);
+    int status = p->shows_bones ? 0 : take_person(p, a);
+    if (!status && !p->shows_bones) status = strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
     if (!status && (lives || hangs))
@@ -218,7 +234,8 @@ static int render(render_args *a, const pack_file *file)
     a->figure.file = file;
     a->figure.track_count = (uint32_t)a->clips.count;
     a->figure.face_layer = a->clips.count > 1;
-    a->figure.held_float_count = (uint32_t)a->weights.count;
+    a->figure.held_float_count = a->person > 0.0 ? FIGURE_HELD_ALL : (uint32_t)a->weights.count;
+    a->figure.complexions = a->person > 0.0;
     if (!status && a->clips.count) status = figure_open_anims(&anims, &a->anims, file, &a->figure);
     if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
@@ -285,6 +302,13 @@ static const option options[] = {
       .example = "rest" },
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions, .needs = "--face"),
+    { .name = "--person",
+      .kind = OPTION_NUMBER,
+      .at = offsetof(render_args, person),
+      .value = "SEED",
+      .what = "another person, by a whole number from 1 on: colours of skin, hair and eyes, and the mesh's identity "
+              "targets (noh sheet --faces shows many)",
+      .example = "7" },
     OPTION_SPRINGS(render_args, springs),
     OPTION_WEIGHT_RULES(render_args, figure.weight_rules),
     OPTIONS_BODY(render_args, body_wants),
