@@ -10,7 +10,7 @@ const path = require('path');
 const zlib = require('zlib');
 
 const [folder, port = '8000', host = 'localhost'] = process.argv.slice(2);
-const types = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.wasm': 'application/wasm' };
+const types = { '.html': 'text/html; charset=utf-8', '.js': 'text/javascript; charset=utf-8', '.wasm': 'application/wasm', '.txt': 'text/plain; charset=utf-8' };
 const codings = [['br', (bytes) => zlib.brotliCompressSync(bytes)], ['gzip', (bytes) => zlib.gzipSync(bytes)]];
 const packed = new Map(); // by name, coding and time of change
 

@@ -1,9 +1,9 @@
 /* context.c: a WebGL 2 context, accessed through gl.js. WebGL has no lookup by name, so a table lists the functions
- * that the library calls; no others are imported. */
+ * that the library calls, and get_proc is NULL; no others are imported. */
 #define GL_GLES_PROTOTYPES 1
 #include "context.h"
 
-#include <string.h>
+#include "gl/device/gl_api_internal.h"
 
 /* Functions beyond GL. Strings are cut to fit and written with their terminating zero. */
 #define NAMED(what) __attribute__((import_module("noh"), import_name(what)))
@@ -36,16 +36,26 @@ static const GLubyte *GL_APIENTRY get_string_i(GLenum what, GLuint index)
     return (const GLubyte *)text;
 }
 
-static const struct {
-    const char *name;
-    noh_gl_proc proc;
-} functions[] = {
+/* Stands in for gl_api_load.c, which looks functions up by name and links all names. */
+noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
+{
+    static const noh_gl_api table = {
 #define glGetString get_string
 #define glGetStringi get_string_i
-#define WEB_FUNCTION(field, result, parameters) { "gl" #field, (noh_gl_proc)gl##field },
-    NOH_GL_REQUIRED(WEB_FUNCTION)
+#define WEB_FUNCTION(field, result, parameters) .field = (result(NOH_GL_CALL *) parameters)gl##field,
+        NOH_GL_REQUIRED(WEB_FUNCTION)
 #undef WEB_FUNCTION
-};
+            .version = 300,
+        .is_es = 1
+    };
+    (void)get;
+    (void)user;
+    (void)error;
+    *api = table;
+    api->etc2 = noh_gl_has_extension(api, "WEBGL_compressed_texture_etc");
+    api->astc = noh_gl_has_extension(api, "WEBGL_compressed_texture_astc");
+    return NOH_OK;
+}
 
 void noh_web_enable_extensions(noh_platform_context *context)
 {
@@ -70,15 +80,6 @@ static noh_result create(const noh_platform_desc *desc, noh_platform_context **o
     return NOH_OK;
 }
 
-static noh_gl_proc get_proc(void *user, const char *name)
-{
-    (void)user;
-    for (size_t i = 0; i < sizeof functions / sizeof *functions; i++) {
-        if (strcmp(functions[i].name, name) == 0) return functions[i].proc;
-    }
-    return NULL;
-}
-
 /* The browser shows the canvas when the event handler or animation frame returns. */
 static noh_result present(noh_platform_context *context)
 {
@@ -98,6 +99,5 @@ static void destroy(noh_platform_context *context)
     (void)context;
 }
 
-const noh_platform noh_platform_web = {
-    "web", "WebGL 2 on a page's canvas", create, make_current, get_proc, present, size, destroy
-};
+const noh_platform noh_platform_web = { "web",  "WebGL 2 on a page's canvas", create, make_current, NULL, present, size,
+                                        destroy };

@@ -1,8 +1,21 @@
-/* face_only.c: stands in for cast_body.c and hair.c in face.wasm: bodies keep the bind pose, and hair and springs of a
- * pack stay still. */
+/* face_only.c: stands in for cast_body.c, hair.c, check_hair.c and check_springs.c in face.wasm: bodies keep the bind
+ * pose, and hair and springs of a pack are not read. */
 #include <emscripten.h>
 
+#include "core/pack/check_internal.h"
 #include "web.h"
+
+noh_result noh_check_hair(noh_check *check)
+{
+    (void)check;
+    return NOH_OK;
+}
+
+noh_result noh_check_springs(noh_check *check)
+{
+    (void)check;
+    return NOH_OK;
+}
 
 void web_cast_add_springs(noh_kind_desc *kind)
 {

@@ -24,7 +24,7 @@ noh_result web_open_context(void)
         return noh_fail(&web.error, NOH_ERR_UNSUPPORTED, "cannot create a WebGL 2 context: use a browser with WebGL 2",
                         0, 0);
     }
-    noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
+    noh_result result = noh_gl_api_load(&web.gl, NULL, NULL, &web.error);
     web.gl.decode = noh_etc2_decode;
     if (result || web.caps.version) return result; /* probed by another program on this context */
     return noh_gl_caps_probe(&web.gl, &web.caps, &web.error);
@@ -177,7 +177,7 @@ EMSCRIPTEN_KEEPALIVE void web_close(void)
 EMSCRIPTEN_KEEPALIVE int web_restore(void)
 {
     noh_web_enable_extensions(web.context);
-    noh_result result = noh_gl_api_load(&web.gl, noh_platform_web.get_proc, web.context, &web.error);
+    noh_result result = noh_gl_api_load(&web.gl, NULL, NULL, &web.error);
     web.gl.decode = noh_etc2_decode;
     if (!result) result = noh_stage_restore(web.stage, &web.error);
     if (!result) result = web_hair_restore();

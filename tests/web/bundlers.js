@@ -29,7 +29,7 @@ const build = {
     esbuild: (out) => {
         bin('esbuild', 'main.js', '--bundle', '--minify', '--format=esm', `--outfile=${out}/bundle.js`);
         const inside = path.join(project, 'node_modules/noh-character');
-        for (const name of ['noh.wasm', 'ear.bin', 'microphone.js', 'reach.js', 'gl.js', 'program.js', 'prepare.js', 'convert']) fs.cpSync(path.join(inside, name), path.join(out, name), { recursive: true });
+        for (const name of ['noh.wasm', 'noh.txt', 'ear.bin', 'microphone.js', 'reach.js', 'gl.js', 'program.js', 'prepare.js', 'convert']) fs.cpSync(path.join(inside, name), path.join(out, name), { recursive: true });
     },
     parcel: (out) => bin('parcel', 'build', 'index.html', '--dist-dir', out, '--public-url', './', '--no-cache', '--no-source-maps'),
 };

@@ -97,7 +97,7 @@ const fallen = (page, count) => page.waitForFunction((n) => character.fallen ===
 
 async function pushes(browser) {
     const page = await open(browser, wide, 'light=room&size=256');
-    const why = await page.evaluate(() => text(Module._web_cannot_fall()));
+    const why = await page.evaluate(() => Module.words(Module._web_cannot_fall()));
     check('push: offered where there are joints', await page.isVisible('#push') === await page.evaluate(() => Module._web_joint_count() > 0));
     if (await page.isVisible('#push')) {
         await page.click('#push');

@@ -75,6 +75,12 @@ async function refused(browser) {
         if (pack === 'none.nohz') await page.screenshot({ path: path.join(out, 'refused_page.png') });
         await page.close();
     }
+    const page = await newPage(browser); // sentences of errors are a file of their own
+    await page.route('**/*.txt', (route) => route.abort());
+    await page.goto(`${address()}/?pack=flipped`);
+    await page.waitForFunction(() => window.noh.error);
+    check('a damaged pack, and no sentences: it has a number', /error \d+ of the program/.test(await page.textContent('#message')), await page.textContent('#message'));
+    await page.close();
 }
 
 // A visitor's own file, chosen and dropped; one that is no pack or is broken leaves the page as it was.

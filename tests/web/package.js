@@ -4,6 +4,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
+const zlib = require('zlib');
 const { folder, out, check, faults, run, address } = require('./harness.js');
 const { newPage, slowly } = require('./browser.js');
 
@@ -177,6 +178,11 @@ async function programs(browser) {
     check('programs: each element loads its own', told.loaded === 'body.wasm face.wasm noh.wasm' && told.errors === '', JSON.stringify(told));
     check('programs: what one lacks, it says', told.pushed.map((words) => /has no falls: use noh\.wasm/.test(words)).join() === 'true,true,false', told.pushed.join(' | '));
     const sizes = await page.evaluate(() => ['face', 'body', 'all'].map((id) => document.getElementById(id).memory.pack));
+    const most = { face: 180000, body: 200000, noh: 235000 };
+    for (const [name, limit] of Object.entries(most)) {
+        const { length } = zlib.brotliCompressSync(fs.readFileSync(path.join(inside, `${name}.wasm`)));
+        check(`programs: ${name}.wasm takes ${limit / 1000} kB at most`, length <= limit, length);
+    }
     check('programs: all show the same pack', sizes[0] > 0 && sizes.every((size) => size === sizes[0]), sizes.join(' '));
     await close(page, 'programs');
 }

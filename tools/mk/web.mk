@@ -13,12 +13,13 @@ WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s AL
                -s INITIAL_MEMORY=$(WEB_STATIC) -s TOTAL_STACK=$(WEB_STACK) -s ERROR_ON_UNDEFINED_SYMBOLS=0
 # Blocks made again from their branches: 1 % smaller than what emcc leaves.
 WEB_OPT     := $$(em-config BINARYEN_ROOT)/bin/wasm-opt --enable-simd --enable-bulk-memory --enable-nontrapping-float-to-int \
-               --enable-mutable-globals --enable-sign-ext --flatten --rereloop -Oz
+               --enable-mutable-globals --enable-sign-ext --flatten --rereloop -Oz -Oz
 WEB_PACKAGE := $(patsubst platform/web/package/%,%,$(wildcard platform/web/package/*))
 # A request takes as long as kilobytes do, so the page's scripts are one, and so are the modules that it needs at once.
 WEB_SCRIPTS := $(addprefix platform/web/,page.js targets.js load.js light.js faces.js hair.js speech.js tabs.js greet.js)
 WEB_MODULES := $(addprefix platform/web/package/,camera.js pixels.js gl.js reach.js program.js pointer.js speech.js character.js)
-WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,noh.wasm body.wasm face.wasm ear.bin page.js $(filter %.js,$(WEB_PACKAGE))))
+WEB_FETCHED := noh.wasm body.wasm face.wasm noh.txt body.txt face.txt ear.bin
+WEB_PAGE    := $(addprefix $(WEB)/,index.html page.js poster_tall.jpg poster_wide.jpg page.noh page.nohz $(addprefix package/,$(WEB_FETCHED) page.js $(filter %.js,$(WEB_PACKAGE))))
 WEB_WORKER    := $(addprefix tools/web_convert/,worker.js webp.js)
 WEB_CONVERTER := $(addprefix $(WEB)/package/convert/,convert.js convert.wasm $(notdir $(WEB_WORKER)))
 WEB_OBJECTS := $(patsubst $(CURDIR)/%,%,$(BUILD))/web-objects# one name for make, however BUILD is written
@@ -91,7 +92,7 @@ $(WEB)/page.js: $(WEB_SCRIPTS)
 $(WEB)/package/page.js: $(WEB_MODULES) tools/web_join.sh
 	@mkdir -p $(@D)
 	$(Q)sh tools/web_join.sh $@ 'Character addPointers addGaze isSoftware' $(WEB_MODULES)
-$(addprefix $(WEB)/package/,noh.wasm body.wasm face.wasm ear.bin): $(WEB)/package/%: $(WEB_OBJECTS)/%
+$(addprefix $(WEB)/package/,$(WEB_FETCHED)): $(WEB)/package/%: $(WEB_OBJECTS)/%
 	@mkdir -p $(@D)
 	@cp $< $@
 $(WEB)/%: platform/web/%
@@ -99,7 +100,8 @@ $(WEB)/%: platform/web/%
 	@cp $< $@
 
 # The program with everything, the ones of bodies and of faces, and the planner that the tests run under node.
-WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c,$(wildcard platform/web/*.c)) $(RUNTIME_C)
+# context.c brings functions of WebGL in place of gl_api_load.c.
+WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C))
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
 WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
 WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
@@ -112,8 +114,12 @@ $(WEB_OBJECTS)/%.o: %.c | $(BUILD)/web-cc
 	@mkdir -p $(@D)
 	$(call say,EMCC,$@)
 	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
-$(WEB_OBJECTS)/shaders.gen.o: $(BUILD)/gen/shaders.gen.c | $(BUILD)/web-cc
+# C asks for uniforms by name: what a string has keeps its name.
+$(WEB_OBJECTS)/shaders.gen.c: $(BUILD)/gen/shaders.gen.c tools/web_shaders.js $(RUNTIME_C)
 	@mkdir -p $(@D)
+	$(Q)node tools/web_shaders.js $< $@.new $(RUNTIME_C) $(wildcard platform/web/*.c platform/web/festival/*.c tools/noh/crowd/*.c)
+	@mv $@.new $@
+$(WEB_OBJECTS)/shaders.gen.o: $(WEB_OBJECTS)/shaders.gen.c | $(BUILD)/web-cc
 	$(call say,EMCC,$@)
 	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
 $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
@@ -121,22 +127,26 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -o $@
 -include $(WEB_O:.o=.d) $(WEB_FACE_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
-# The ear's tables come apart (platform/web/ear_apart.c).
-WEB_EAR_O := $(WEB_OBJECTS)/runtime/life/face/ear_tables.o
-$(WEB_OBJECTS)/noh.wasm: $(filter-out $(WEB_EAR_O),$(WEB_O))
-$(WEB_OBJECTS)/body.wasm: $(filter-out $(WEB_EAR_O),$(WEB_BODY_O))
-$(WEB_OBJECTS)/face.wasm: $(filter-out $(WEB_EAR_O),$(WEB_FACE_O))
+# The ear's tables come apart (platform/web/ear_apart.c); what a program does not read, it does not check (unread.c,
+# face_only.c), and nobody wears garments (unclothed.c).
+WEB_LEFT_OUT := %/life/face/ear_tables.o %/pack/check_match.o %/pack/check_terrain.o %/cast/stage_wear.o %/stage/stage_cover.o
+WEB_STANDS_IN := $(addprefix $(WEB_OBJECTS)/platform/web/,unread.o unclothed.o)
+$(WEB_OBJECTS)/noh.wasm: $(filter-out $(WEB_LEFT_OUT),$(WEB_O)) $(WEB_STANDS_IN)
+$(WEB_OBJECTS)/body.wasm: $(filter-out $(WEB_LEFT_OUT),$(WEB_BODY_O)) $(WEB_STANDS_IN)
+$(WEB_OBJECTS)/face.wasm: $(filter-out $(WEB_LEFT_OUT) %/pack/check_hair.o %/pack/check_springs.o,$(WEB_FACE_O)) $(WEB_STANDS_IN)
 $(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c runtime/life/face/ear_internal.h
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
 	$(Q)$(CC) -std=c99 -O1 $(WARN) $(INCLUDES) $(filter %.c,$^) -o $(BUILD)/web_ear
 	$(Q)$(BUILD)/web_ear >$@.new
 	@mv $@.new $@
-$(WEB_PROGRAMS):
+$(WEB_PROGRAMS): tools/web_messages.js
 	$(call say,EMCC,$@)
-	$(Q)$(WEB_CC) $(WEB_FLAGS) $^ $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
+	$(Q)$(WEB_CC) $(WEB_FLAGS) $(filter %.o,$^) $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
 	$(Q)$(WEB_OPT) $@ -o $@
+	$(Q)node tools/web_messages.js $@ $(@:.wasm=.txt) $(filter runtime/%,$(RUNTIME_C)) $(call sources,runtime,*_internal.h)
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
+$(WEB_OBJECTS)/%.txt: $(WEB_OBJECTS)/%.wasm ;
 
 # ---- the page's converter ----
 
@@ -228,6 +238,6 @@ NPM := $(BUILD)/npm
 npm: deps-web
 	@$(MAKE) --no-print-directory -j$(JOBS) $(WEB_CONVERT)/convert.wasm || echo 'The package has no converter: it shows packs alone.'
 	@$(MAKE) --no-print-directory -j$(JOBS) $(NPM)/noh-character-$(VERSION).tgz
-$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(WEB_PROGRAMS) $(WEB_OBJECTS)/ear.bin LICENSE tools/npm.sh runtime/noh/base.h \
+$(NPM)/noh-character-$(VERSION).tgz: $(addprefix platform/web/package/,$(WEB_PACKAGE)) $(addprefix $(WEB_OBJECTS)/,$(WEB_FETCHED)) LICENSE tools/npm.sh runtime/noh/base.h \
     $(WEB_WORKER) $(wildcard $(WEB_CONVERT)/convert.wasm)
 	@VERSION=$(VERSION) sh tools/npm.sh $(NPM) platform/web/package $(WEB_OBJECTS) LICENSE $(WEB_CONVERT) $(WEB_WORKER)

@@ -31,7 +31,7 @@ static int open_context(gpu *g)
     if (noh_platform_web.create(NULL, &g->context, NULL, 0)) {
         return tool_fail("canvas", "cannot create a WebGL 2 context: use a browser with WebGL 2");
     }
-    if (noh_gl_api_load(&g->gl, noh_platform_web.get_proc, g->context, &error) ||
+    if (noh_gl_api_load(&g->gl, NULL, NULL, &error) ||
         noh_gl_caps_probe(&g->gl, &g->caps, &error)) {
         return tool_fail_error("canvas", &error);
     }
@@ -126,7 +126,7 @@ EMSCRIPTEN_KEEPALIVE int festival_restore(void)
     noh_error error = { NOH_OK, "", 0, 0 };
     gpu *g = &festival.g;
     noh_web_enable_extensions(g->context);
-    if (noh_gl_api_load(&g->gl, noh_platform_web.get_proc, g->context, &error) ||
+    if (noh_gl_api_load(&g->gl, NULL, NULL, &error) ||
         noh_stage_restore(festival.scene.stage, &error) ||
         noh_backdrop_restore(&festival.scene.backdrop, NULL, 0, &error)) {
         return tool_fail_error("canvas", &error);

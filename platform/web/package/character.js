@@ -3,7 +3,7 @@
 import { Camera, framed, front } from './camera.js';
 import { baked, forgetPrograms, linkAhead } from './gl.js';
 import { Pixels } from './pixels.js';
-import { Arrival, compile, fetchFirst, receive } from './program.js';
+import { Arrival, compile, explained, fetchFirst, learn, receive } from './program.js';
 import { reach } from './reach.js';
 import { Speech } from './speech.js';
 
@@ -110,10 +110,11 @@ export class Character extends EventTarget {
         };
         try {
             await this.arrive(source, () => shown, show, mine);
+            if (mine()) setTimeout(() => mine() && learn(this.program.module), prepares);
             if (mine() && !this.wants.elsewhere) this.prepared = new Promise((resolve) => { setTimeout(() => resolve(mine() && !this.lost && this.prepare()), prepares); });
         } catch (error) {
             if (shown === 0 && mine()) this.whole = was;
-            throw error;
+            throw await explained(error);
         }
     }
 

@@ -31,7 +31,7 @@ self.onmessage = async ({ data: { module, caps, pack, wants, lit, done } }) => {
     p.check(p._web_loaded());
     grow(p._web_plan_grows());
     const block = p._web_plan(...wants);
-    if (!block) throw new Error(p.words());
+    if (!block) throw p.failure();
     p.reserve(p._web_memory_for(pack.length, block));
     p.check(p._web_open(...wants));
     if (lit) self.postMessage({ programs: links });

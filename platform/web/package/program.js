@@ -12,12 +12,39 @@ const compiled = new Map(); // by address
 // What a page needs, in the form that bundlers follow: everything, no falls and no three.js, or faces alone.
 const programs = { all: () => new URL('./noh.wasm', import.meta.url), body: () => new URL('./body.wasm', import.meta.url), face: () => new URL('./face.wasm', import.meta.url) };
 
+// The sentences of their errors, which are not in them (tools/web_messages.js).
+const texts = { all: () => new URL('./noh.txt', import.meta.url), body: () => new URL('./body.txt', import.meta.url), face: () => new URL('./face.txt', import.meta.url) };
+const sentences = new WeakMap(); // by module: { address, lines: null or [address in memory, words] }
+const wordless = new WeakMap(); // by error: { module, at }
+
+// Fetches the sentences of a program; without them an error has a number.
+export async function learn(module) {
+    const known = sentences.get(module), answer = known && !known.lines && await fetch(known.address).catch(() => null);
+    if (answer && answer.ok) known.lines = (await answer.text()).split('\n').map((line) => [parseInt(line, 10), line.slice(line.indexOf(' ') + 1)]);
+}
+
+function sentence(module, at) {
+    const { lines } = sentences.get(module) || {}, line = lines && lines.filter(([from, words]) => from <= at && at < from + words.length).pop();
+    return line ? line[1].slice(at - line[0]) : `error ${at} of the program`;
+}
+
+// The same error, with its sentence.
+export async function explained(error) {
+    const { module, at } = wordless.get(error) || {};
+    if (module) {
+        await learn(module);
+        error.message = sentence(module, at);
+    }
+    return error;
+}
+
 // A program, compiled once for all characters: one of these, or an address; tell(taken): its bytes, while they arrive.
 export function compile(program = 'all', tell) {
     const key = String(Object.hasOwn(programs, program) ? programs[program]() : program);
     if (!compiled.has(key)) {
         const module = compileFrom(key, 'program', tell);
-        module.catch(() => compiled.delete(key)); // the next call tries again
+        module.then((made) => sentences.set(made, { address: Object.hasOwn(texts, program) ? texts[program]() : key.replace(/\.wasm$/, '.txt'), lines: null }),
+            () => compiled.delete(key)); // the next call tries again
         compiled.set(key, module);
     }
     return compiled.get(key);
@@ -37,7 +64,7 @@ export class Program {
         const { imports, textures, buffers } = importsOf(gl, program.heap);
         const instance = await WebAssembly.instantiate(module, { ...imports, env: { ...imports.env, memory } });
         for (const [name, value] of Object.entries(instance.exports)) if (name.startsWith('web_')) program[`_${name}`] = value;
-        Object.assign(program, { gl, textures, buffers });
+        Object.assign(program, { module, gl, textures, buffers });
         instance.exports._initialize();
         if (caps) program.heap.U8.set(caps, program._web_caps());
         return program;
@@ -56,10 +83,16 @@ export class Program {
     text(at) { return textAt(this.heap, at); }
     UTF8ToString(at) { return textAt(this.heap, at); }
     floats(at, count) { return this.heap.F32.subarray(at >> 2, (at >> 2) + count); }
-    words() { return this.text(this._web_error()); }
+    // The sentence at an address.
+    words(at = this._web_error()) { return this.text(at) || sentence(this.module, at); }
+    failure() {
+        const at = this._web_error(), error = new Error(this.words(at));
+        if (!this.text(at)) wordless.set(error, { module: this.module, at });
+        return error;
+    }
 
     // Check a noh_result; throws an error with its message.
-    check(result) { if (result) throw new Error(this.words()); }
+    check(result) { if (result) throw this.failure(); }
 
     reserve(bytes) {
         const more = Math.ceil((bytes - this.memory.buffer.byteLength) / PAGE);
@@ -93,10 +126,10 @@ export class Arrival {
         if (String.fromCharCode(...all.subarray(0, 4)) !== 'NOHZ') return this.shows;
         this.program.HEAPU8.set(all.subarray(0, head), this.program._web_head());
         const memory = this.program._web_wire_memory();
-        if (!memory) throw new Error(this.program.words());
+        if (!memory) throw this.program.failure();
         this.program.reserve(memory);
         this.place = this.program._web_wire();
-        if (!this.place) throw new Error(this.program.words());
+        if (!this.place) throw this.program.failure();
         this.parts = [];
         return this.unpack(all);
     }
@@ -136,13 +169,13 @@ export class Arrival {
         planner._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         const given = [path, wants.characters, wants.alive ? 1 : 0, tierOf(this.gl, wants.tier) === 'phone' ? 1 : 0];
         const block = this.around(() => planner._web_plan(...given));
-        if (!block) throw new Error(planner.words());
+        if (!block) throw planner.failure();
         const pages = Math.max(LEAST, Math.ceil(planner._web_memory_for(bytes, block) / PAGE));
         const memory = new WebAssembly.Memory({ initial: pages, maximum: pages });
         const program = await Program.start(this.module, this.gl, memory, this.caps());
         program._web_set_elsewhere(wants.elsewhere ? 1 : 0);
         program.HEAPU8.set(planner.HEAPU8.subarray(planner._web_loaded_at(), planner._web_loaded_at() + bytes), program._web_pack(bytes));
-        return Object.assign(program, { module: this.module, packBytes: bytes, given, open: () => program.check(program._web_open(...given)) });
+        return Object.assign(program, { packBytes: bytes, given, open: () => program.check(program._web_open(...given)) });
     }
 
     // The capabilities of the context, once probed.
