@@ -175,9 +175,9 @@ static uint32_t come(pair *t, uint32_t kind, int lost)
         if (!stats->coming) break;
         assert_int_equal(stats->coming, 1u << kind);
         if (frames == 1u) {
-            t->full.c.stage->kinds[kind].comes = 1;
+            t->full.c.stage->kinds[kind].finer.hidden = 1;
             assert_int_equal(apart(&t->late, &t->full, &t->to), 0);
-            t->full.c.stage->kinds[kind].comes = 0;
+            t->full.c.stage->kinds[kind].finer.hidden = 0;
         }
         if (lost && frames == 2) lose(t);
     }

@@ -566,7 +566,7 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         if (!gl->kinds[i].slot || !gl->kinds[i].items) continue;
         memset(&gl->kinds[i].filling, 0, sizeof gl->kinds[i].filling);
-        if (!stage->kinds[i].comes) result = noh_gl_slot_fill_all(stage, i, error);
+        if (!stage->kinds[i].finer.hidden) result = noh_gl_slot_fill_all(stage, i, error);
     }
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
@@ -721,7 +721,7 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
         return noh_stage_gone(error, actor);
     }
     shown = &stage->shown[a - stage->actors];
-    if (index >= k->plan->mesh_count || k->comes || shown->frame != stage->frame || !shown->views) {
+    if (index >= k->plan->mesh_count || k->finer.hidden || shown->frame != stage->frame || !shown->views) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "the actor has no such mesh, no view of the last frame saw it, or its kind is not uploaded yet",
                         index, k->plan->mesh_count);

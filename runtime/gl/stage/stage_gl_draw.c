@@ -222,7 +222,7 @@ noh_result noh_gl_begin_alone(const noh_stage *stage, noh_gl_renderer *renderer,
     noh_result result = check_draw(stage, view, 1, error);
     if (result) return result;
     shown = a ? &stage->shown[a - stage->actors] : NULL;
-    if (!a || k->comes || shown->frame != stage->frame || !(shown->views >> view & 1u)) {
+    if (!a || k->finer.hidden || shown->frame != stage->frame || !(shown->views >> view & 1u)) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the actor is gone, or the view did not see it in the last frame",
                         actor.id, 0);
     }

@@ -262,7 +262,7 @@ int noh_gl_slot_fill(noh_stage *s, uint32_t kind, uint32_t *bytes)
 static void show(noh_stage *s, uint32_t kind)
 {
     noh_gl_model *model;
-    s->kinds[kind].comes = 0;
+    s->kinds[kind].finer.hidden = 0;
     for (uint32_t m = 0; (model = model_of(s, kind, m)) != NULL; m++) model->waits = 0;
 }
 
@@ -280,6 +280,6 @@ noh_result noh_gl_slot_fill_all(noh_stage *s, uint32_t kind, noh_error *error)
 void noh_gl_slots_show(noh_stage *s)
 {
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        if (s->kinds[i].comes && ((const noh_stage_gl *)s->gpu)->kinds[i].filling.done) show(s, i);
+        if (s->kinds[i].finer.hidden && ((const noh_stage_gl *)s->gpu)->kinds[i].filling.done) show(s, i);
     }
 }

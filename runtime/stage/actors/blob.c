@@ -190,7 +190,7 @@ uint32_t noh_actor_blobs(const noh_stage *stage, noh_actor actor, const noh_blob
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     uint32_t count = 0;
     NOH_ASSERT(rig && ground && blobs);
-    if (a && k->comes) return 0;
+    if (a && k->finer.hidden) return 0;
     for (uint32_t i = 0; a && i < rig->body_count; i++) {
         const noh_blob_body *body = &rig->bodies[i];
         float matrix[12], centre[3], half[3][3];

@@ -328,7 +328,7 @@ static void draw_from_far(const noh_stage_pass *pass)
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const walk w = { pass, &s->kinds[i], 0, UINT32_MAX, NOH_STAGE_OPAQUE };
         const uint32_t mesh = first_blended(w.k);
-        for (uint32_t p = 0; mesh != NOH_NONE && !w.k->comes && p < noh_stage_seen(w.k); p++) {
+        for (uint32_t p = 0; mesh != NOH_NONE && !w.k->finer.hidden && p < noh_stage_seen(w.k); p++) {
             if (!is_seen(&w, p)) continue;
             s->by_distance[count].distance = distance_of(&w, mesh, p);
             s->by_distance[count++].actor = w.k->first_actor + w.k->order[p];
@@ -350,7 +350,7 @@ void noh_stage_draw_pass(const noh_stage_pass *pass)
     }
     for (uint32_t i = 0; i < pass->s->desc.kind_count; i++) {
         walk w = { pass, &pass->s->kinds[i], 0, UINT32_MAX, NOH_STAGE_OPAQUE };
-        if (w.k->comes) continue;
+        if (w.k->finer.hidden) continue;
         if (pass->blended) {
             draw_blended(&w);
         } else {

@@ -167,11 +167,12 @@ typedef struct noh_stage_targets {
     uint32_t corrective_count, weight_rule_count;
 } noh_stage_targets;
 
-/* Levels that come later. */
+/* What comes later: levels or, in a slot, all of the kind. */
 typedef struct noh_stage_finer {
     uint32_t kind;        /* the kind whose finer levels it shares: itself, or an earlier one; NOH_NONE: none come */
     noh_stage_load state; /* of `kind` */
     const noh_pack *from; /* NULL: none */
+    int hidden;           /* 1: until all of the kind is uploaded to its slot */
 } noh_stage_finer;
 
 /* Where no clip fits: a set of one clip that is the bind pose. */
@@ -207,7 +208,6 @@ typedef struct noh_stage_kind {
     noh_lod_table table;
     uint32_t first_there; /* the finest level that `desc.mesh` has, and the plan */
     noh_stage_finer finer;
-    int comes; /* 1: it is uploaded, and not drawn yet */
     float *joint_radii; /* [joint_count] with all weights 0; NULL: rigid */
     float reach[4];     /* centre and radius in model space: holds the actor in any pose of its clips, with their
                          * weights, and all of 0..1 */

@@ -128,7 +128,7 @@ void noh_stage_load_piece(noh_stage *s)
     s->stats.loading = s->stats.coming = 0;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         noh_stage_kind *k = &s->kinds[i];
-        if (k->comes) {
+        if (k->finer.hidden) {
             (void)s->desc.gpu->fill(s, i, &bytes);
             s->stats.loading++;
             s->stats.coming |= 1u << i;

@@ -218,7 +218,7 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
     result = s->desc.gpu && desc->finer ? no_finer(error) : plan_slot(s, kind, error);
     if (result == NOH_OK) result = open_slot(s, kind, error);
     if (result == NOH_OK && s->gpu) result = s->desc.gpu->open(s, kind, error);
-    s->kinds[kind].comes = s->gpu != NULL;
+    s->kinds[kind].finer.hidden = s->gpu != NULL;
     d->finer = NULL;
     if (result != NOH_OK) empty(s, kind);
     return result;
