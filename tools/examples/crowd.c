@@ -1,6 +1,6 @@
-/* crowd.c: a crowd that reacts. Twenty-four figures cross a square. Something bursts in its middle: who stands next to
- * it is knocked down, who is near hurries away, who is far off stops and turns to it. The fallen get up, and all walk on.
- * Prints what the crowd does, and saves a picture before, soon after, and at the end.
+/* crowd.c: a crowd that reacts. Twenty-four figures cross a square. Something bursts in its middle: figures
+ * next to it are knocked down, near ones hurry away, far ones stop and turn to it. Then the fallen get up, and all walk
+ * on. Prints what the crowd does, and saves a picture before, soon after, and at the end.
  *
  *   crowd FIGURE.noh [-o NAME]
  *

@@ -86,7 +86,7 @@ void noh_gl_covers_delete(const noh_stage_desc *desc, const noh_stage_plan *plan
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         for (uint32_t c = 0; kinds[i].covers && c < desc->kinds[i].cover_count; c++) {
             noh_gl_cover *cover = &kinds[i].covers[c];
-            if (kind != NOH_NONE && i != kind) { /* what it hid of others does not count for who comes next */
+            if (kind != NOH_NONE && i != kind) { /* what it hid of others does not count for the next kind */
                 if (cover->garments >> kind & 1u) cover->garments = 0;
                 continue;
             }

@@ -195,9 +195,9 @@ static float distance_to(const float eye[3], const float at[3])
     return noh_sqrt(noh_dot3(to, to));
 }
 
-/* A sphere holds more than the figure: next to it, its nearest point is near where the figure is not. So that who comes
- * nearer is always shown larger, the sphere's nearest point gives way to the figure's from NEAR_RADII to 1 of its radii
- * about it: neither is farther than what can be seen. */
+/* A sphere holds more than the figure: next to it, its nearest point is near where the figure is not. So that a figure
+ * that comes nearer is always shown larger, the sphere's nearest point gives way to the figure's from NEAR_RADII to 1 of
+ * its radii about it: neither is farther than what can be seen. */
 static float nearest_of_both(float of_sphere, float of_figure, float share)
 {
     return of_figure > of_sphere ? of_sphere + (of_figure - of_sphere) * (share < 1.0f ? share : 1.0f) : of_sphere;

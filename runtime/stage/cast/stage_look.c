@@ -110,8 +110,8 @@ float noh_stage_size(const noh_stage *s, const noh_stage_actor *a)
     return place.scale;
 }
 
-/* Who comes into view is chosen for by a pose that may be old, or by none: the next frame, which knows what this one
- * shows, chooses afresh. */
+/* The detail of an actor that comes into view is chosen by a pose that may be old, or by none: the next frame, which
+ * knows what this one shows, chooses again. */
 static int is_fresh(const noh_stage *s, noh_stage_actor *a)
 {
     if (a->was_seen < 3u) a->was_seen++;

@@ -227,7 +227,7 @@ static void a_foot_of_two_joints_steps_once(void **state)
     }
 }
 
-/* Who stands all the while has no step, and the report says so. */
+/* A figure that only stands takes no step, and the report says so. */
 static void no_step_is_a_warning(void **state)
 {
     raw_set *set = walker(1);

@@ -110,7 +110,7 @@ static void none_climbs_what_is_too_steep(void **state)
     free(crowd);
 }
 
-/* Who stands on it walks down; ground that ends is level beyond. */
+/* An agent on ground that is too steep walks down; ground that ends is level beyond. */
 static void from_steep_ground_they_come_down(void **state)
 {
     const noh_field f = field_of(ridge);

@@ -69,7 +69,7 @@ static void repulsion_is_strongest_at_contact(void **state)
     assert_true(literal_near < 0.06f && literal_far > 3.7f); /* stronger where it is further */
 }
 
-/* One who stands 2.9 m higher on stairs is as near on the ground. */
+/* An agent 2.9 m higher on stairs is as near on the ground. */
 static void heights_are_no_distance(void **state)
 {
     const float level[3] = { 0.6f, 0.0f, 0.0f }, above[3] = { 0.6f, 2.9f, 0.0f }, to[2] = { 0.6f, 0.0f };

@@ -312,7 +312,7 @@ static void none_starves_where_all_ask(void **state)
     close_town(&t);
 }
 
-/* A bench is entered, used until the need is gone, and left; and who does not come loses it. */
+/* A bench is entered, used until the need is gone, and left; an agent that does not come loses it. */
 static void an_object_knows_what_is_done_with_it(void **state)
 {
     static const float at[2] = { 0.0f, 0.0f }, needs[1] = { 0.5f };

@@ -681,7 +681,7 @@ static void what_walkers_cannot_use_is_refused(void **state)
     close_street(&s);
 }
 
-/* Who stands turns to where it is asked to look, and steps while it turns. */
+/* A walker that stands turns to where it is asked to look, and steps while it turns. */
 static void who_stands_turns(void **state)
 {
     static const float at[2] = { 0.0f, 0.0f }, ahead[2] = { 0.0f, 1e-3f }, aside[2] = { 3.0f, 0.0f };
