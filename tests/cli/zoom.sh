@@ -54,7 +54,7 @@ zooms() {
 costs() {
     noh budget "$2" --nominal --json
     expect 0 "$1: budget"
-    awk '/"levels":/ { on = 1 } /"material_costs":/ { on = 0 } on && /"(vertices|triangles|texels|pairs)":/ { gsub(/[",:]/, ""); v[$1] = $2 }
+    awk '/"levels": \[/ { on = 1 } /\]/ { on = 0 } on && /"(vertices|triangles|texels|pairs)":/ { gsub(/[",:]/, ""); v[$1] = $2 }
          on && /"gpu_bytes"/ { print v["vertices"], v["triangles"], v["texels"], v["pairs"] }' "$work/out" >"$work/levels"
     awk -v name="$1" 'NR == 1 { v = $1; t = $2; a = $3; p = $4 }
          { printf "# %s, level %d: vertices %.3f, triangles %.3f, accumulation texels %.3f, pairs %.3f\n", name, NR - 1, $1 / v, $2 / t, $3 / a, $4 / p }' "$work/levels"

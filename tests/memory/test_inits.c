@@ -11,6 +11,7 @@
 #include "motion/graph/graph_internal.h"
 #include "noh/base.h"
 #include "noh/modules.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "stage/character/joint_lod_internal.h"
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
@@ -431,7 +432,7 @@ INIT(pick)
     return noh_pick(&surface, origin, direction, 100.0f, memory, bytes, &hit, error);
 }
 
-INIT(gl_morph_init)
+static noh_result morph_init(void *memory, size_t bytes, int empty, noh_error *error)
 {
     const noh_gl_device on = device();
     noh_gl_morph_desc desc;
@@ -441,9 +442,20 @@ INIT(gl_morph_init)
     desc.meshes = &s.mesh;
     desc.mesh_count = 1;
     desc.path = NOH_MORPH_CPU;
-    result = noh_gl_morph_init(memory, bytes, &on, &desc, &morph, error);
+    result = empty ? noh_gl_morph_init_empty(memory, bytes, &on, &desc, NULL, &morph, error)
+                   : noh_gl_morph_init(memory, bytes, &on, &desc, &morph, error);
     if (result == NOH_OK) noh_gl_morph_delete(morph);
     return result;
+}
+
+INIT(gl_morph_init)
+{
+    return morph_init(memory, bytes, 0, error);
+}
+
+INIT(gl_morph_init_empty)
+{
+    return morph_init(memory, bytes, 1, error);
 }
 
 INIT(gl_skin_init)
@@ -525,6 +537,7 @@ static const struct {
     ROW(reflection_init),
     ROW(pick),
     ROW(gl_morph_init),
+    ROW(gl_morph_init_empty),
     ROW(gl_skin_init),
     ROW(stage_init),
 };
