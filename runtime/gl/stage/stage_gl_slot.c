@@ -226,8 +226,8 @@ void noh_gl_slot_close(noh_stage *s, uint32_t kind)
 static int fill_meshes(const noh_stage *s, uint32_t kind, noh_gl_filling *f, uint32_t *bytes)
 {
     const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
-    for (; f->item < s->plan->kinds[kind].mesh_count; f->item++) {
-        noh_gl_model *model = model_of(s, kind, f->item);
+    noh_gl_model *model;
+    for (; (model = model_of(s, kind, f->item)) != NULL; f->item++) {
         if (model->mesh.mesh.header) { /* else another item owns its model */
             if (!noh_gl_mesh_fill(d->api, &model->mesh, &model->mesh.mesh, &f->mesh_at, bytes)) return 0;
             if (model->morph && !noh_gl_morph_fill(model->morph, &model->mesh.mesh, &f->at, bytes)) return 0;

@@ -80,6 +80,11 @@ static const char *check(const void *user, const void *state)
     return noh_feet_check(&n->feet);
 }
 
+static const char *refuse(const void *user, uint32_t job_count)
+{
+    return noh_modifier_feet_refuse(user, job_count);
+}
+
 noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
 {
     NOH_ASSERT(feet);
@@ -89,7 +94,7 @@ noh_modifier noh_walkers_feet_modifier(const noh_kind_feet *feet)
         .check = check,
         .user = feet,
         .state_bytes = sizeof(near_feet),
-        .refuse = noh_modifier_feet_refuse,
+        .refuse = refuse,
     };
 }
 
