@@ -99,12 +99,13 @@ noh_result noh_gl_covers_create(const noh_stage_desc *desc, const noh_stage_plan
 }
 
 void noh_gl_covers_delete(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_device *device,
-                          noh_gl_kind *kinds)
+                          noh_gl_kind *kinds, uint32_t kind)
 {
     (void)desc;
     (void)plan;
     (void)device;
     (void)kinds;
+    (void)kind;
 }
 
 void noh_gl_choose_covers(noh_stage *stage)

@@ -95,8 +95,8 @@ typedef struct noh_modifier {
     uint32_t scratch_bytes; /* of each job; modifiers of all kinds share it */
     /* noh_stage_shift_origin was called: subtract `by` from world points in the state */
     void (*shift)(const void *user, void *state, const float by[3]);
-    /* Asked by plans and init: what is wrong in a stage with job_count jobs, as a string constant; NULL: nothing.
-     * Without this function nothing is */
+    /* Asked by plans, init and noh_stage_set_kind: what is wrong in a stage with job_count jobs, as a string constant;
+     * NULL: nothing. Without this function it fits every stage */
     const char *(*refuse)(const void *user, uint32_t job_count);
 } noh_modifier;
 

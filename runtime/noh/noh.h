@@ -211,8 +211,9 @@ typedef struct noh_kind_desc {
      * they are; and a slot's kinds have no `finer` */
     int changes;
     const struct noh_kind_desc *others; /* [other_count] with `changes`; their own changes and others are ignored.
-                                         * Read by plans, with `gpu` also by init, and their packs by
-                                         * noh_stage_shader_create; not kept. Default (NULL) none */
+                                         * Read by plans, with `gpu` also by init; not kept. With `gpu` the packs of
+                                         * all kinds of the plan are read as long as the stage is: by new programs, and
+                                         * by noh_stage_set_kind. Default (NULL) none */
     uint32_t other_count;
 } noh_kind_desc;
 
@@ -391,7 +392,7 @@ typedef struct noh_stage_stats {
     uint32_t resting;                      /* actors without a slot yet: drawn without targets */
     uint32_t left_out;                     /* actors in view but not drawn: visible_max is too small */
     uint32_t loading;                      /* kinds that are loading, or finer levels of them (noh_stage_load_level) */
-    uint32_t coming;                       /* bit k: kind k is not drawn yet (noh_stage_set_kind) */
+    uint32_t coming;                       /* bit k: kind k was not drawn yet in the last frame (noh_stage_set_kind) */
     uint32_t load_bytes;                   /* bytes of them uploaded */
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
@@ -824,11 +825,12 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
  * runs goes on with the same bits; the kind then equals one that was there from init. The state holds which kinds are
  * in the slots, and is restored only where they are the same. Ids of its former actors stay gone.
  * With `gpu` its GL objects are made now and filled in pieces by the frames that follow. Its actors move and are posed
- * meanwhile, but nothing is drawn of them until all is there (noh_stage_stats.coming); an error of GL sends a piece
- * again. Programs are those that the kinds of the plan need: none is compiled.
+ * and picked meanwhile, but nothing is drawn of them until all is there (noh_stage_stats.coming); an error of GL sends
+ * a piece again. Programs are those that the kinds of the plan need: none is compiled.
  * kind    the index of the slot
- * desc    as in noh_stage_desc.kinds; any kind that fits, planned for or not. NULL: empty the slot. No actor may be of
- *         its kind, and no hair, walkers or other objects that were made for it may be used any more
+ * desc    as in noh_stage_desc.kinds; any kind that fits, planned for or not. Its packs must stay readable until the
+ *         slot is emptied. NULL: empty the slot. No actor may be of its kind; make hair, walkers, patches of decals and
+ *         other objects that were made for it, or drawn on it, again before you use them
  * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
  *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
  *         where: what there is), or the driver is out of memory; UNSUPPORTED it needs a program that no kind of the

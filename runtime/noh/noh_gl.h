@@ -400,7 +400,7 @@ noh_result noh_stage_morph_plan(const noh_stage_desc *desc, const noh_gl_caps *c
 
 /* A mesh of an actor on the GPU. */
 typedef struct noh_stage_drawn {
-    const noh_gl_mesh *mesh; /* valid as long as the stage */
+    const noh_gl_mesh *mesh; /* valid until the next frame, or until its kind leaves its slot */
     noh_gl_morph_binding morph;
     noh_gl_skin_binding skin;
     int is_morphed, is_skinned; /* 0: do not use that binding */

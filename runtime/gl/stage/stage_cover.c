@@ -163,7 +163,7 @@ static uint32_t garments_on(const noh_stage *s, uint32_t index)
     uint32_t garments = 0;
     for (uint32_t g = s->shown[index].worn; g; g = s->shown[g - 1u].next_worn) {
         const noh_stage_kind *k = noh_stage_kind_of(s, g - 1u);
-        if (s->shown[g - 1u].views && k->desc->mesh->runs[NOH_CHUNK_COVER].count)
+        if (s->shown[g - 1u].views && !k->finer.hidden && k->desc->mesh->runs[NOH_CHUNK_COVER].count)
             garments |= 1u << (uint32_t)(k - s->kinds);
     }
     return garments;

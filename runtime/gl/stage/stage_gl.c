@@ -191,7 +191,7 @@ static void carve_kinds(measure *m)
     if (m->gl) m->gl->kinds = kinds;
 }
 
-/* Memory for what draws the kinds of slots, and a model for each of their meshes after the `stay` others. */
+/* Memory for what draws the kinds of slots, and models of their meshes, after those of kinds that stay. */
 static void carve_slots(measure *m)
 {
     uint32_t model = m->gl ? m->gl->model_count : 0;
@@ -290,6 +290,7 @@ static void carve_head(measure *m)
         (void)noh_gl_candidate_meshes(m->asked, meshes + stay);
         gl->renderer_desc = renderer_desc(m->asked, m->plan);
         gl->programs[0] = gl->programs[1] = 0;
+        gl->needs_program[0] = gl->needs_program[1] = 0;
         gl->renderer = renderer;
         gl->variants = variants;
         gl->variants_bytes = variants_bytes;

@@ -231,7 +231,7 @@ noh_result noh_gl_slots_compile(const noh_stage_desc *asked, noh_stage_gl *gl, u
 void noh_gl_slots_forget_programs(noh_stage_gl *gl, const noh_gl_device *device);
 /* Compile the programs of a lost context again. */
 noh_result noh_gl_slots_recompile(noh_stage_gl *gl, const noh_stage_desc *desc, uint32_t path, noh_error *error);
-/* Make what draws it; the second after init, when no program may be missing. */
+/* Make what draws it. slot_come, after init, refuses a kind whose programs are missing. */
 noh_result noh_gl_slot_open(noh_stage *s, uint32_t kind, noh_error *error);
 noh_result noh_gl_slot_come(noh_stage *s, uint32_t kind, noh_error *error);
 /* Fill it at once. */

@@ -59,7 +59,7 @@ uint32_t noh_gl_candidate_meshes(const noh_stage_desc *desc, noh_mesh *meshes)
     return count;
 }
 
-/* As renderer_desc of stage_gl.c does for kinds that stay, whose levels the plan has. */
+/* The same as renderer_desc in stage_gl.c for kinds that stay. */
 static void want_of(const noh_stage_desc *desc, const noh_gl_candidate *of, noh_gl_renderer_desc *want)
 {
     uint32_t skinned = 0, fewer = 0;
@@ -125,8 +125,21 @@ void noh_gl_slots_forget_programs(noh_stage_gl *gl, const noh_gl_device *device)
     for (int i = 0; i < 2; i++) noh_gl_program_delete(device->api, device->ledger, &gl->programs[i]);
 }
 
-/* Whether the renderer's programs draw a kind. Not inlined: a list of keys lies on the stack. */
-NOH_NEVER_INLINE static noh_result check_programs(const noh_stage *s, uint32_t kind, noh_error *error)
+/* What the stage's renderer was asked for, and what a kind needs in addition. Not inlined, as the next: both have large
+ * frames. */
+NOH_NEVER_INLINE static noh_gl_renderer_desc want_with(const noh_stage *s, uint32_t kind)
+{
+    const noh_stage_gl *gl = s->gpu;
+    noh_gl_renderer_desc want = gl->renderer_desc;
+    noh_gl_candidate of;
+    if (gl->renderer->gl) want.lit = gl->renderer->lit; /* with soft shadows or without */
+    if (noh_gl_candidate_at(&s->desc, kind, 0, &of)) want_of(&s->desc, &of, &want);
+    return want;
+}
+
+/* Whether the renderer's programs draw a kind. */
+NOH_NEVER_INLINE static noh_result check_programs(const noh_stage *s, uint32_t kind, const noh_gl_renderer_desc *want,
+                                                  noh_error *error)
 {
     const noh_stage_gl *gl = s->gpu;
     const noh_gl_renderer *r = gl->renderer;
@@ -144,7 +157,7 @@ NOH_NEVER_INLINE static noh_result check_programs(const noh_stage *s, uint32_t k
     before = list.count;
     for (; site.item < s->plan->kinds[kind].mesh_count && result == NOH_OK; site.item++) {
         const noh_mesh mesh = noh_gl_site_mesh(&s->desc, s->plan, site);
-        result = noh_gl_list_variants(&gl->renderer_desc, &mesh, &list, NULL);
+        result = noh_gl_list_variants(want, &mesh, &list, NULL);
     }
     return result == NOH_OK && list.count == before
                ? NOH_OK
@@ -187,7 +200,8 @@ noh_result noh_gl_slot_open(noh_stage *s, uint32_t kind, noh_error *error)
 
 noh_result noh_gl_slot_come(noh_stage *s, uint32_t kind, noh_error *error)
 {
-    const noh_result result = check_programs(s, kind, error);
+    const noh_gl_renderer_desc want = want_with(s, kind);
+    const noh_result result = check_programs(s, kind, &want, error);
     return result == NOH_OK ? noh_gl_slot_open(s, kind, error) : result;
 }
 

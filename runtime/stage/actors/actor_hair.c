@@ -263,7 +263,7 @@ static int see(const noh_actor_hair_desc *d, const noh_stage *stage, noh_actor a
     }
     noh_matrix_multiply(joint, to_joint, out->world);
     out->pixels_per_metre = shown->scale / d->cut->header->metres * noh_stage_size(stage, a);
-    out->views = (uint16_t)shown->views;
+    out->views = k->finer.hidden ? 0u : (uint16_t)shown->views; /* without its head yet */
     out->melanin = melanin_of(stage, &a->look);
     return 1;
 }

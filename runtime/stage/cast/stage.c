@@ -207,7 +207,10 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
         result = desc->gpu->init((uint8_t *)memory + from, (size_t)plan->cpu_bytes - from, device, desc, b.stage,
                                  error);
     }
-    for (uint32_t i = 0; i < desc->kind_count; i++) b.kind_descs[i].finer = NULL; /* not kept */
+    for (uint32_t i = 0; i < desc->kind_count; i++) {
+        if (b.kind_descs[i].finer) b.kind_descs[i].cover_count = 0; /* it has no covers */
+        b.kind_descs[i].finer = NULL;                               /* not kept */
+    }
     if (result == NOH_OK) {
         *stage = b.stage;
     }

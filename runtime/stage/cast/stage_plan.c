@@ -55,6 +55,10 @@ static noh_result measure(const planner *p, noh_error *error)
     if (result == NOH_OK) result = noh_stage_carve(&arena, &desc, plan, &blocks, NULL, error);
     if (result == NOH_OK && desc.gpu) {
         result = desc.gpu->measure(&desc, p->caps, plan, &cpu_bytes, &gpu_bytes, error);
+        if (result == NOH_OK && desc.morph_path != plan->morph_path && noh_stage_has_slots(&desc)) {
+            noh_stage_desc_by_plan(&desc, plan); /* all meshes of such a stage take one path */
+            result = desc.gpu->measure(&desc, p->caps, plan, &cpu_bytes, &gpu_bytes, error);
+        }
         (void)noh_arena_carve(&arena, (size_t)cpu_bytes, 16);
     }
     plan->cpu_bytes = arena.used;

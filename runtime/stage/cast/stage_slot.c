@@ -28,7 +28,7 @@ static const char *const too_large[] = { "a kind has more actors than its slot",
                                          "picking a kind takes more bytes than its slot has",
                                          "inertia of a kind takes more bytes than its slot has" };
 
-/* What draws comes after them, and is checked where it is made. */
+/* The other fields are checked in stage_gl_slot.c. */
 NOH_STATIC_ASSERT(sizeof(noh_kind_room) == 8 * (3 + sizeof too_large / sizeof *too_large), kind_room);
 
 static noh_result check_room(const noh_kind_room *asked, const noh_kind_room *had, noh_error *error)
@@ -53,7 +53,7 @@ static noh_result no_finer(noh_error *error)
                     "finer of a kind: the kinds of a slot are uploaded in pieces anyway; leave it NULL", 0, 0);
 }
 
-/* Not inlined: what measures what draws a kind has a deep stack, and a noh_stage_needs need not lie below it. */
+/* Not inlined: gpu->room has a deep stack, and a noh_stage_needs is large. */
 NOH_NEVER_INLINE static noh_result plan_posed(const noh_stage_desc *alone, noh_stage_plan *plan, noh_kind_room *room,
                                               noh_error *error)
 {
