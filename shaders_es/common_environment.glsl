@@ -121,7 +121,7 @@ vec3 noh_neutral(vec3 c)
     float peak = max(max(c.r, max(c.g, c.b)), 0.76); /* at 0.76 nothing is compressed */
     float compressed = 1.0 - 0.0576 / (peak - 0.52);
     float less = compressed / (peak * (0.15 * (peak - compressed) + 1.0));
-    return c * less + (compressed - peak * less);
+    return max(c * less + (compressed - peak * less), 0.0);
 }
 
 /* A linear colour after exposure and tone map. */
@@ -132,7 +132,7 @@ vec3 noh_expose(vec3 c)
         return noh_neutral(c);
     }
     /* K. Narkowicz: ACES filmic tone mapping curve, 2015, of 0.6 c, less its limit */
-    vec3 filmic = 1.0329218 - (0.3974101 * c + 0.1653053) / (c * (c + 0.4046639) + 0.1600366);
+    vec3 filmic = max(1.0329218 - (0.3974101 * c + 0.1653053) / (c * (c + 0.4046639) + 0.1600366), 0.0);
     return noh_lighting[13].y > 0.5 ? filmic : c;
 }
 #endif

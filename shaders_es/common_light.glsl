@@ -208,7 +208,7 @@ vec3 noh_matte_light(noh_surface s, float shadow)
 #endif
 }
 
-/* The highlight of the key light, divided by its colour, without reflectance. nh, nl, nv: cosines between the normal
+/* The highlight of the key light, divided by its colour, without reflectance, times pi. nh, nl, nv: cosines between the normal
  * for reflections, the half vector, the light and the eye */
 float noh_key_glossed(float nh, float nl, float nv, float roughness)
 {
@@ -216,7 +216,7 @@ float noh_key_glossed(float nh, float nl, float nv, float roughness)
     vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
     return nl * mix(noh_gloss(nh, nl, nv, lobes.y), noh_gloss(nh, nl, nv, lobes.x), noh_narrow_lobe);
 #elif defined(NOH_EYE)
-    return nl > 0.0 ? noh_lamp(nh) : 0.0;
+    return nl > 0.0 ? 3.14159265 * noh_lamp(nh) : 0.0;
 #else
     return nl * noh_gloss(nh, nl, nv, roughness);
 #endif

@@ -57,7 +57,7 @@ void main()
 #ifdef NOH_LIT
     color = noh_expose(color);
 #endif
-    o_color = vec4(noh_encode(color), clamp(alpha, 0.0, 1.0));
+    o_color = vec4(noh_encode(color), u_alpha.y > 1.0 ? 1.0 : clamp(alpha, 0.0, 1.0)); /* 1 where nothing blends */
 #else
     o_color = vec4(1.0);
 #endif

@@ -72,7 +72,9 @@ const decoded = (numbers) => String.fromCharCode(...numbers.match(/\d+/g).slice(
 const encoded = (text) => `    ${[...`${text}\0`].map((c) => c.charCodeAt(0)).join(',').replace(/((?:\d+,){24})/g, '$1\n    ')}`;
 // Each text is an array of literals, or of characters.
 const [, , from, to, ...files] = process.argv;
-const strings = new Set(files.flatMap((file) => Array.from(fs.readFileSync(file, 'utf8').matchAll(/"\w+[^\s"]*"/g)).flatMap(([text]) => text.match(/\w+/g) || [])));
+// What C says keeps its name: words of strings without spaces, and in others, which may be GLSL, those of the library.
+const strings = new Set(files.flatMap((file) => Array.from(fs.readFileSync(file, 'utf8').matchAll(/"(?:[^"\\\n]|\\.)*"/g))
+    .flatMap(([text]) => text.match(/^"\w+[^\s"]*"$/.test(text) ? /\w+/g : /\bnoh_\w+/g) || [])));
 const parts = fs.readFileSync(from, 'utf8').split(/^((?:static const char \*const \w+_pieces|const char \w+)\[\] = \{\n[^]*?\n\};\n)/m);
 const texts = parts.map((part, i) => (i % 2 ? (part.startsWith('static') ? unquoted : decoded)(part.slice(part.indexOf('\n') + 1, part.indexOf('\n};'))) : null));
 const short = renames(texts.filter((text) => text !== null), strings);

@@ -1,5 +1,5 @@
-/* context.c: a WebGL 2 context, accessed through gl.js. WebGL has no lookup by name, so a table lists the functions
- * that the library calls, and get_proc is NULL; no others are imported. */
+/* context.c: a WebGL 2 context, accessed through gl.js. WebGL has no lookup by name: a table lists the functions
+ * that the library calls, no others are imported, and get_proc is NULL. */
 #define GL_GLES_PROTOTYPES 1
 #include "context.h"
 

@@ -3,10 +3,10 @@
 
 #include "web.h"
 
-/* "": figures of the first skeleton can fall; else the reason why not. */
+/* NULL: figures of the first skeleton can fall; else the reason why not. */
 EMSCRIPTEN_KEEPALIVE const char *web_cannot_fall(void)
 {
-    return web.cast.cannot_fall.result ? web.cast.cannot_fall.what : "";
+    return web.cast.cannot_fall.result ? web.cast.cannot_fall.what : NULL;
 }
 
 /* point: where the figure is hit; NULL: at its chest, with a direction computed from its place */

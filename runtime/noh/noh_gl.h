@@ -204,7 +204,7 @@ typedef struct noh_gl_morph_binding {
 /* ======== palettes on the GPU ======== */
 
 typedef enum noh_palette_mode {
-    NOH_PALETTE_AUTO = 0, /* texture if a mesh has several instances, or is cheaper (Mali); otherwise uniform */
+    NOH_PALETTE_AUTO = 0, /* texture if a mesh has several instances, or where it costs less (Mali); else uniform */
     NOH_PALETTE_UNIFORM,
     NOH_PALETTE_TEXTURE
 } noh_palette_mode;

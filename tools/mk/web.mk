@@ -115,9 +115,10 @@ $(WEB_OBJECTS)/%.o: %.c | $(BUILD)/web-cc
 	$(call say,EMCC,$@)
 	$(Q)$(BUILD)/web-cc $(WEB_FLAGS) -MMD -MP -c $< -o $@
 # C asks for uniforms by name: what a string has keeps its name.
-$(WEB_OBJECTS)/shaders.gen.c: $(BUILD)/gen/shaders.gen.c tools/web_shaders.js $(RUNTIME_C)
+WEB_NAMING := $(RUNTIME_C) $(wildcard platform/web/*.c platform/web/festival/*.c tools/noh/crowd/*.c)
+$(WEB_OBJECTS)/shaders.gen.c: $(BUILD)/gen/shaders.gen.c tools/web_shaders.js $(WEB_NAMING)
 	@mkdir -p $(@D)
-	$(Q)node tools/web_shaders.js $< $@.new $(RUNTIME_C) $(wildcard platform/web/*.c platform/web/festival/*.c tools/noh/crowd/*.c)
+	$(Q)node tools/web_shaders.js $< $@.new $(WEB_NAMING)
 	@mv $@.new $@
 $(WEB_OBJECTS)/shaders.gen.o: $(WEB_OBJECTS)/shaders.gen.c | $(BUILD)/web-cc
 	$(call say,EMCC,$@)

@@ -222,7 +222,7 @@ export class Character extends EventTarget {
             this.advance(seconds);
         } catch (error) { // no caller waits for a frame
             this.loaded = false;
-            this.emit('fault', { message: String(error.message || error) });
+            explained(error).then(({ message }) => this.emit('fault', { message: String(message || error) }));
             return;
         }
         this.goesOn = this.moves(now);

@@ -17,10 +17,15 @@ const texts = { all: () => new URL('./noh.txt', import.meta.url), body: () => ne
 const sentences = new WeakMap(); // by module: { address, lines: null or [address in memory, words] }
 const wordless = new WeakMap(); // by error: { module, at }
 
+// Sentences and their program have the same mark: caches may have kept one of an older build.
+const markOf = (module) => String.fromCharCode(...new Uint8Array(WebAssembly.Module.customSections(module, 'texts')[0] || 0));
+
 // Fetches the sentences of a program; without them an error has a number.
 export async function learn(module) {
     const known = sentences.get(module), answer = known && !known.lines && await fetch(known.address).catch(() => null);
-    if (answer && answer.ok) known.lines = (await answer.text()).split('\n').map((line) => [parseInt(line, 10), line.slice(line.indexOf(' ') + 1)]);
+    const text = answer && answer.ok && await answer.text().catch(() => '');
+    const [mark, ...lines] = text ? text.split('\n') : [];
+    if (mark && markOf(module) === mark) known.lines = lines.map((line) => [parseInt(line, 10), line.slice(line.indexOf(' ') + 1)]);
 }
 
 function sentence(module, at) {
@@ -43,7 +48,7 @@ export function compile(program = 'all', tell) {
     const key = String(Object.hasOwn(programs, program) ? programs[program]() : program);
     if (!compiled.has(key)) {
         const module = compileFrom(key, 'program', tell);
-        module.then((made) => sentences.set(made, { address: Object.hasOwn(texts, program) ? texts[program]() : key.replace(/\.wasm$/, '.txt'), lines: null }),
+        module.then((made) => sentences.set(made, { address: Object.hasOwn(texts, program) ? texts[program]() : key.replace(/\.wasm(?=$|[?#])/, '.txt'), lines: null }),
             () => compiled.delete(key)); // the next call tries again
         compiled.set(key, module);
     }
@@ -84,7 +89,7 @@ export class Program {
     UTF8ToString(at) { return textAt(this.heap, at); }
     floats(at, count) { return this.heap.F32.subarray(at >> 2, (at >> 2) + count); }
     // The sentence at an address.
-    words(at = this._web_error()) { return this.text(at) || sentence(this.module, at); }
+    words(at = this._web_error()) { return at ? this.text(at) || sentence(this.module, at) : ''; }
     failure() {
         const at = this._web_error(), error = new Error(this.words(at));
         if (!this.text(at)) wordless.set(error, { module: this.module, at });

@@ -396,7 +396,9 @@ static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_par
     if (part != PART_BLENDED && noh_material_has_core(m)) {
         return NOH_CORE_ALPHA;
     }
-    return m->flags & NOH_MATERIAL_MASK ? m->alpha_cutoff + (is_soft ? SOFT : 0.0f) : -1.0f;
+    if (!(m->flags & NOH_MATERIAL_MASK)) return -1.0f;
+    const float cutoff = m->alpha_cutoff < 1.5f ? m->alpha_cutoff : 1.5f; /* above 1 nothing is drawn */
+    return cutoff + (is_soft ? SOFT : 0.0f);
 }
 
 static int is_in_depth(draw_part part)
