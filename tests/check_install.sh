@@ -169,7 +169,7 @@ END
     done
     # By its version alone: no compiler.
     printf 'cmake_minimum_required(VERSION 3.13)\nproject(user NONE)\nfind_package(noh 99.0 REQUIRED)\n' >"$work/cmake_new/CMakeLists.txt"
-    check 'CMake: another version is refused' sh -c '! cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" >"$1/said" 2>&1 && grep -q "99.0" "$1/said"' - "$work/cmake_new" "$prefix"
+    check 'CMake: another version is refused' sh -c '! cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" >"$1/said" 2>&1 && grep -q "not accepted" "$1/said"' - "$work/cmake_new" "$prefix"
 
     # Packs: noh_add_pack of the installed tool.
     mkdir "$work/packs"

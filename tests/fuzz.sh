@@ -90,6 +90,7 @@ import_seeds() {
         NOH_SEEDS=$work/imports "$build/tests/unit/convert/test_$test" >/dev/null 2>&1 || return 1
     done
     sh tests/support/small_glb.sh >"$work/imports/small"
+    make --no-print-directory DEPS=0 BUILD="$build" "$build/tests/fuzz/fuzz_import" >/dev/null || return 1
     "$build/tests/fuzz/fuzz_import" --seeds "$work/imports"
 }
 

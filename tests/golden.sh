@@ -19,7 +19,8 @@ set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}
 case $build in /*) ;; *) build=$PWD/$build ;; esac
-work=$build/golden
+work=$build/golden # not of a day, which takes hours
+[ "${1:-}" != day ] || work=$build/golden_day
 packs="$build/mask_levels.noh $build/demo/puppet_levels.noh $build/demo/puppet.noh"
 table=tests/golden/golden.txt
 sources="tests/golden/golden.c tools/noh/replay/session.c tools/noh/replay/session_input.c

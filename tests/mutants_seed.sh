@@ -38,7 +38,8 @@ play() { # FOLDER LIBRARY NAME SECONDS LOG
     set -- "$@" env -C "$1" LD_LIBRARY_PATH="$2" TMPDIR="$scratch" NOH_BUILD="$1/$build" NOH_EMBED="$1/$build/embed"
     folder=$1 name=$3 seconds=$4 log=$5
     binary=$seeded/tests/$name
-    [ ! -x "$folder/programs/$name" ] || binary=$folder/programs/$name
+    # A test that includes a file of the library was compiled with the mutant.
+    [ "$2" = "$seeded/plain" ] || [ ! -x "$folder/programs/$name" ] || binary=$folder/programs/$name
     shift 5
     case $name in
     golden/*)

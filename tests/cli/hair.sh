@@ -74,7 +74,7 @@ noh build "$build/demo/arm.glb" -o "$work/bad.noh" --hair "$work/bad.hair"
 expect 1 'no such joint'
 says "no skeleton has the joint 'nowhere'"
 
-# People by seed have hair of their own colours: from behind there is nothing else.
+# Each seed gives other colours of hair; from behind only hair is seen.
 for person in 0 1 2; do
     noh render "$build/wig.noh" -o "$work/person_$person.png" --person $person --camera face,180,0 --size 64x64
     expect 0 "person $person"

@@ -6,6 +6,7 @@
  * lengths of its chunks made right. An .obj file is also its own target. */
 #define _XOPEN_SOURCE 700
 
+#include <dlfcn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -315,6 +316,10 @@ static int run_wild(uint32_t first, uint32_t count)
         uint32_t slowest = 0;
         const int is_read = s < wild_seed_count || try_input(bytes, whole);
         struct rusage used;
+        if (!is_read && strncmp(name, "wav", 3) == 0 && !dlopen("libsndfile.so.1", RTLD_NOW)) {
+            printf("ok %u - %s # SKIP libsndfile is not here\n", (unsigned)s + 1u, name);
+            continue;
+        }
         for (uint32_t i = first; i < first + count; i++) {
             const clock_t begin = clock();
             clock_t taken;

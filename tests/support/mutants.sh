@@ -59,6 +59,8 @@ run_workers() {
     while IFS= read -r line; do
         tell "$line"
     done <"$work/results"
-    wait
+    for worker in $workers; do
+        wait "$worker" || { echo "${0##*/}: a worker failed" && exit 1; }
+    done
     workers=
 }

@@ -212,8 +212,9 @@ $(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
 PUPPET_MOVES := tools/demo_assets/puppet/moves.graph
 # Under sanitizers these take minutes, and the other packs the same ways: they are copied from `make check`, where it has
 # made them (NOH_LONG=1: never).
-ifneq ($(and $(SANITIZED),$(filter-out build,$(BUILD)),$(wildcard build/demo/puppet_levels.noh)),)
-$(BUILD)/demo/puppet.noh $(BUILD)/demo/puppet_levels.noh $(BUILD)/demo/roam.noh: $(BUILD)/demo/%.noh: build/demo/%.noh
+COPIED := demo/puppet.noh demo/puppet_levels.noh demo/roam.noh
+ifneq ($(and $(SANITIZED),$(filter-out build,$(BUILD)),$(filter 3,$(words $(wildcard $(COPIED:%=build/%))))),)
+$(COPIED:%=$(BUILD)/%): $(BUILD)/demo/%.noh: build/demo/%.noh
 	@mkdir -p $(@D)
 	@cp $< $@
 else

@@ -737,22 +737,27 @@ static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
 
 uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks)
 {
-    return noh_ragdolls_step_with(set, world, ticks, noh_ragdoll_scratch(set), *asks_of(set));
+    const uint32_t dropped = set->steps.dropped;
+    for (uint32_t left = noh_ragdolls_take(set, ticks); left; left--) {
+        noh_ragdolls_step_once(set, world, noh_ragdoll_scratch(set), *asks_of(set));
+    }
+    return set->steps.dropped - dropped;
 }
 
-uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch,
-                                uint32_t asks)
+uint32_t noh_ragdolls_take(noh_ragdolls *set, uint32_t ticks)
 {
-    const uint32_t dropped = set->steps.dropped;
-    const uint32_t steps = noh_steps_take(&set->steps, ticks, NOH_RAGDOLL_STEP_TICKS, NOH_RAGDOLL_STEPS_MAX);
+    return noh_steps_take(&set->steps, ticks, NOH_RAGDOLL_STEP_TICKS, NOH_RAGDOLL_STEPS_MAX);
+}
+
+void noh_ragdolls_step_once(noh_ragdolls *set, const noh_world *world, float *scratch, uint32_t asks)
+{
     noh_world quiet;
     if (world && noh_world_asks(world) && !asks) { /* there is no room for answers */
         quiet = *world;
         quiet.physics = NULL;
         world = &quiet;
     }
-    for (uint32_t i = 0; i < steps; i++) step_all(set, world, scratch);
-    return set->steps.dropped - dropped;
+    step_all(set, world, scratch);
 }
 
 /* ---- output ---- */

@@ -146,15 +146,16 @@ void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, con
                      noh_touches *touches);
 
 /* A set without the memory that its dolls share, which a stage stores apart from its state. It can be used like any
- * other, but stepped only by noh_ragdolls_step_with.
+ * other, but stepped only by noh_ragdolls_step_once.
  * memory   noh_ragdolls_state_size bytes, aligned to 16; rig checked, count and substeps in range */
 size_t noh_ragdolls_state_size(uint32_t count);
 noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
 
-/* scratch  [NOH_RAGDOLL_SCRATCH_FLOATS(asks)], aligned to 32 bytes; undefined before and after
+/* How many steps of 1/60 s `ticks` more make; noh_ragdolls_step_once makes one.
+ * scratch  [NOH_RAGDOLL_SCRATCH_FLOATS(asks)], aligned to 32 bytes; undefined before and after
  * asks     0: the physics of the world is not asked */
-uint32_t noh_ragdolls_step_with(noh_ragdolls *set, const noh_world *world, uint32_t ticks, float *scratch,
-                                uint32_t asks);
+uint32_t noh_ragdolls_take(noh_ragdolls *set, uint32_t ticks);
+void noh_ragdolls_step_once(noh_ragdolls *set, const noh_world *world, float *scratch, uint32_t asks);
 
 /* Variants of the public functions with positions relative to `origin`, a point of the bodies' space. */
 noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],

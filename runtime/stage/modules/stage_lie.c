@@ -32,7 +32,7 @@ static void move_alone(const noh_skeleton *k, noh_transform *local, uint32_t joi
     float back[4], moved[3];
     noh_quat_conjugate(local[joint].rotation, back);
     noh_quat_rotate(back, by, moved);
-    for (int i = 0; i < 3; i++) moved[i] /= local[joint].scale[i];
+    for (int i = 0; i < 3; i++) moved[i] = local[joint].scale[i] == 0.0f ? 0.0f : moved[i] / local[joint].scale[i];
     for (uint32_t c = joint + 1u; c < k->joint_count; c++) {
         if (k->parents[c] == joint) noh_madd3(local[c].translation, -1.0f, moved, local[c].translation);
     }
@@ -53,6 +53,7 @@ static void lift_chest(const noh_stage_kind *k, const noh_modifier_work *w, floa
     noh_quat_conjugate(turn, turn);
     noh_quat_rotate(turn, up, up);
     for (; on != NOH_JOINT_ROOT; on = w->skeleton->parents[on]) {
+        if (w->local[on].scale[0] == 0.0f) return; /* a point: nothing of it shows */
         for (int i = 0; i < 3; i++) up[i] /= w->local[on].scale[0];
     }
     move_alone(w->skeleton, w->local, chest, up);

@@ -266,16 +266,28 @@ static void tell_dolls(const noh_stage_kind *k)
     }
 }
 
+static void keep_feet_low(const noh_stage_kind *k)
+{
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        const noh_stage_body *b = noh_stage_body_of(k, i);
+        if (k->actors[i].alive && b->doll && !b->dead && !has_goals(k, b)) {
+            noh_stage_keep_feet_low(noh_stage_ragdoll_kind_of(k), b);
+        }
+    }
+}
+
 static void step(noh_stage_kind *k, uint32_t ticks)
 {
     const noh_stage_ragdoll_kind *r = noh_stage_ragdoll_kind_of(k);
     tell_dolls(k);
-    (void)noh_ragdolls_step_with(r->dolls, r->world, ticks, r->scratch, r->asks);
+    for (uint32_t left = noh_ragdolls_take(r->dolls, ticks); left; left--) {
+        noh_ragdolls_step_once(r->dolls, r->world, r->scratch, r->asks);
+        keep_feet_low(k);
+    }
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive) continue;
         if (b->doll && b->moves == NOH_MOVES_BRACING) noh_stage_step_brace(r, b, ticks);
-        if (b->doll && !has_goals(k, b)) noh_stage_keep_feet_low(r, b);
         if (b->doll) noh_stage_step_lying(r, b, ticks);
         if (b->doll) follow_doll(k, b, &k->actors[i]);
         if (b->moves == NOH_MOVES_STAGGERING) noh_stage_step_stagger(k, &k->actors[i], b, ticks);
