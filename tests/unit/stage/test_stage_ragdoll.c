@@ -71,6 +71,31 @@ static float distance(const float a[3], const float b[3])
     return sqrtf((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
 }
 
+/* 240 steps of 1/60 s, in frames of one to four: the same fall to the bit, and legs are braked in it. */
+static void a_fall_has_the_same_bits_at_any_frame_rate(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    float hands[4][3], feet[4][3];
+    (void)state;
+    for (uint32_t n = 1; n <= 4; n++) {
+        noh_actor actor;
+        cast c;
+        open_cast(&c, 1, &ragdoll, 1);
+        cast_make(&c, NULL);
+        actor = enter(&c, 0.0f);
+        run(&c, 40);
+        assert_int_equal(noh_actor_fall(c.stage, actor, NULL), NOH_OK);
+        for (uint32_t f = 0; f < 240u; f += n) {
+            assert_int_equal(noh_stage_frame(c.stage, n * CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        }
+        joint_at(&c, actor, "hand.L", hands[n - 1u]);
+        joint_at(&c, actor, "foot.L", feet[n - 1u]);
+        assert_memory_equal(hands[0], hands[n - 1u], sizeof hands[0]);
+        assert_memory_equal(feet[0], feet[n - 1u], sizeof feet[0]);
+        close_cast(&c);
+    }
+}
+
 /* From step to step no joint leaps, and none changes its speed but by what gravity and the ground do; it lies within
  * eight seconds, on the ground and not under it, and its place is where it lies. */
 static void who_walks_falls_and_lies(void **state)
@@ -738,7 +763,7 @@ static void the_same_bits_for_any_jobs_and_after_a_restore(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(who_walks_falls_and_lies),
+    cmocka_unit_test(who_walks_falls_and_lies), cmocka_unit_test(a_fall_has_the_same_bits_at_any_frame_rate),
     cmocka_unit_test(speeds_are_handed_over),
     cmocka_unit_test(it_falls_far_away),
     cmocka_unit_test(a_world_is_shifted),
