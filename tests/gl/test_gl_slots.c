@@ -547,6 +547,34 @@ static void what_the_plan_does_not_have_is_refused(void **state)
     gpu_close(&g);
 }
 
+/* The programs of a lit stage have soft shadows where the driver has half floats; kinds of the plan need no other. */
+static void planned_kinds_come_into_lit_stages(void **state)
+{
+    const noh_reflection_desc baked = { 32, noh_reflection_of_environment, noh_environment_at(0) };
+    void *texels = test_zeros(noh_reflection_size(32)), *scratch = test_zeros(noh_reflection_scratch_size(32));
+    noh_reflection reflection;
+    const noh_gl_light_desc light = { &reflection, 256 };
+    (void)state;
+    assert_int_equal(noh_reflection_init(texels, noh_reflection_size(32), scratch, noh_reflection_scratch_size(32),
+                                         &baked, &reflection, NULL),
+                     NOH_OK);
+    for (int half_floats = 0; half_floats < 2; half_floats++) {
+        static gpu g;
+        static act a;
+        open_null(&g);
+        g.caps.render_f16 = half_floats;
+        open_act(&a, &g, null_ways[0]);
+        a.c.desc.light = &light;
+        a.c.kinds[TUBES].changes = 2;
+        assert_true(make_act(&a));
+        put(&a, TUBES, &a.others[TUBES]);
+        close_act(&a);
+        gpu_close(&g);
+    }
+    free(texels);
+    free(scratch);
+}
+
 static int open_packs(void **state)
 {
     (void)state;
@@ -565,7 +593,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_those_of_kinds_that_were_there), cmocka_unit_test(each_frame_keeps_the_bound),
         cmocka_unit_test(any_order_with_a_driver_that_fails),          cmocka_unit_test(the_plan_has_every_byte),
-        cmocka_unit_test(what_the_plan_does_not_have_is_refused),
+        cmocka_unit_test(what_the_plan_does_not_have_is_refused),      cmocka_unit_test(planned_kinds_come_into_lit_stages),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, open_packs, close_packs);
