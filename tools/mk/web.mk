@@ -101,7 +101,7 @@ $(WEB)/%: platform/web/%
 
 # The program with everything, the ones of bodies and of faces, and the planner that the tests run under node.
 # context.c brings functions of WebGL in place of gl_api_load.c.
-WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/without_slots.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C))
+WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/unmoved.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C))
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
 WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
 WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
@@ -129,9 +129,9 @@ $(WEB_OBJECTS)/plan.js: $(WEB_PLAN_O)
 -include $(WEB_O:.o=.d) $(WEB_FACE_O:.o=.d) $(WEB_PLAN_O:.o=.d)
 
 # The ear's tables come apart (platform/web/ear_apart.c); what a program does not read, it does not check (unread.c,
-# face_only.c), no character wears garments (unclothed.c), and no kind changes (without_slots.c).
-WEB_LEFT_OUT := %/life/face/ear_tables.o %/pack/check_match.o %/pack/check_terrain.o %/cast/stage_wear.o %/stage/stage_cover.o %/cast/stage_slot.o %/stage/stage_gl_slot.o
-WEB_STANDS_IN := $(addprefix $(WEB_OBJECTS)/platform/web/,unread.o unclothed.o without_slots.o)
+# face_only.c), no character wears garments (unclothed.c), no kind changes and nothing asks where vertices were (unmoved.c).
+WEB_LEFT_OUT := %/life/face/ear_tables.o %/pack/check_match.o %/pack/check_terrain.o %/cast/stage_wear.o %/stage/stage_cover.o %/cast/stage_slot.o %/stage/stage_gl_slot.o %/stage/stage_motion.o
+WEB_STANDS_IN := $(addprefix $(WEB_OBJECTS)/platform/web/,unread.o unclothed.o unmoved.o)
 $(WEB_OBJECTS)/noh.wasm: $(filter-out $(WEB_LEFT_OUT),$(WEB_O)) $(WEB_STANDS_IN)
 $(WEB_OBJECTS)/body.wasm: $(filter-out $(WEB_LEFT_OUT),$(WEB_BODY_O)) $(WEB_STANDS_IN)
 $(WEB_OBJECTS)/face.wasm: $(filter-out $(WEB_LEFT_OUT) %/pack/check_hair.o %/pack/check_springs.o,$(WEB_FACE_O)) $(WEB_STANDS_IN)

@@ -1,4 +1,5 @@
-/* without_slots.c: stands in for stage_slot.c and stage_gl_slot.c in the page's programs, whose kinds all stay. */
+/* unmoved.c: stands in for stage_slot.c, stage_gl_slot.c and stage_motion.c in the page's programs: all kinds stay, and
+ * nothing asks where vertices were. */
 #include "gl/stage/stage_gl_internal.h"
 #include "stage/cast/stage_internal.h"
 
@@ -111,4 +112,57 @@ void noh_gl_slot_close(noh_stage *s, uint32_t kind)
 void noh_gl_slots_show(noh_stage *s)
 {
     (void)s;
+}
+
+int noh_gl_motion_pose(const noh_stage *s, const noh_stage_kind *k, uint32_t index)
+{
+    (void)s;
+    (void)k;
+    (void)index;
+    return 0;
+}
+
+void noh_gl_motion_begin(const noh_stage *s)
+{
+    (void)s;
+}
+
+void noh_gl_motion_upload(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t mesh)
+{
+    (void)s;
+    (void)k;
+    (void)index;
+    (void)mesh;
+}
+
+void noh_gl_motion_end(const noh_stage *s)
+{
+    (void)s;
+}
+
+void noh_gl_motion_turn(const noh_gl_item *item, const noh_stage_shown *shown, const float *weights, uint32_t count)
+{
+    (void)item;
+    (void)shown;
+    (void)weights;
+    (void)count;
+}
+
+int noh_gl_motion_of(const noh_stage *s, const noh_stage_kind *k, uint32_t index, uint32_t mesh, float world[12],
+                     noh_gl_morph_binding *morph)
+{
+    (void)s;
+    (void)k;
+    (void)index;
+    (void)mesh;
+    (void)world;
+    (void)morph;
+    return 0;
+}
+
+void noh_gl_motion_view(const noh_stage *s, uint32_t view, float view_projection[16])
+{
+    (void)s;
+    (void)view;
+    (void)view_projection;
 }
