@@ -155,6 +155,17 @@ static void empty(noh_stage *s, uint32_t kind)
     s->slots->of[kind].hash = 0;
 }
 
+/* What wears garments is not worn itself (noh_stage_bad_worn has the other direction). */
+static noh_result check_worn(const noh_stage *s, uint32_t kind, const noh_kind_desc *desc, noh_error *error)
+{
+    for (uint32_t i = 0; i < s->desc.kind_count; i++) {
+        if (s->desc.kinds[i].worn_by >> kind & 1u && desc->worn_by)
+            return noh_fail(error, NOH_ERR_ARG,
+                            "worn_by of a kind whose slot is in worn_by of another kind: clear one of both", i, 0);
+    }
+    return NOH_OK;
+}
+
 /* A pose of a wearer is kept for its garments while they follow it. */
 static noh_result check_wearers(const noh_stage *s, uint32_t kind, const noh_stage_needs *needs, noh_error *error)
 {
@@ -208,6 +219,7 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
 {
     noh_kind_desc *d = &s->kind_descs[kind];
     noh_result result = noh_stage_check_kind(&s->desc, desc, kind, error);
+    if (result == NOH_OK) result = check_worn(s, kind, desc, error);
     if (result != NOH_OK) {
         return result;
     }

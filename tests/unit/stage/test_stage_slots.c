@@ -330,6 +330,25 @@ static void what_does_not_fit_is_refused(void **state)
     close_show(&w);
 }
 
+/* As init says: what wears garments is not worn itself. */
+static void garments_are_not_worn_by_garments(void **state)
+{
+    noh_kind_desc desc;
+    show w;
+    (void)state;
+    open_show(&w);
+    w.c.kinds[0].worn_by = 1u << 1;
+    w.c.kinds[1] = w.c.kinds[2] = w.candidates[0];
+    w.c.kinds[1].changes = 2;
+    w.c.desc.kind_count = 3;
+    cast_make(&w.c, NULL);
+    desc = w.candidates[0];
+    desc.worn_by = 1u << 2;
+    refuse(w.c.stage, 1, &desc, NOH_ERR_ARG, "clear one of both");
+    put(w.c.stage, 1, &w.candidates[0]);
+    close_show(&w);
+}
+
 static void fields_of_slots_are_checked(void **state)
 {
     show w;
@@ -436,7 +455,7 @@ int main(void)
         cmocka_unit_test(any_order_leaves_what_runs_alone),
         cmocka_unit_test(the_plan_has_every_byte),
         cmocka_unit_test(what_does_not_fit_is_refused),
-        cmocka_unit_test(fields_of_slots_are_checked),
+        cmocka_unit_test(garments_are_not_worn_by_garments), cmocka_unit_test(fields_of_slots_are_checked),
         cmocka_unit_test(bytes_of_empty_slots_are_not_believed),
         cmocka_unit_test(a_damaged_state_does_no_harm),
     };
