@@ -143,7 +143,7 @@ async function slow(browser) {
         told.push(`${what === 'ready' ? 'first picture' : 'complete'} after ${((Date.now() - start) / 1000).toFixed(1)} s and ${Math.round(bytes / 1000)} kB`);
     }
     console.log(`# 1.6 Mbit/s, 150 ms: ${told.join(', ')}`);
-    const isSmall = !fs.readFileSync(path.join(folder, 'page.js'), 'utf8').includes('\n    '), most = host ? (isSmall ? 290000 : 298000) : 396000; // by esbuild
+    const isSmall = !fs.readFileSync(path.join(folder, 'page.js'), 'utf8').includes('\n    '), most = host ? (isSmall ? 276000 : 284000) : 396000; // by esbuild
     check(`by a slow network: the first picture takes ${most / 1000} kB at most`, rest > 0 && bytes - rest <= most, `${bytes - rest} and ${rest}`);
     if (host) check('by a slow network: the complete head takes 900 kB at most', bytes <= 900000, bytes);
     check('by a slow network: it is all there', await page.evaluate(() => window.noh.whole && !window.noh.error));
