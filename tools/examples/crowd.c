@@ -65,7 +65,7 @@ static int open_all(void)
 static int enter(uint32_t i)
 {
     const float side = i % 2u ? 1.0f : -1.0f, heading[2] = { 0.0f, -side };
-    const float x = 0.62f * ((float)(i / 2u) - 5.5f), z = side * (2.6f + 0.35f * (float)(i * 7u % 5u));
+    const float x = 0.31f * (float)(i - i % 2u) - 3.41f, z = side * (2.6f + 0.35f * (float)(i * 7u % 5u));
     const noh_crowd_agent agent = { { x, z }, { 0.0f, 0.0f }, { x, -4.0f * z }, 0.28f, 0.9f, 0, i };
     const noh_appearance look = { .tint = { 255, (uint8_t)(200u + 11u * (i % 6u)), (uint8_t)(170u + 17u * (i % 5u)),
                                             255 } };
@@ -136,7 +136,7 @@ int main(int argc, char **argv)
     for (int f = 0; f < END; f++) {
         if (f == BURST) react();
         for (uint32_t i = 0; f == CALM && i < PEOPLE; i++) {
-            const float home[2] = { 0.62f * ((float)(i / 2u) - 5.5f), i % 2u ? -9.0f : 9.0f };
+            const float home[2] = { 0.31f * (float)(i - i % 2u) - 3.41f, i % 2u ? -9.0f : 9.0f };
             noh_crowd_set_goal(crowd, i, home);
             noh_crowd_set_speed(crowd, i, 0.9f);
         }
