@@ -191,7 +191,7 @@ static void carve_kinds(measure *m)
     if (m->gl) m->gl->kinds = kinds;
 }
 
-/* Memory for what draws the kinds of slots, and models of their meshes, after those of kinds that stay. */
+/* Memory for what draws the kinds of slots, and models of their meshes, after the models of kinds that stay. */
 static void carve_slots(measure *m)
 {
     uint32_t model = m->gl ? m->gl->model_count : 0;

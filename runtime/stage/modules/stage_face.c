@@ -131,7 +131,7 @@ static void move(const noh_stage_kind *k, noh_modifier_work *w, uint32_t joint, 
         noh_quat_rotate(carrier, way, way);
     }
     for (uint32_t on = parent; on != NOH_JOINT_ROOT; on = w->skeleton->parents[on]) {
-        if (w->local[on].scale[0] == 0.0f) return; /* a point: nothing of it shows */
+        if (w->local[on].scale[0] == 0.0f) return; /* a point, which does not show */
         for (int i = 0; i < 3; i++) way[i] /= w->local[on].scale[0];
     }
     for (int i = 0; i < 3; i++) w->local[joint].translation[i] += way[i];

@@ -53,7 +53,7 @@ static void lift_chest(const noh_stage_kind *k, const noh_modifier_work *w, floa
     noh_quat_conjugate(turn, turn);
     noh_quat_rotate(turn, up, up);
     for (; on != NOH_JOINT_ROOT; on = w->skeleton->parents[on]) {
-        if (w->local[on].scale[0] == 0.0f) return; /* a point: nothing of it shows */
+        if (w->local[on].scale[0] == 0.0f) return; /* a point, which does not show */
         for (int i = 0; i < 3; i++) up[i] /= w->local[on].scale[0];
     }
     move_alone(w->skeleton, w->local, chest, up);
