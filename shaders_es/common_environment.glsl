@@ -73,8 +73,10 @@ float noh_shadow_tent(vec3 at)
     float texel = noh_lighting[13].w / 0.75;
     vec2 p = at.xy * noh_lighting[2].w + 0.5, base = floor(p), f = p - base;
     vec2 from = (base - 1.0 + 0.5 / (3.0 - 2.0 * f)) * texel, to = (base + 1.0 - 0.5 / (1.0 + 2.0 * f)) * texel;
-    float low = texture(noh_shadow_map, vec3(from, at.z)), low_right = texture(noh_shadow_map, vec3(to.x, from.y, at.z));
-    float high = texture(noh_shadow_map, vec3(from.x, to.y, at.z)), high_right = texture(noh_shadow_map, vec3(to, at.z));
+    float low = texture(noh_shadow_map, vec3(from, at.z));
+    float low_right = texture(noh_shadow_map, vec3(to.x, from.y, at.z));
+    float high = texture(noh_shadow_map, vec3(from.x, to.y, at.z));
+    float high_right = texture(noh_shadow_map, vec3(to, at.z));
     vec2 share = 0.25 + 0.5 * f; /* of the farther two texels */
     low += share.x * (low_right - low); /* a Mali-G52 takes two products for a mix, one for this */
     high += share.x * (high_right - high);

@@ -11,8 +11,9 @@ uniform vec3 noh_camera;                             /* world */
 uniform vec3 noh_key;                                /* unit, towards the light, world */
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
-uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff (plus 2 where alpha
-                                                      * becomes coverage) or -1, 1: unlit, -1: strands; plus 0.25 if the texture's colours are premultiplied */
+uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff (plus 2 where alpha becomes
+                                                      * coverage) or -1, 1: unlit, -1: strands; plus 0.25 if the
+                                                      * texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
 /* The alpha of strands is painted for blending in sRGB, as in most programs. Blended in linear light, dark strands on

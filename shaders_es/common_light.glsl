@@ -40,7 +40,8 @@ vec3 noh_bounced(vec3 albedo, float open)
 #ifdef NOH_PHONE
     return mix(vec3(0.24, 0.08, 0.07), vec3(1.0), open);
 #else
-    float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open, black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
+    float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open;
+    float black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
     return max(max(vec3(open), min(albedo, vec3(0.6)) * white + black), vec3(0.24, 0.08, 0.07));
 #endif
 }
@@ -208,8 +209,8 @@ vec3 noh_matte_light(noh_surface s, float shadow)
 #endif
 }
 
-/* The highlight of the key light, divided by its colour, without reflectance, times pi. nh, nl, nv: cosines between the normal
- * for reflections, the half vector, the light and the eye */
+/* The highlight of the key light, divided by its colour, without reflectance, times pi. nh, nl, nv: cosines between the
+ * normal for reflections, and the half vector, the light and the eye */
 float noh_key_glossed(float nh, float nl, float nv, float roughness)
 {
 #ifdef NOH_SKIN
@@ -266,7 +267,8 @@ vec3 noh_light(noh_surface s)
 #endif
     float shadow = noh_key_shadow(s.position, s.geometric); /* here, because later it spills a register of a Mali G52 */
     vec3 matte = s.albedo * (1.0 - s.metallic) * (1.0 - min(gloss * again, 1.0));
-    vec3 mirrored = noh_mirror(2.0 * across * mirror - s.view, roughness) * noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
+    vec3 mirrored = noh_mirror(2.0 * across * mirror - s.view, roughness);
+    mirrored *= noh_gloss_occlusion(nv, noh_rest_occlusion(s), roughness);
     vec3 color = matte * noh_matte_light(s, shadow);
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     float open = noh_open();
@@ -282,7 +284,8 @@ vec3 noh_light(noh_surface s)
         float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(max(2.0 * lv, 1e-6)), nl = dot(mirror, noh_key);
         float nh = clamp((nl + across) * shorter, 0.0, 1.0);
         vec3 fresnel = noh_fresnel(f0, f90, lv * shorter);
-        color += fresnel * again * noh_key_color * (noh_key_gloss * shadow * noh_key_glossed(nh, max(nl, 0.0), nv, roughness));
+        float glossed = noh_key_gloss * shadow * noh_key_glossed(nh, max(nl, 0.0), nv, roughness);
+        color += fresnel * again * noh_key_color * glossed;
     }
     return noh_expose(color + s.emissive);
 }

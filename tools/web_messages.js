@@ -1,7 +1,7 @@
-// web_messages.js PROGRAM.wasm TEXTS FILE...: takes the sentences of C FILEs (four words or more; names of drivers in gl_quirks.c, which are compared, are
-// shorter) out of the data of a program, which keeps zeros in their places: a page without errors never needs them,
-// and they are a twentieth of its bytes. TEXTS gets a line for each, its address and the sentence; the page fetches it
-// (package/program.js).
+// web_messages.js PROGRAM.wasm TEXTS FILE...: takes the sentences of C FILEs out of the data of a program, which keeps
+// zeros in their places: a page without errors never needs them, and they are a twentieth of its bytes. A sentence has
+// four words or more; names of drivers in gl_quirks.c, which are compared, are shorter. TEXTS gets a line for each, its
+// address and the sentence; the page fetches it (package/program.js).
 'use strict';
 const crypto = require('crypto');
 const fs = require('fs');
@@ -57,8 +57,8 @@ for (const text of sentences) {
 }
 if (lines.length < 100) throw new Error(`${file}: only ${lines.length} of ${sentences.length} sentences are in its data`);
 lines.sort((a, b) => a[0] - b[0]);
-// A custom section of the program and the first line of TEXTS have the same mark, so that no page takes those of another
-// build.
+// The program and TEXTS may come from different builds, out of a cache. So both have a mark, the program in a custom
+// section and TEXTS in its first line, and the page compares them.
 const told = lines.map((line) => `${line.join(' ')}\n`).join('');
 const mark = crypto.createHash('sha256').update(told).digest('hex').slice(0, 8), section = `\x05texts${mark}`;
 fs.writeFileSync(file, Buffer.concat([out, Buffer.from([0, section.length]), Buffer.from(section, 'latin1')]));

@@ -72,7 +72,8 @@ const decoded = (numbers) => String.fromCharCode(...numbers.match(/\d+/g).slice(
 const encoded = (text) => `    ${[...`${text}\0`].map((c) => c.charCodeAt(0)).join(',').replace(/((?:\d+,){24})/g, '$1\n    ')}`;
 // Each text is an array of literals, or of characters.
 const [, , from, to, ...files] = process.argv;
-// What C says keeps its name: words of strings without spaces, and in others, which may be GLSL, those of the library.
+// Names that occur in a string of C are not shortened: all words of a string without spaces; of any other string, which
+// may be GLSL, the words that begin with noh_.
 const strings = new Set(files.flatMap((file) => Array.from(fs.readFileSync(file, 'utf8').matchAll(/"(?:[^"\\\n]|\\.)*"/g))
     .flatMap(([text]) => text.match(/^"\w+[^\s"]*"$/.test(text) ? /\w+/g : /\bnoh_\w+/g) || [])));
 const parts = fs.readFileSync(from, 'utf8').split(/^((?:static const char \*const \w+_pieces|const char \w+)\[\] = \{\n[^]*?\n\};\n)/m);

@@ -1,5 +1,6 @@
 /* Levels that come later: a stage on packs of coarse levels draws what such packs alone would, loads the finer levels
  * in pieces, draws what the full packs would, and drops them again. Whatever pack is not the right one is refused. */
+#include "support/counted_gl.h"
 #include "support/gl_fixture.h"
 #include "support/stage_fixture.h"
 
@@ -321,41 +322,6 @@ static void levels_come_and_go(void **state)
 
 /* ---- on the driver that counts ---- */
 
-static struct {
-    noh_gl_api real;
-    uint64_t bytes;
-} counted;
-
-static void GL_APIENTRY count_buffer(GLenum target, GLintptr at, GLsizeiptr bytes, const void *data)
-{
-    counted.bytes += (uint64_t)bytes;
-    counted.real.BufferSubData(target, at, bytes, data);
-}
-
-static void GL_APIENTRY count_texels(GLenum target, GLint level, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format,
-                                     GLenum type, const void *data)
-{
-    counted.bytes += (uint64_t)w * (uint64_t)h * (format == GL_RED_INTEGER ? 4u : format == GL_RGB_INTEGER ? 12u : 16u);
-    counted.real.TexSubImage2D(target, level, x, y, w, h, format, type, data);
-}
-
-static void open_null(gpu *g)
-{
-    memset(g, 0, sizeof *g);
-    assert_int_equal(gpu_open(g, "null"), 0);
-    g->caps.blend_f32 = g->caps.blend_f32_exact = g->caps.mrt3 = g->caps.render_f32 = 1;
-    counted.real = g->gl;
-    counted.bytes = 0;
-    g->gl.BufferSubData = count_buffer;
-    g->gl.TexSubImage2D = count_texels;
-}
-
-static const fixture_way null_ways[] = { { NOH_MORPH_MRT, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32 } };
-
 /* Load a kind frame by frame; returns the bytes. */
 static uint64_t load_alone(act *a, uint32_t kind, uint32_t bound)
 {
@@ -381,19 +347,19 @@ static void each_frame_keeps_the_bound(void **state)
     static gpu g;
     static act a;
     (void)state;
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
         uint64_t least = UINT64_MAX, most = 0;
         for (uint32_t b = 0; b < TEST_COUNT(bounds); b++) {
             const uint32_t bound = bounds[b] < 256u ? 256u : bounds[b];
             uint64_t sum = 0;
-            const int by_block = null_ways[w].path == NOH_MORPH_GATHER || null_ways[w].path == NOH_MORPH_DIRECT;
+            const int by_block = counted_ways[w].path == NOH_MORPH_GATHER || counted_ways[w].path == NOH_MORPH_DIRECT;
             if (bounds[b] < 5000u && by_block) continue; /* two walks for each piece */
-            open_null(&g);
+            counted_open(&g);
             memset(&a, 0, sizeof a);
             make_desc(&a, LATER);
             a.c.desc.kind_count = FEW;
             a.c.desc.load_bytes = bounds[b];
-            a.c.desc.morph_path = (uint32_t)null_ways[w].path;
+            a.c.desc.morph_path = (uint32_t)counted_ways[w].path;
             {
                 const noh_gl_device d = device_of(&g);
                 cast_make(&a.c, &d);
@@ -419,11 +385,11 @@ static void frames_make_nothing(void **state)
     static act a;
     test_random r = test_random_from(5);
     (void)state;
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
         noh_null_report report;
         uint32_t loaded = 0, dropped = 0;
-        open_null(&g);
-        assert_true(open_act(&a, LATER, &g, null_ways[w]));
+        counted_open(&g);
+        assert_true(open_act(&a, LATER, &g, counted_ways[w]));
         noh_null_count_anew(g.context);
         for (uint32_t f = 0; f < 600; f++) {
             const uint32_t kind = test_random_below(&r, FEW);
@@ -465,7 +431,7 @@ static void kinds_share_their_levels(void **state)
     static act a;
     uint32_t coarse;
     (void)state;
-    open_null(&g);
+    counted_open(&g);
     memset(&a, 0, sizeof a);
     make_desc(&a, LATER);
     a.c.kinds[0] = a.c.kinds[1] = a.c.kinds[MASKS];
@@ -519,8 +485,8 @@ static void other_packs_are_refused(void **state)
     static act a;
     bytes_of_pack shorter, coarse, forged;
     (void)state;
-    open_null(&g);
-    assert_true(open_act(&a, LATER, &g, null_ways[0]));
+    counted_open(&g);
+    assert_true(open_act(&a, LATER, &g, counted_ways[0]));
     shorter = strip(&a.c.packs[MASKS], 1);
     coarse = strip(&a.c.packs[MASKS], 2);
     expect_refused(&a, &a.c.packs[PUPPETS], NOH_ERR_DATA);
@@ -569,13 +535,13 @@ static void room_costs_little(void **state)
 {
     static gpu g;
     (void)state;
-    open_null(&g);
+    counted_open(&g);
     assert_true(gpu_bytes_of(LATER, &g, NOH_MORPH_CPU) == gpu_bytes_of(FULL, &g, NOH_MORPH_CPU));
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
-        const uint64_t full = gpu_bytes_of(FULL, &g, null_ways[w].path);
-        const uint64_t later = gpu_bytes_of(LATER, &g, null_ways[w].path);
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
+        const uint64_t full = gpu_bytes_of(FULL, &g, counted_ways[w].path);
+        const uint64_t later = gpu_bytes_of(LATER, &g, counted_ways[w].path);
         print_message("# %s: %u bytes on the GPU with all levels, %u with finer ones to come\n",
-                      noh_morph_path_name(null_ways[w].path), (unsigned)full, (unsigned)later);
+                      noh_morph_path_name(counted_ways[w].path), (unsigned)full, (unsigned)later);
         assert_true(later >= full && later - full < full / 8u);
     }
     gpu_close(&g);
@@ -593,7 +559,7 @@ static void plans_know_the_finer_levels(void **state)
     noh_error error;
     uint8_t *memory;
     (void)state;
-    open_null(&g);
+    counted_open(&g);
     memset(&a, 0, sizeof a);
     make_desc(&a, LATER);
     half = strip(&a.c.packs[MASKS], 1);

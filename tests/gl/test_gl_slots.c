@@ -1,6 +1,7 @@
 /* Kinds that come into a stage that draws: while they are uploaded the picture is as without them, then as on a
  * stage that had them from the start; what runs keeps its pictures. Uploads keep their bound, and whatever GL call fails,
  * a kind comes or does not, the others are drawn, and nothing is left behind. */
+#include "support/counted_gl.h"
 #include "support/gl_fixture.h"
 #include "support/stage_fixture.h"
 
@@ -251,52 +252,6 @@ static void pictures_are_those_of_kinds_that_were_there(void **state)
 
 /* ---- on the driver that counts ---- */
 
-static struct {
-    noh_gl_api real;
-    uint64_t bytes;
-} counted;
-
-static void GL_APIENTRY count_buffer(GLenum target, GLintptr at, GLsizeiptr bytes, const void *data)
-{
-    counted.bytes += (uint64_t)bytes;
-    counted.real.BufferSubData(target, at, bytes, data);
-}
-
-static void GL_APIENTRY count_texels(GLenum target, GLint level, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format,
-                                     GLenum type, const void *data)
-{
-    counted.bytes += (uint64_t)w * (uint64_t)h *
-                     (format == GL_RED_INTEGER || format == GL_RGBA || format == GL_RG ? 4u
-                      : format == GL_RGB_INTEGER                                       ? 12u
-                                                                                       : 16u);
-    counted.real.TexSubImage2D(target, level, x, y, w, h, format, type, data);
-}
-
-static void GL_APIENTRY count_blocks(GLenum target, GLint level, GLint x, GLint y, GLsizei w, GLsizei h, GLenum format,
-                                     GLsizei bytes, const void *data)
-{
-    counted.bytes += (uint64_t)bytes;
-    counted.real.CompressedTexSubImage2D(target, level, x, y, w, h, format, bytes, data);
-}
-
-static void open_null(gpu *g)
-{
-    memset(g, 0, sizeof *g);
-    assert_int_equal(gpu_open(g, "null"), 0);
-    g->caps.blend_f32 = g->caps.blend_f32_exact = g->caps.mrt3 = g->caps.render_f32 = 1;
-    counted.real = g->gl;
-    counted.bytes = 0;
-    g->gl.BufferSubData = count_buffer;
-    g->gl.TexSubImage2D = count_texels;
-    g->gl.CompressedTexSubImage2D = count_blocks;
-}
-
-static const fixture_way null_ways[] = { { NOH_MORPH_MRT, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_GATHER, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_PER_LAYER, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_CPU, NOH_ACCUMULATE_F32 },
-                                         { NOH_MORPH_DIRECT, NOH_ACCUMULATE_F32 } };
-
 /* Upload a kind that nobody is of. Returns its bytes. */
 static uint64_t upload_alone(act *a, uint32_t bound)
 {
@@ -321,15 +276,15 @@ static void each_frame_keeps_the_bound(void **state)
     static gpu g;
     static act a;
     (void)state;
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
         uint64_t least = UINT64_MAX, most = 0;
         for (uint32_t b = 0; b < TEST_COUNT(bounds); b++) {
             const uint32_t bound = bounds[b] < 256u ? 256u : bounds[b];
-            const int by_block = null_ways[w].path == NOH_MORPH_GATHER || null_ways[w].path == NOH_MORPH_DIRECT;
+            const int by_block = counted_ways[w].path == NOH_MORPH_GATHER || counted_ways[w].path == NOH_MORPH_DIRECT;
             uint64_t sum;
             if (bounds[b] < 5000u && (by_block || w == 2)) continue; /* two walks for each piece */
-            open_null(&g);
-            open_act(&a, &g, null_ways[w]);
+            counted_open(&g);
+            open_act(&a, &g, counted_ways[w]);
             with_slots(&a, 2);
             a.c.desc.load_bytes = bounds[b];
             assert_true(make_act(&a));
@@ -422,12 +377,12 @@ static void any_order_with_a_driver_that_fails(void **state)
     test_random r = test_random_from(20261129u);
     uint32_t refused = 0, came = 0, went = 0, failed = 0;
     (void)state;
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
         fate slots[2];
         noh_actor actors[3];
         memset(slots, 0, sizeof slots);
-        open_null(&g);
-        open_act(&a, &g, null_ways[w]);
+        counted_open(&g);
+        open_act(&a, &g, counted_ways[w]);
         with_slots(&a, 2);
         a.c.desc.load_bytes = 40000;
         a.c.desc.motion = a.c.desc.user_values = w % 2u;
@@ -459,13 +414,13 @@ static void the_plan_has_every_byte(void **state)
     static gpu g;
     static act a;
     (void)state;
-    for (uint32_t w = 0; w < TEST_COUNT(null_ways); w++) {
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
         noh_stage_bytes parts[96];
         noh_stage *made = NULL;
         uint64_t cpu = 0, gpu_sum = 0, room = 0, taken, most = 0;
         uint32_t count;
-        open_null(&g);
-        open_act(&a, &g, null_ways[w]);
+        counted_open(&g);
+        open_act(&a, &g, counted_ways[w]);
         with_slots(&a, 2);
         assert_true(make_act(&a));
         count = noh_stage_plan_parts(&a.c.desc, &g.caps, &a.c.plan, parts, TEST_COUNT(parts));
@@ -513,8 +468,8 @@ static void what_the_plan_does_not_have_is_refused(void **state)
     static gpu g;
     static act a;
     (void)state;
-    open_null(&g);
-    open_act(&a, &g, null_ways[0]);
+    counted_open(&g);
+    open_act(&a, &g, counted_ways[0]);
     a.c.kinds[TUBES].changes = 2;
     assert_true(make_act(&a));
     desc = a.others[TUBES];
@@ -561,9 +516,9 @@ static void planned_kinds_come_into_lit_stages(void **state)
     for (int half_floats = 0; half_floats < 2; half_floats++) {
         static gpu g;
         static act a;
-        open_null(&g);
+        counted_open(&g);
         g.caps.render_f16 = half_floats;
-        open_act(&a, &g, null_ways[0]);
+        open_act(&a, &g, counted_ways[0]);
         a.c.desc.light = &light;
         a.c.kinds[TUBES].changes = 2;
         assert_true(make_act(&a));
@@ -591,9 +546,12 @@ static int close_packs(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(pictures_are_those_of_kinds_that_were_there), cmocka_unit_test(each_frame_keeps_the_bound),
-        cmocka_unit_test(any_order_with_a_driver_that_fails),          cmocka_unit_test(the_plan_has_every_byte),
-        cmocka_unit_test(what_the_plan_does_not_have_is_refused),      cmocka_unit_test(planned_kinds_come_into_lit_stages),
+        cmocka_unit_test(pictures_are_those_of_kinds_that_were_there),
+        cmocka_unit_test(each_frame_keeps_the_bound),
+        cmocka_unit_test(any_order_with_a_driver_that_fails),
+        cmocka_unit_test(the_plan_has_every_byte),
+        cmocka_unit_test(what_the_plan_does_not_have_is_refused),
+        cmocka_unit_test(planned_kinds_come_into_lit_stages),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, open_packs, close_packs);

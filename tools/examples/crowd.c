@@ -4,8 +4,8 @@
  *
  *   crowd FIGURE.noh [-o NAME]
  *
- * The pack has the clips walk, idle and get_up... (build/demo/puppet_falls.noh). Writes NAME0.png to NAME2.png (default:
- * crowd). Links EGL. */
+ * The pack has the clips walk, idle and get_up... (build/demo/puppet_falls.noh). Writes NAME0.png to NAME2.png
+ * (default: crowd). Links EGL. */
 #include <string.h>
 
 #include "start.h"

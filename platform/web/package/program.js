@@ -17,7 +17,7 @@ const texts = { all: () => new URL('./noh.txt', import.meta.url), body: () => ne
 const sentences = new WeakMap(); // by module: { address, lines: null or [address in memory, words] }
 const wordless = new WeakMap(); // by error: { module, at }
 
-// Sentences and their program have the same mark: caches may have kept one of an older build.
+// A cache may have kept the sentences, or the program, of an older build: both have a mark, which must be the same.
 const markOf = (module) => String.fromCharCode(...new Uint8Array(WebAssembly.Module.customSections(module, 'texts')[0] || 0));
 
 // Fetches the sentences of a program; without them an error has a number.

@@ -58,8 +58,6 @@ noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_devi
 
 /* Whether a path sums by a program of its own. */
 int noh_gl_morph_has_program(noh_morph_path path);
-/* Whether a desc's sums have a layer of occlusion, and so the second of the programs above. */
-int noh_gl_morph_has_occlusion(const noh_gl_morph_desc *desc);
 /* Compile a program for accumulators that share it. Delete it by noh_gl_program_delete.
  * errors  as noh_gl_morph_init */
 noh_result noh_gl_morph_compile(const noh_gl_device *device, noh_morph_path path, const noh_gl_morph_desc *desc,

@@ -338,11 +338,6 @@ static uint32_t has_occlusion(const noh_gl_morph_desc *desc)
     return has;
 }
 
-int noh_gl_morph_has_occlusion(const noh_gl_morph_desc *desc)
-{
-    return has_occlusion(desc) != 0;
-}
-
 /* Place an owner of tiles after the previous owners. `to` may be NULL. */
 static void add_owner(const noh_mesh *mesh, uint32_t tiles, noh_gl_morph_mesh *to, table_sums *sums)
 {

@@ -593,8 +593,7 @@ int noh_gl_any_weight(const float *weights, uint32_t count)
     return 0;
 }
 
-/* Wrinkles of an actor's expression, for crowds. For an actor drawn alone the draw sets them. */
-static void upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
+void noh_gl_upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
 {
     float regions[NOH_WRINKLE_REGIONS];
     noh_wrinkles wrinkles;
@@ -625,7 +624,7 @@ static void upload_place(const noh_stage_mesh *mesh, const noh_gl_item *item, co
         (void)noh_gl_skin_set_place(item->skin, shown->place, world, moved ? &morph : NULL, NULL);
         (void)noh_gl_skin_set_tint(item->skin, shown->place, noh_stage_tint_of(actor), NULL);
         if (has_user) (void)noh_gl_skin_set_user(item->skin, shown->place, actor->look.user, NULL);
-        upload_regions(mesh, item, shown->place, weights);
+        noh_gl_upload_regions(mesh, item, shown->place, weights);
     }
 }
 

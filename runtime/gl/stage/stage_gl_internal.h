@@ -48,6 +48,8 @@ static inline int noh_gl_has_tile(const noh_gl_item *item, const noh_stage_shown
 
 /* 0: all weights are 0, so the mesh is not morphed and its vertices need not look up deltas. */
 int noh_gl_any_weight(const float *weights, uint32_t count);
+/* Wrinkles of an actor's expression, for crowds. For an actor drawn alone the draw sets them. */
+void noh_gl_upload_regions(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights);
 
 /* With motion a slot is a pair of tiles: one has the present sums, the other the sums before the last change. */
 #define NOH_SIDE_SECOND 1u  /* the second one has the present sums */

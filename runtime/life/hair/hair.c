@@ -47,7 +47,8 @@ static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
     for (uint32_t i = 0; i < d->hair_count * d->point_count; i++) {
         const float *p = d->rest + 3 * (size_t)i;
         float way[3];
-        if (!noh_are_sound(p, 3)) return noh_fail(error, NOH_ERR_ARG, "a rest point of a hair desc is not finite", i, 0);
+        if (!noh_are_sound(p, 3))
+            return noh_fail(error, NOH_ERR_ARG, "a rest point of a hair desc is not finite", i, 0);
         if (i % d->point_count == 0) continue;
         noh_sub3(p, p - 3, way);
         if (!(noh_dot3(way, way) > 1e-12f)) {

@@ -165,7 +165,8 @@ static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
     if (joint == t->chest) return CHEST;
     if (joint == t->spine) return SPINE;
     const part means = part_at(s, joint);
-    return means != NONE && noh_joint_is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means : NONE;
+    return means != NONE && noh_joint_is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means
+                                                                                                          : NONE;
 }
 
 /* ---- a table in the pack ---- */

@@ -484,9 +484,9 @@ static int good_row(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, ui
 {
     const noh_ragdoll_row *r = &rows[i];
     return r->joint < s->joints.joint_count && (!i || r->joint > rows[i - 1u].joint) &&
-           noh_joint_is_above(&s->joints, rows[0].joint, r->joint) && r->toward <= NOH_RAGDOLL_UPWARD && r->bend_min <= 0.0f &&
-           r->bend_min >= -NOH_PI && r->bend_max >= 0.0f && r->bend_max <= NOH_PI && r->side >= 0.0f &&
-           r->side <= NOH_PI && r->twist >= 0.0f && r->twist <= NOH_PI && r->friction >= 0.0f &&
+           noh_joint_is_above(&s->joints, rows[0].joint, r->joint) && r->toward <= NOH_RAGDOLL_UPWARD &&
+           r->bend_min <= 0.0f && r->bend_min >= -NOH_PI && r->bend_max >= 0.0f && r->bend_max <= NOH_PI &&
+           r->side >= 0.0f && r->side <= NOH_PI && r->twist >= 0.0f && r->twist <= NOH_PI && r->friction >= 0.0f &&
            noh_is_finite(r->friction);
 }
 

@@ -119,7 +119,8 @@ const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *de
     }
     for (uint32_t i = 0; i < s->joint_count; i++) {
         const noh_spring_point *p = &noh_spring_const_points(s)[i];
-        if (!noh_are_sound(p->now, 3) || !noh_are_sound(p->before, 3) || p->length != noh_length3(desc->joints[i].bone)) {
+        if (!noh_are_sound(p->now, 3) || !noh_are_sound(p->before, 3) ||
+            p->length != noh_length3(desc->joints[i].bone)) {
             return "a spring's joint is out of range";
         }
     }

@@ -200,15 +200,6 @@ static int is_moved(const float *weights, uint32_t count)
     return 0;
 }
 
-static void hand_over_folds(const noh_stage_mesh *mesh, const noh_gl_item *item, uint32_t place, const float *weights)
-{
-    float regions[NOH_WRINKLE_REGIONS];
-    noh_wrinkles wrinkles;
-    if (noh_wrinkles_of(&mesh->mesh, &wrinkles, NULL)) return;
-    noh_wrinkles_weights(&wrinkles, weights, regions);
-    (void)noh_gl_skin_set_wrinkles(item->skin, place, regions, NULL);
-}
-
 static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, const float world[12])
 {
     const noh_stage_gl *gl = h->of->stage->gpu;
@@ -232,7 +223,7 @@ static void hand_over(by_hand *h, noh_character *ch, const noh_stage_shown *at, 
         }
         if (!noh_stage_is_mirrored(mesh, &h->kind->actors[0], &h->of->stage->shown[0])) {
             (void)noh_gl_skin_set_place(item->skin, at->place, placed, moved ? &binding : NULL, NULL);
-            hand_over_folds(mesh, item, at->place, weights);
+            noh_gl_upload_regions(mesh, item, at->place, weights);
         }
         if (mesh->skinned) {
             if (mesh->skin.header != ready) noh_character_skin(ch, &mesh->skin, h->of->stage->jobs[0].matrices);

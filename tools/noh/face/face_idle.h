@@ -25,9 +25,9 @@ typedef struct face_idle {
     int is_there[FACE_REGIONS];   /* 0: no target moves it, which leaves it out */
 } face_idle;
 
-/* Let the face of a pack live, with an emotion and while clips play, and compare each picture with the next, 512 pixels high: a region moves
- * where a vertex of it does by a fiftieth of a pixel, an outline where one of eight tangents does. A region is what the targets of
- * its channels move. Prints an error and returns an exit code; 0 on success. */
+/* Let the face of a pack live, with an emotion and while clips play, and compare each picture with the next, 512 pixels
+ * high: a region moves where a vertex of it does by a fiftieth of a pixel, an outline where one of eight tangents does.
+ * A region is what the targets of its channels move. Prints an error and returns an exit code; 0 on success. */
 int face_idle_measure(const face_idle_desc *desc, face_idle *out);
 
 #endif
