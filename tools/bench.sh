@@ -11,11 +11,7 @@ echo "== the mask" >&2
 "$build/noh" bench "$build/mask.noh" --source "$build/mask.glb" "$@"
 
 echo "== the puppet" >&2
-"$build/noh" build "$build/demo/puppet.glb" -o "$build/demo/puppet.noh" --quiet --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs
 "$build/noh" bench "$build/demo/puppet.noh" "$@"
-"$build/noh" build "$build/demo/puppet.glb" -o "$build/demo/puppet_levels.noh" --lod 4 --lod-fast --quiet
-"$build/demo_assets" --roam "$build/demo/roam.glb"
-"$build/noh" build "$build/demo/roam.glb" -o "$build/demo/roam.noh" --match tools/demo_assets/puppet/roam.match --quiet
 echo "== motion matching of the puppet" >&2
 "$build/noh" bench "$build/demo/roam.noh" --only clip "$@"
 echo "== a stage of the puppet with LOD levels" >&2

@@ -27,7 +27,6 @@ echo
 "$noh" budget "$build/mask.noh" --path layered --nominal
 echo
 echo 'LOD levels (--lod-fast; without it their errors are smaller, and the build takes a minute):'
-"$noh" build "$build/mask.glb" -o "$build/mask_levels.noh" --lod 4 --lod-fast --quiet
 "$noh" sheet "$build/mask_levels.noh" -o "$build/mask_levels.png" --lods --tile 256 --target smile --target eyeBlinkLeft,eyeBlinkRight \
     --path "$path"
 "$noh" budget "$build/mask_levels.noh" --path "$path" | sed -n '/^level/,$p'

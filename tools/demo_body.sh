@@ -17,7 +17,6 @@ done
 "$noh" budget "$out/puppet.noh"
 
 # A push: it falls, and gets up by the clip for how it lies.
-"$noh" build "$out/puppet.glb" "$out/get_up.glb" -o "$out/puppet_falls.noh" --quiet
 "$noh" sheet "$out/puppet_falls.noh" -o "$out/puppet_falls.png" --clip walk --push 0,0,-150 --camera 50,12 --tiles 16 \
     --columns 8 --tile 200
 "$noh" sheet "$out/puppet_falls.noh" -o "$out/puppet_stumbles.png" --clip walk --push 20,0,60 --camera 50,12 --tiles 16 \

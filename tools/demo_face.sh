@@ -7,15 +7,15 @@ out=$build/demo
 noh=$build/noh
 text=${NOH_TEXT:-'Bob and Mabel pump up five balloons before supper.'}
 
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto \
+"$noh" build "$out/puppet.glb" -o "$out/puppet_says_pack.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto \
     --lips --quiet
 "$noh" build "$build/mask.glb" -o "$out/mask_says_pack.noh" --wrinkles auto --lips --quiet
-if ! "$noh" speak "$text" --face "$out/puppet.noh" -o "$out/says.noh" --wav "$out/says.wav"; then
+if ! "$noh" speak "$text" --face "$out/puppet_says_pack.noh" -o "$out/says.noh" --wav "$out/says.wav"; then
     echo 'demo-face: nothing is said without eSpeak NG (Debian: apt install libespeak-ng1 espeak-ng-data)'
     exit 0
 fi
 "$noh" speak "$text" --face "$out/mask_says_pack.noh" -o "$out/mask_says.noh"
-"$noh" sheet "$out/puppet.noh" -o "$out/puppet_says.png" --anim "$out/puppet.noh" --anim "$out/says.noh" \
+"$noh" sheet "$out/puppet_says_pack.noh" -o "$out/puppet_says.png" --anim "$out/puppet_says_pack.noh" --anim "$out/says.noh" \
     --clip speech --clip walk --face on --tiles 16 --columns 8 --tile 240
 "$noh" sheet "$out/mask_says_pack.noh" -o "$out/mask_says.png" --anim "$out/mask_says.noh" --clip speech \
     --face on --feel joy=0.8 --tiles 16 --columns 8 --tile 240
@@ -27,8 +27,8 @@ mkdir -p "$out/film"
 frame=0
 while [ $frame -lt $((seconds * 25)) ]; do
     time=$(awk "BEGIN { printf \"%.3f\", $frame / 25 }")
-    "$noh" render "$out/puppet.noh" -o "$(printf '%s/film/%04d.png' "$out" $frame)" --size 384x384 --camera face \
-        --anim "$out/puppet.noh" --anim "$out/says.noh" --clip idle --clip speech --face on --time "$time" >/dev/null
+    "$noh" render "$out/puppet_says_pack.noh" -o "$(printf '%s/film/%04d.png' "$out" $frame)" --size 384x384 --camera face \
+        --anim "$out/puppet_says_pack.noh" --anim "$out/says.noh" --clip idle --clip speech --face on --time "$time" >/dev/null
     frame=$((frame + 1))
 done
 if command -v ffmpeg >/dev/null; then

@@ -16,11 +16,11 @@ deps-fuzz:
 	@[ "$(DEPS)" = 0 ] || sh tools/deps.sh build check fuzz
 
 demo: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb $(BUILD)/demo/nell.glb $(BUILD)/demo/flush.noh
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.glb $(BUILD)/mask_levels.noh $(BUILD)/demo/nell.glb $(BUILD)/demo/flush.noh
 	@sh tools/demo.sh $(BUILD)
 
 demo-body: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/demo/arm.glb
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/demo/puppet.glb $(BUILD)/demo/puppet_falls.noh $(BUILD)/demo/arm.glb
 	@NOH_ASSETS="$(ASSETS)" sh tools/demo_body.sh $(BUILD)
 
 demo-face: deps-build
@@ -95,7 +95,7 @@ cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
 
 bench: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(BUILD)/mask.noh $(BUILD)/demo/puppet.glb $(BUILD)/lod_compare
+	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(addprefix $(BUILD)/,mask.noh demo/puppet.noh demo/puppet_levels.noh demo/roam.noh) $(BUILD)/lod_compare
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
 
