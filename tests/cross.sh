@@ -1,8 +1,8 @@
 #!/bin/sh
 # cross.sh: builds the library for other processors and systems without a warning, and runs the tests there that
 # tests/cross_tests.sh lists: aarch64 (NEON) and armv7 (scalar) under qemu-user, wasm (scalar) under node, Windows under
-# Wine. The library is -O2 everywhere, and -O3 for x86, too (NOH_LONG: more levels, and i386, whose amalgam
-# check_install.sh builds; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
+# Wine. The library is -O2 everywhere (NOH_LONG: more levels, and x86 with i386, whose amalgam check_install.sh builds;
+# warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
 # missing is skipped and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
@@ -130,17 +130,16 @@ target() {
 }
 
 mkdir -p "$build"
-echo '== x86'
 # make check's is -O2.
-# shellcheck disable=SC2046 # words
-at_levels x86_64 gcc ar $([ -z "${NOH_LONG:-}" ] || echo -O0 -Os) -O3
-if [ -z "${NOH_LONG:-}" ]; then
-    :
-elif echo '#include <stdint.h>' | gcc -m32 -E - >/dev/null 2>&1; then
-    at_levels i386 'gcc -m32 -msse2 -mfpmath=sse' ar -O0 -Os -O2 -O3
-else
-    echo '    skipped: no headers of 32 bits here (gcc-multilib)'
-    skipped=$((skipped + 1))
+if [ -n "${NOH_LONG:-}" ]; then
+    echo '== x86'
+    at_levels x86_64 gcc ar -O0 -Os -O3
+    if echo '#include <stdint.h>' | gcc -m32 -E - >/dev/null 2>&1; then
+        at_levels i386 'gcc -m32 -msse2 -mfpmath=sse' ar -O0 -Os -O2 -O3
+    else
+        echo '    skipped: no headers of 32 bits here (gcc-multilib)'
+        skipped=$((skipped + 1))
+    fi
 fi
 target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar '' -static qemu-aarch64-static
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar '' -static qemu-arm-static
