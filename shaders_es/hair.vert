@@ -39,43 +39,49 @@ vec3 fetch(int x, int y)
     return texelFetch(u_points, ivec2(x, y), 0).xyz;
 }
 
+/* The quotient and the remainder, by way of floats: a GPU has no division of integers, and what stands for it takes most
+ * of a Mali's registers. Exact for quotients below 2^22. */
+ivec2 divide(int n, int by)
+{
+    int quotient = int(float(n) / float(by)), rest = n - quotient * by;
+    int more = rest < 0 ? -1 : rest >= by ? 1 : 0;
+    return ivec2(quotient + more, rest - more * by);
+}
+
 /* The n-th texel from a row on. */
 vec3 fetch_from(int row, int n)
 {
-    int width = int(u_counts.x) * int(u_curl.w);
-    return fetch(n % width, row + n / width);
+    ivec2 at = divide(n, int(u_counts.x) * int(u_curl.w));
+    return fetch(at.y, row + at.x);
 }
 
 void add_hair(int hair, ivec4 at, vec4 place, vec4 slope, float share, inout vec3 position, inout vec3 tangent)
 {
-    int in_row = int(u_curl.w), row = hair / in_row, x = (hair - row * in_row) * int(u_counts.x);
-    vec3 a = fetch(x + at.x, row), b = fetch(x + at.y, row), c = fetch(x + at.z, row), d = fetch(x + at.w, row);
+    ivec2 row = divide(hair, int(u_curl.w));
+    int x = row.y * int(u_counts.x);
+    vec3 a = fetch(x + at.x, row.x), b = fetch(x + at.y, row.x), c = fetch(x + at.z, row.x), d = fetch(x + at.w, row.x);
     position += share * (a * place.x + b * place.y + c * place.z + d * place.w);
     tangent += share * (a * slope.x + b * slope.y + c * slope.z + d * slope.w);
 }
 
-/* The hair of the head that an instance belongs to. */
+/* The place of a head: rows from head space. */
 struct head {
-    vec4 x, y, z; /* rows from head space */
-    uint strip;
-    int first; /* index of its first control hair */
-    float fade, widen;
-    vec2 melanin;
-    bool is_drawn;
+    vec4 x, y, z;
 };
 
-head head_of(uint instance)
+/* Texels of a record: four of the place, and one of the first control hair, fade and melanin, and strips drawn. */
+head head_of(int record)
 {
-    uint each = uint(u_crowd.x), body = instance / each;
-    int at = (int(u_crowd.y) + int(body)) * 5, row = int(u_crowd.z);
-    vec3 a = fetch_from(row, at), b = fetch_from(row, at + 1), c = fetch_from(row, at + 2);
-    vec3 d = fetch_from(row, at + 3), own = fetch_from(row, at + 4);
-    uint strip = instance - body * each;
-    int bytes = int(own.y); /* with half of the fade behind the point */
-    ivec2 melanin = ivec2(bytes & 255, bytes >> 8);
+    int row = int(u_crowd.z);
+    vec3 a = fetch_from(row, record), b = fetch_from(row, record + 1), c = fetch_from(row, record + 2);
+    return head(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, fetch_from(row, record + 3)));
+}
+
+vec2 melanin_of(float bytes)
+{
+    ivec2 melanin = ivec2(int(bytes) & 255, int(bytes) >> 8);
     melanin -= 256 * ivec2(greaterThan(melanin, ivec2(127)));
-    return head(vec4(a, b.x), vec4(b.yz, c.xy), vec4(c.z, d), strip, int(own.x), 2.0 * fract(own.y),
-                u_crowd.w / max(own.z, 1.0), vec2(melanin) / vec2(32.0, 64.0), float(strip) < own.z);
+    return vec2(melanin) / vec2(32.0, 64.0);
 }
 
 vec3 to_world(head h, vec3 p, float w)
@@ -86,11 +92,12 @@ vec3 to_world(head h, vec3 p, float w)
 
 void main()
 {
-    head h = head_of(uint(gl_InstanceID));
-    uint strip = h.strip, patches = uint(u_counts.z), index = strip % patches, turn = strip / patches;
-    int count = int(u_counts.x), texel = int(index) * 2;
-    ivec2 near = ivec2(fetch_from(int(u_counts.y), texel).xy) + h.first;
-    ivec2 far = ivec2(fetch_from(int(u_counts.y), texel + 1).xy) + h.first;
+    ivec2 of_head = divide(gl_InstanceID, int(u_crowd.x)), of_patch = divide(of_head.y, int(u_counts.z));
+    uint strip = uint(of_head.y), turn = uint(of_patch.x);
+    int count = int(u_counts.x), texel = of_patch.y * 2, record = (int(u_crowd.y) + of_head.x) * 5;
+    vec3 own = fetch_from(int(u_crowd.z), record + 4); /* of the head */
+    ivec2 near = ivec2(fetch_from(int(u_counts.y), texel).xy) + int(own.x);
+    ivec2 far = ivec2(fetch_from(int(u_counts.y), texel + 1).xy) + int(own.x);
     float u = share_of(turn * 0xc13fa9a9u + 0x80000000u), v = share_of(turn * 0x91e10da6u + 0x80000000u);
     float along = float(gl_VertexID >> 1) / u_counts.w;
     float x = along * (0.8 + 0.2 * share_of(mixed(strip * 3u))) * float(count - 1);
@@ -111,6 +118,7 @@ void main()
     vec3 side = vec3(1.0 - t.x * t.x * rise, t.x, -t.x * t.z * rise), across = vec3(-t.x * t.z * rise, t.z, 1.0 - t.z * t.z * rise);
     p += (u_widths.z * along * (2.0 * a - 1.0) + u_curl.x * along * cos(angle)) * side;
     p += (u_widths.z * along * (2.0 * b - 1.0) + u_curl.x * along * sin(angle)) * across;
+    head h = head_of(record); /* here: fetched earlier, it spills registers of a Mali G57 */
     vec3 away = p - u_middle.xyz;
     away.y = max(away.y, 0.0); /* below the middle of the skull, hair faces away from the vertical axis */
     float scale = length(vec3(h.x.x, h.y.x, h.z.x));
@@ -120,11 +128,12 @@ void main()
     vec3 wide = cross(v_tangent, view);
     wide = dot(wide, wide) > 1e-12 * dot(view, view) ? normalize(wide) : normalize(to_world(h, side, 0.0));
     v_at = vec2((gl_VertexID & 1) == 0 ? -1.0 : 1.0, along);
-    v_position += v_at.x * h.widen * scale * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.02, 0.025, along) * wide;
+    float widen = u_crowd.w / max(own.z, 1.0) * scale;
+    v_position += v_at.x * widen * mix(u_widths.x, u_widths.y, along) * smoothstep(-0.02, 0.025, along) * wide;
     vec3 normal = to_world(h, away - dot(away, t) * t, 0.0);
     v_normal = dot(normal, normal) > 1e-20 ? normalize(normal) : wide;
     v_strip = b;
-    v_fade = h.fade;
-    v_melanin = h.melanin;
-    gl_Position = h.is_drawn ? u_view_projection * vec4(v_position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
+    v_fade = 2.0 * fract(own.y); /* bytes of melanin, with half of the fade behind the point */
+    v_melanin = melanin_of(own.y);
+    gl_Position = float(strip) < own.z ? u_view_projection * vec4(v_position, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 }
