@@ -228,13 +228,18 @@ static void link_rows(binding *b, const noh_face_recipe *recipe, uint32_t from, 
     }
 }
 
-/* The emotion that looks most like one for which a mesh has no target at all, as VRM's faces have none for fear. */
+uint32_t noh_emotion_like(uint32_t emotion)
+{
+    return emotion == NOH_EMOTION_FEAR      ? NOH_EMOTION_SURPRISE
+           : emotion == NOH_EMOTION_DISGUST ? NOH_EMOTION_ANGER
+                                            : NOH_EMOTION_COUNT;
+}
+
+/* The channel from which one takes its targets that a mesh has none for. */
 static uint32_t like(const binding *b, uint32_t channel)
 {
-    const uint32_t to = channel == NOH_CHANNEL_UPPER + NOH_EMOTION_FEAR      ? NOH_EMOTION_SURPRISE
-                        : channel == NOH_CHANNEL_UPPER + NOH_EMOTION_DISGUST ? NOH_EMOTION_ANGER
-                                                                             : NOH_EMOTION_COUNT;
-    if (to == NOH_EMOTION_COUNT || choose(b, channel - NOH_CHANNEL_UPPER + NOH_CHANNEL_MOUTH)) return nearest(channel);
+    const uint32_t emotion = channel - NOH_CHANNEL_UPPER, to = noh_emotion_like(emotion);
+    if (to == NOH_EMOTION_COUNT || choose(b, NOH_CHANNEL_MOUTH + emotion)) return nearest(channel);
     return NOH_CHANNEL_UPPER + to;
 }
 

@@ -24,6 +24,10 @@ void noh_face_scale_user(uint32_t user, float by, float *channels);
 /* The user that a row of a recipe overrides; NOH_NONE: it is another row. */
 uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, noh_override *how);
 
+/* The emotion that looks most like one for which a face may have no targets, as VRM's have none for fear;
+ * NOH_EMOTION_COUNT: none does. */
+uint32_t noh_emotion_like(uint32_t emotion);
+
 /* As noh_weight_rules_bind, but of expressions alone. */
 uint32_t noh_expressions_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);
 

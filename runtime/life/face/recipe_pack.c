@@ -89,6 +89,29 @@ uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, n
     return NOH_NONE;
 }
 
+static int has_rows(const noh_pack *pack, uint32_t emotion)
+{
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        const char *channel = noh_pack_string(pack, pack->recipe_rows[i].channel);
+        if (noh_names_equal(channel, names[NOH_CHANNEL_UPPER + emotion])) return 1;
+        if (noh_names_equal(channel, names[NOH_CHANNEL_MOUTH + emotion])) return 1;
+    }
+    return 0;
+}
+
+/* An emotion that shows another's targets has the other's rules. */
+static void share_rules(const noh_pack *pack, noh_face_rules *rules)
+{
+    for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
+        const uint32_t other = noh_emotion_like(e);
+        if (other == NOH_EMOTION_COUNT || has_rows(pack, e) || !has_rows(pack, other)) continue;
+        rules->lids[e] = rules->lids[other];
+        rules->eyes[e] = rules->eyes[other];
+        rules->speech[e] = rules->speech[other];
+        rules->binary = (uint8_t)(rules->binary | (rules->binary >> other & 1u) << e);
+    }
+}
+
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
 {
     uint8_t *to[NOH_FACE_USERS];
@@ -108,4 +131,5 @@ void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
         user = emotion < NOH_EMOTION_COUNT ? noh_recipe_overrides(pack, row, &how) : NOH_NONE;
         if (user != NOH_NONE) to[user][emotion] = (uint8_t)how;
     }
+    share_rules(pack, rules);
 }

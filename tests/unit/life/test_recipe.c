@@ -298,6 +298,32 @@ static void emotions_take_speech_by_rule(void **state)
     check_override(offsetof(noh_face_rules, speech), NOH_CHANNEL_VISEMES + NOH_VISEME_AA);
 }
 
+/* Fear shows surprise's targets where a face has none of its own, and then by surprise's rules; else by its own. */
+static void an_emotion_with_anothers_targets_has_its_rules(void **state)
+{
+    static const char strings[] = "surprise-upper\0Surprised\0override-lids\0override-speech\0binary\0fear-mouth";
+    enum { SURPRISE = 0, TARGET = 15, LIDS = 25, SPEECH = 39, BINARY = 55, FEAR = 62 };
+    noh_recipe_row rows[] = { { .channel = SURPRISE, .target = TARGET, .weight = 1.0f },
+                              { .channel = LIDS, .target = SURPRISE, .weight = 1.0f },
+                              { .channel = SPEECH, .target = SURPRISE, .weight = 2.0f },
+                              { .channel = BINARY, .target = SURPRISE, .weight = 1.0f },
+                              { .channel = FEAR, .target = TARGET, .weight = 0.5f } };
+    noh_pack pack = { .strings = strings, .string_bytes = sizeof strings, .recipe_rows = rows, .recipe_row_count = 4 };
+    noh_face_rules rules;
+    (void)state;
+    assert_string_equal(strings + FEAR, "fear-mouth");
+    noh_face_rules_of_pack(&pack, &rules);
+    assert_int_equal(rules.lids[NOH_EMOTION_FEAR], NOH_OVERRIDE_BLOCK);
+    assert_int_equal(rules.speech[NOH_EMOTION_FEAR], NOH_OVERRIDE_BLEND);
+    assert_int_equal(rules.eyes[NOH_EMOTION_FEAR], NOH_OVERRIDE_NONE);
+    assert_int_equal(rules.binary, 1u << NOH_EMOTION_SURPRISE | 1u << NOH_EMOTION_FEAR);
+    assert_int_equal(rules.lids[NOH_EMOTION_DISGUST], NOH_OVERRIDE_NONE);
+    pack.recipe_row_count = 5;
+    noh_face_rules_of_pack(&pack, &rules);
+    assert_int_equal(rules.lids[NOH_EMOTION_FEAR] + rules.speech[NOH_EMOTION_FEAR], 0);
+    assert_int_equal(rules.binary, 1u << NOH_EMOTION_SURPRISE);
+}
+
 /* No rule and no emotion opens lips that p, b, m, f or v shut. */
 static void no_rule_opens_shut_lips(void **state)
 {
@@ -405,6 +431,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(emotions_take_lids_by_rule),
         cmocka_unit_test(emotions_take_eyes_by_rule),
         cmocka_unit_test(emotions_take_speech_by_rule),
+        cmocka_unit_test(an_emotion_with_anothers_targets_has_its_rules),
         cmocka_unit_test(no_rule_opens_shut_lips),
         cmocka_unit_test(speech_takes_the_mouth_by_rule),
         cmocka_unit_test(no_pose_is_a_face_at_rest),
