@@ -15,7 +15,7 @@
 #define SPEED_MAX 20.0f /* metres per second; exceeded only after a teleport without reset */
 #define PASSES 4        /* over spheres that overlap */
 #define GUST_STEPS 24u  /* between values of the noise: 0.4 s */
-#define BEND 0.1f       /* the least cosine of two consecutive segments is less than at rest by this */
+#define BEND 2.6f       /* radians that a hair bends at most from root to tip, more than at rest: no loops */
 #define LEAN_ROOT 0.98f /* the least cosine of a segment and itself at rest, at the root */
 #define LEAN_TIP 2.3f   /* less by this at the tip, which may point anywhere */
 #define ROW 10u         /* floats per point */
@@ -255,6 +255,8 @@ static void step_group(const group *g, noh_hair *h, const noh_hair_desc *d, cons
     noh_hair_point *points = noh_hair_points_of(h);
     lanes row[ROW], last[ROW];
     lane3 rest_before = load_roots(g, d->rest), shape_before = lane3_set(m->gravity), previous = shape_before;
+    const float bend = BEND / (float)(h->point_count - 1u);
+    const lanes cosine_lost = lanes_set(0.5f * bend * bend);
     obstacles o;
     find_obstacles(g, d, &o);
     load_points(g, points, 0, last);
@@ -269,7 +271,7 @@ static void step_group(const group *g, noh_hair *h, const noh_hair_desc *d, cons
         const lanes inverse = lanes_div(lanes_set(1.0f), row[9]);
         const lane3 shape = lane3_scale(lane3_sub(rest, rest_before), inverse);
         if (i == 1u) previous = shape_before = shape;
-        const lanes least = lanes_max(lanes_sub(lane3_dot(shape, shape_before), lanes_set(BEND)), lanes_set(-1.0f));
+        const lanes least = lanes_max(lanes_sub(lane3_dot(shape, shape_before), cosine_lost), lanes_set(-1.0f));
         const lanes lean = lanes_set(LEAN_ROOT - t * t * LEAN_TIP);
         const lane3 combed = within_cone(lane3_of(last), row[9], shape, lean, free_at);
         const lane3 bent = within_cone(lane3_of(last), row[9], previous, least, combed);
