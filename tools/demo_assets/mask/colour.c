@@ -40,13 +40,6 @@ static double mayu(double s, double t)
     return 0.96 * smooth(1.1, 0.3, d);
 }
 
-/* Where handling has worn the paint off the edge. */
-static double wear(double s, double t)
-{
-    double worn = to_rim(s, t) - 0.997 + 0.009 * noise2(s * 150, t * 150) + 0.008 * noise2(s * 47, t * 47);
-    return smooth(-0.010, 0.010, worn);
-}
-
 static V3 lip_colour(V3 base, const Seed *seed)
 {
     double from_line = seed->t - mouth_line(seed->s), edge = lip_edge(seed->s, seed->mouth);
@@ -88,8 +81,7 @@ static V3 skin_colour(const Seed *seed, double open)
     base = lip_colour(base, seed);
     base = lid_colour(base, seed);
     base = v3_mix(base, ink, mayu(s, t));
-    base = v3_mix(base, ink, 0.995 * smooth(0.0004, 0.0028, hair_past(s, t)));
-    return v3_mix(base, bare_wood, wear(s, t));
+    return v3_mix(base, ink, 0.995 * smooth(0.0004, 0.0028, hair_past(s, t)));
 }
 
 static V3 fold_colour(const Seed *seed, double open)
@@ -116,8 +108,12 @@ static V3 ear_colour(const Seed *seed, double open)
 
 static V3 wood_colour(const Seed *seed, V3 at, double open)
 {
-    if (seed->region == ON_RIM) {
-        return v3_mix(dark_wood, bare_wood, 0.55 + 0.30 * noise2(at.x * 60, at.y * 22));
+    if (seed->region == ON_RIM) { /* painted as the face is; bare from where it turns inwards behind it */
+        Seed border = *seed;
+        border.mouth = seed->t > MOUTH_Y ? 1 : -1;
+        border.eye = seed->t > EYE_Y ? 1 : -1;
+        V3 bare = v3_mix(dark_wood, bare_wood, 0.55 + 0.30 * noise2(at.x * 60, at.y * 22));
+        return v3_mix(skin_colour(&border, open), bare, smooth(4, 6, seed->k));
     }
     double rings = sin(at.x * 420 + 5 * noise2(at.x * 40, at.y * 14) + 1.5 * noise2(at.x * 90, at.y * 16));
     double grain = 0.5 + 0.35 * rings + 0.15 * noise2(at.x * 1500, at.y * 60);
@@ -166,7 +162,7 @@ static V3 colour_of(const Seed *seed, V3 at, double open)
     case ON_LIP_FOLD:
     case ON_LID_FOLD: return fold_colour(seed, open);
     case ON_EAR: return ear_colour(seed, open);
-    case ON_STROKE: return v3_mix(ink, bare_wood, wear(seed->s, seed->t));
+    case ON_STROKE: return ink;
     case ON_RIM:
     case ON_BACK: return wood_colour(seed, at, open);
     case ON_BALL: return ball_colour(seed, open);
