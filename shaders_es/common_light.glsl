@@ -34,7 +34,7 @@ float noh_open()
 
 /* The share of light that leaves a hollow that lets this share in, by channel: light that is reflected on the way out
  * takes the colour of the walls (Jimenez et al.: Practical realtime strategies for accurate indirect occlusion,
- * SIGGRAPH 2016). Teeth stand among red walls: as if their albedo were at most 0.6. The deepest mouth is dark red. */
+ * SIGGRAPH 2016), which are red, so that teeth between them are neither grey nor white. The deepest is dark red. */
 vec3 noh_bounced(vec3 albedo, float open)
 {
 #ifdef NOH_PHONE
@@ -42,7 +42,7 @@ vec3 noh_bounced(vec3 albedo, float open)
 #else
     float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open;
     float black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
-    return max(max(vec3(open), min(albedo, vec3(0.6)) * white + black), vec3(0.24, 0.08, 0.07));
+    return max(max(vec3(open), min(albedo, vec3(0.6, 0.3, 0.28)) * white + black), vec3(0.24, 0.08, 0.07));
 #endif
 }
 #endif
@@ -277,6 +277,7 @@ vec3 noh_light(noh_surface s)
 #if NOH_TRANSFER == 0
     color *= noh_bounced(s.albedo, open);
 #endif
+    color += noh_lighting[0].rgb * ((1.0 - open) * vec3(0.045, 0.022, 0.019)); /* by the walls, whatever is painted dark */
 #endif
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {

@@ -15,6 +15,7 @@
 #include "convert/model/strands.h"
 #include "convert/model/surface_kind.h"
 #include "convert/model/surface_shape.h"
+#include "convert/model/teeth_paint.h"
 #include "convert/model/texture_cut.h"
 #include "convert/model/priority.h"
 #include "convert/model/tint.h"
@@ -356,6 +357,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     }
     if (options->only == CONVERT_CLIPS) return 0;
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
+    if (teeth_paint(s->m)) return out_of_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }

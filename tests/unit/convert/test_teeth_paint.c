@@ -1,0 +1,104 @@
+/* Teeth of one colour get gums; what has them, or is no tooth, stays as it is. */
+#include "convert/model/teeth_paint.h"
+
+#include <string.h>
+
+#include "convert/model/model_build.h"
+#include "noh/format.h"
+#include "support/support.h"
+
+#define COLUMNS 9u
+#define ROWS 5u
+#define STRIP (COLUMNS * ROWS)
+#define HIGH 0.016f /* of each jaw, gum included */
+
+/* Two strips on an arch of 60 mm, their edges apart by `gap`. The mouth's material is `color`. */
+static model *mouth_of(const float color[3], float gap, float grey)
+{
+    model *m = model_new();
+    model_mesh *mesh = m->meshes = test_zeros(sizeof *m->meshes);
+    m->materials = test_zeros(sizeof *m->materials);
+    m->materials[0] = model_material_default();
+    m->materials[0].name = model_string("teeth");
+    m->materials[0].surface = NOH_SURFACE_TEETH;
+    for (int c = 0; c < 3; c++) m->materials[0].base_color[c] = color[c];
+    m->material_count = m->mesh_count = 1;
+    mesh->name = model_string("teeth");
+    mesh->vertex_count = 2u * STRIP;
+    mesh->position = test_zeros(3u * 2u * STRIP * sizeof *mesh->position);
+    mesh->indices = test_zeros(12u * STRIP * sizeof *mesh->indices);
+    mesh->submeshes = test_zeros(sizeof *mesh->submeshes);
+    mesh->submesh_count = 1;
+    for (uint32_t v = 0; v < 2u * STRIP; v++) {
+        const uint32_t x = v % STRIP % COLUMNS, y = v % STRIP / COLUMNS, upper = v / STRIP;
+        const float away = 0.5f * gap + HIGH * (float)y / (ROWS - 1u);
+        mesh->position[3u * v] = -0.03f + 0.06f * (float)x / (COLUMNS - 1u);
+        mesh->position[3u * v + 1u] = 1.5f + (upper ? away : -away);
+        if (x + 1u == COLUMNS || y + 1u == ROWS) continue;
+        const uint32_t corners[6] = { v, v + 1u, v + COLUMNS, v + 1u, v + COLUMNS + 1u, v + COLUMNS };
+        memcpy(mesh->indices + mesh->index_count, corners, sizeof corners);
+        mesh->index_count += 6u;
+    }
+    if (grey > 0.0f) {
+        mesh->color = test_zeros(4u * 2u * STRIP * sizeof *mesh->color);
+        for (uint32_t i = 0; i < 4u * 2u * STRIP; i++) mesh->color[i] = i % 4u == 3u ? 1.0f : grey;
+    }
+    mesh->submeshes[0].vertex_count = mesh->vertex_count;
+    mesh->submeshes[0].index_count = mesh->index_count;
+    return m;
+}
+
+/* Red over blue, of the row that lies this far from the edge. */
+static float redness(const model *m, uint32_t upper, uint32_t row)
+{
+    const float *of = m->meshes[0].color + 4u * (upper * STRIP + row * COLUMNS + COLUMNS / 2u);
+    return of[0] * m->materials[0].base_color[0] / (of[2] * m->materials[0].base_color[2]);
+}
+
+static void plain_teeth_get_gums(void **state)
+{
+    static const float greys[] = { 0.0f, 0.3f, 1.0f };
+    static const float ivory[3] = { 0.76f, 0.72f, 0.60f };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(greys); i++) {
+        model *m = mouth_of(ivory, 0.002f, greys[i]);
+        assert_int_equal(teeth_paint(m), 0);
+        assert_non_null(m->meshes[0].color);
+        for (uint32_t upper = 0; upper < 2; upper++) {
+            const float *edge = m->meshes[0].color + 4u * (upper * STRIP + COLUMNS / 2u);
+            assert_true(redness(m, upper, 0) < 1.3f && redness(m, upper, ROWS - 1u) > 2.5f);
+            for (uint32_t row = 1; row < ROWS; row++)
+                assert_true(redness(m, upper, row) >= redness(m, upper, row - 1u));
+            assert_true(edge[0] * ivory[0] > 0.5f && edge[0] * ivory[0] < 0.7f); /* neither grey nor white */
+        }
+        model_free(m);
+    }
+}
+
+static void other_mouths_stay(void **state)
+{
+    static const float tongue[3] = { 0.45f, 0.09f, 0.09f }, ivory[3] = { 0.76f, 0.72f, 0.60f };
+    float before[8u * STRIP];
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        model *m = mouth_of(kind == 0 ? tongue : ivory, kind == 1 ? -2.0f * HIGH : 0.002f, 0.9f); /* 1: one jaw */
+        float *color = m->meshes[0].color;
+        if (kind == 2) color[4u * STRIP - 2u] = 0.4f; /* gums of its own */
+        if (kind == 3) m->materials[0].base_color_texture = 0;
+        memcpy(before, color, sizeof before);
+        assert_int_equal(teeth_paint(m), 0);
+        assert_memory_equal(before, color, sizeof before);
+        m->materials[0].base_color_texture = MODEL_NONE;
+        model_free(m);
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(plain_teeth_get_gums),
+        cmocka_unit_test(other_mouths_stay),
+    };
+    if (argc > 1) cmocka_set_test_filter(argv[1]);
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

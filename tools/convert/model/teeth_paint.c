@@ -1,0 +1,156 @@
+#include "teeth_paint.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "convert/model/islands.h"
+#include "convert/model/model_build.h"
+#include "noh/format.h"
+
+#define CROWN 0.16f   /* the height of a crown, in widths of the jaw */
+#define SOFT 0.35f    /* the share of it over which enamel turns to gum */
+#define ENAMEL 0.60f  /* the largest channel of the brightest place */
+#define HUES 0.02f    /* shares of red in one colour differ by less */
+#define PALE_MIN 0.4f /* of blue to red: less is a tongue or a gum */
+
+static const float gum[3] = { 0.42f, 0.15f, 0.13f }, neck[3] = { 1.0f, 0.87f, 0.76f };
+
+/* The teeth of one part of a mesh: from the lowest and the highest middle of an island the jaw of each is known. */
+typedef struct jaws {
+    const model_mesh *mesh;
+    const model_submesh *part;
+    const float *factor;
+    float width, middle, edge[2], brightest; /* edge: of the lower teeth, of the upper */
+} jaws;
+
+static const float *place_of(const jaws *j, uint32_t v)
+{
+    return j->mesh->position + 3 * (size_t)v;
+}
+
+static float channel(const jaws *j, uint32_t v, int c)
+{
+    return j->factor[c] * (j->mesh->color ? j->mesh->color[4 * (size_t)v + (size_t)c] : 1.0f);
+}
+
+/* Whether all of it has one pale hue. */
+static int is_plain(jaws *j)
+{
+    float least = 1.0f, most = 0.0f;
+    for (uint32_t v = j->part->first_vertex; v < j->part->first_vertex + j->part->vertex_count; v++) {
+        const float r = channel(j, v, 0), g = channel(j, v, 1), b = channel(j, v, 2), sum = r + g + b;
+        if (sum < 0.03f) continue; /* black has any hue */
+        if (b < PALE_MIN * r) return 0;
+        least = fminf(least, r / sum);
+        most = fmaxf(most, r / sum);
+        j->brightest = fmaxf(j->brightest, fmaxf(r, fmaxf(g, b)));
+    }
+    return j->brightest > 0.0f && most - least < HUES;
+}
+
+/* The height of the middle of each island, at its first vertex. room: [vertex_count], as is middle */
+static void find_middles(const jaws *j, const uint32_t *island, float *room, float *middle)
+{
+    const uint32_t first = j->part->first_vertex, end = first + j->part->vertex_count;
+    for (uint32_t v = first; v < end; v++) room[v] = middle[v] = place_of(j, v)[1];
+    for (uint32_t v = first; v < end; v++) {
+        const uint32_t at = island[v];
+        if (at < first) continue;
+        room[at] = fminf(room[at], place_of(j, v)[1]);
+        middle[at] = fmaxf(middle[at], place_of(j, v)[1]);
+    }
+    for (uint32_t v = first; v < end; v++) middle[v] = 0.5f * (room[v] + middle[v]);
+}
+
+/* Whether there are two jaws. */
+static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
+{
+    const uint32_t first = j->part->first_vertex, end = first + j->part->vertex_count;
+    float low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY;
+    for (uint32_t v = first; v < end; v++) {
+        if (island[v] < first) return 0; /* joined to something else */
+        low = fminf(low, middle[island[v]]);
+        high = fmaxf(high, middle[island[v]]);
+        left = fminf(left, place_of(j, v)[0]);
+        right = fmaxf(right, place_of(j, v)[0]);
+    }
+    j->middle = 0.5f * (low + high);
+    j->width = right - left;
+    j->edge[0] = -INFINITY;
+    j->edge[1] = INFINITY;
+    for (uint32_t v = first; v < end; v++) {
+        const float y = place_of(j, v)[1];
+        if (middle[island[v]] > j->middle)
+            j->edge[1] = fminf(j->edge[1], y);
+        else
+            j->edge[0] = fmaxf(j->edge[0], y);
+    }
+    return j->width > 0.0f && high - low > 0.1f * j->width;
+}
+
+static float smooth_step(float from, float to, float x)
+{
+    const float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+static void paint(const jaws *j, const uint32_t *island, const float *middle)
+{
+    for (uint32_t v = j->part->first_vertex; v < j->part->first_vertex + j->part->vertex_count; v++) {
+        const int upper = middle[island[v]] > j->middle;
+        const float away = fabsf(place_of(j, v)[1] - j->edge[upper]) / (CROWN * j->width);
+        const float root = smooth_step(0.3f, 1.0f, away), share = smooth_step(1.0f - SOFT, 1.0f + SOFT, away);
+        const float r = channel(j, v, 0), g = channel(j, v, 1), b = channel(j, v, 2);
+        const float bright = fmaxf(r, fmaxf(g, b)) / j->brightest, own[3] = { r, g, b };
+        for (int c = 0; c < 3; c++) {
+            const float enamel = own[c] * (ENAMEL / j->brightest) * (1.0f + root * (neck[c] - 1.0f));
+            const float color = enamel + share * (gum[c] * bright - enamel);
+            j->mesh->color[4 * (size_t)v + (size_t)c] = fminf(color / fmaxf(j->factor[c], 1e-3f), 1.0f);
+        }
+    }
+}
+
+static int paint_part(model_mesh *mesh, const model_submesh *part, const float *factor, const uint32_t *island,
+                      float *room, float *middle)
+{
+    jaws j = { .mesh = mesh, .part = part, .factor = factor };
+    if (!is_plain(&j)) return 0;
+    find_middles(&j, island, room, middle);
+    if (!find_jaws(&j, island, middle)) return 0;
+    if (!mesh->color) {
+        mesh->color = model_zeros(4 * (size_t)mesh->vertex_count, sizeof *mesh->color);
+        for (size_t i = 0; mesh->color && i < 4 * (size_t)mesh->vertex_count; i++) mesh->color[i] = 1.0f;
+    }
+    if (!mesh->color) return 1;
+    paint(&j, island, middle);
+    return 0;
+}
+
+int teeth_paint(model *m)
+{
+    int failed = 0;
+    for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
+        model_mesh *mesh = &m->meshes[i];
+        uint32_t *island = NULL, *room = NULL;
+        float *middle = NULL, *lowest = NULL;
+        for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
+            const model_submesh *part = &mesh->submeshes[s];
+            const model_material *by = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
+            if (!by || by->surface != NOH_SURFACE_TEETH || by->base_color_texture != MODEL_NONE) continue;
+            if (!island) {
+                island = model_zeros(mesh->vertex_count, sizeof *island);
+                room = model_zeros(mesh->vertex_count, sizeof *room);
+                middle = model_zeros(mesh->vertex_count, sizeof *middle);
+                lowest = model_zeros(mesh->vertex_count, sizeof *lowest);
+                failed = !island || !room || !middle || !lowest;
+                if (!failed) islands_find(mesh, island, room);
+            }
+            failed = failed || paint_part(mesh, part, by->base_color, island, lowest, middle);
+        }
+        free(lowest);
+        free(island);
+        free(room);
+        free(middle);
+    }
+    return failed;
+}

@@ -1,0 +1,13 @@
+/* teeth_paint.h: gums for teeth of one colour. */
+#ifndef NOH_CONVERT_MODEL_TEETH_PAINT_H
+#define NOH_CONVERT_MODEL_TEETH_PAINT_H
+
+#include "model.h"
+
+/* Paint teeth that have no texture, and no other hue in their vertex colours, from their edge to the gum, in vertex
+ * colours: a crown is 0.16 of the width of the jaw high, and gum is what lies farther from the edge. Their brightest
+ * place becomes as bright as enamel; what is darker in the file stays so. Surfaces of materials are known.
+ * returns  1: out of memory */
+int teeth_paint(model *m);
+
+#endif
