@@ -164,6 +164,7 @@ static void GL_APIENTRY null_GetIntegerv(GLenum what, GLint *value)
                     { GL_MAX_DRAW_BUFFERS, 4 },
                     { GL_MAX_COLOR_ATTACHMENTS, 4 },
                     { GL_MAX_SAMPLES, 4 },
+                    { GL_SAMPLES, 0 },
                     { GL_MAX_VERTEX_TEXTURE_IMAGE_UNITS, 16 },
                     { GL_MAX_VERTEX_ATTRIBS, NULL_ATTRIBUTES },
                     { GL_MAX_UNIFORM_BLOCK_SIZE, 16384 },

@@ -12,7 +12,7 @@ uniform vec3 noh_key;                                /* unit, towards the light,
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
 uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff (plus 2 where alpha becomes
-                                                      * coverage) or -1, 1: unlit, -1: strands; plus 0.25 if the
+                                                      * coverage, plus 4 where edges are dithered) or -1, 1: unlit, -1: strands; plus 0.25 if the
                                                       * texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
@@ -71,16 +71,18 @@ vec4 noh_base(vec2 uv, vec4 color)
 }
 
 /* Discard the pixels that an alpha-cut material does not draw. Returns the alpha to write: 1 where nothing blends; where
- * alpha becomes coverage, the share of the pixel inside the line of the cutoff, from how fast alpha changes there. */
+ * alpha becomes coverage, the share of the pixel inside the line of the cutoff, from how fast alpha changes there. In a
+ * target of one sample the pixels of such an edge are drawn or not by this share. */
 float noh_cut(float alpha)
 {
     float written = 1.0;
 #ifdef NOH_ALPHA_CUT
     float least = noh_material.z;
     if (least > 1.5) {
-        alpha = clamp((alpha - least + 2.0) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
-        least = 1e-3;
-        written = alpha;
+        float way = floor(0.5 * least);
+        alpha = clamp((alpha - least + 2.0 * way) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
+        least = way > 1.5 ? max(noh_fade_noise(gl_FragCoord.xy), 1e-3) : 1e-3;
+        written = way > 1.5 ? 1.0 : alpha;
     } else if (least < 0.0) {
         written = alpha;
     }

@@ -539,7 +539,13 @@ EMSCRIPTEN_KEEPALIVE int web_draw(void)
     if (result) return (int)result;
     if (shadow) web_hair_shadow();
     begin_frame(width, height);
-    return (int)web_hair_draw();
+    if (!web.light.background && web.light.color[3] < 1.0f) return (int)web_hair_draw();
+    web.gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    web.gl.ColorMask(1, 1, 1, 0); /* the page would be seen through the smooth edges of cards */
+    result = web_hair_draw();
+    web.gl.ColorMask(1, 1, 1, 1);
+    web.gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    return (int)result;
 }
 
 /* An error if GL raised one since the last call. Waits for the GPU. */

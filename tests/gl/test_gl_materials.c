@@ -330,6 +330,30 @@ static uint32_t between(const uint8_t *row)
     return count;
 }
 
+/* In a target of one sample every pixel is drawn or not, in a pattern along the edge that covers as much as it did. */
+static void expect_a_dither(const uint8_t *sharp)
+{
+    const uint32_t samples = fixture_gpu()->caps.samples_max;
+    uint32_t differ = 0, more = 0;
+    uint8_t *dithered;
+    fixture_gpu()->caps.samples_max = 1;
+    dithered = draw_ramp(MODEL_ALPHA_MASK, 1);
+    fixture_gpu()->caps.samples_max = samples;
+    for (uint32_t row = 0; row < LIT_QUAD_SIDE; row++) {
+        const uint8_t *a = sharp + 4u * (size_t)row * LIT_QUAD_SIDE, *b = dithered + 4u * (size_t)row * LIT_QUAD_SIDE;
+        assert_int_equal(between(b), 0);
+        for (uint32_t x = 0; x < LIT_QUAD_SIDE; x++) {
+            const int drawn = abs(b[4u * x] - a[0]) > 1, was = abs(a[4u * x] - a[0]) > 1;
+            differ += drawn != was;
+            more += drawn && !was;
+        }
+    }
+    print_message("# %u pixels of %u rows are dithered, %u of them drawn\n", differ, LIT_QUAD_SIDE, more);
+    assert_in_range(differ, LIT_QUAD_SIDE / 8u, LIT_QUAD_SIDE);
+    assert_in_range(more, 1, differ - 1u);
+    free(dithered);
+}
+
 /* The edge of a cut is a pixel wide where alpha becomes coverage, and what blends is as it was. */
 static void cut_edges_take_the_samples_of_the_target(void **state)
 {
@@ -346,8 +370,9 @@ static void cut_edges_take_the_samples_of_the_target(void **state)
     print_message("# %u pixels of %u rows are partly covered\n", all, LIT_QUAD_SIDE);
     assert_true(2u * all > LIT_QUAD_SIDE);
     assert_memory_equal(blended, again, 4u * LIT_QUAD_SIDE * LIT_QUAD_SIDE);
-    free(sharp);
     free(soft);
+    expect_a_dither(sharp);
+    free(sharp);
     free(blended);
     free(again);
 }

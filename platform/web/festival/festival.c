@@ -88,6 +88,7 @@ static void begin(uint32_t width, uint32_t height)
     gl->BindFramebuffer(GL_FRAMEBUFFER, 0);
     gl->Viewport(0, 0, (GLsizei)width, (GLsizei)height);
     gl->DepthMask(GL_TRUE);
+    gl->Enable(GL_SAMPLE_ALPHA_TO_COVERAGE); /* of leaves and hair; the canvas has no alpha */
     gl->ClearBufferfv(GL_COLOR, 0, black);
     gl->ClearBufferfv(GL_DEPTH, 0, &far);
 }

@@ -34,6 +34,7 @@ static const gl_switch switches[] = {
 #define SWITCHES (sizeof switches / sizeof switches[0])
 #define BIT_BLEND 1u
 #define BIT_COVERAGE (1u << (SWITCHES - 1u))
+#define BIT_ONE_SAMPLE (1u << SWITCHES) /* of the target of what covers */
 
 static int has_switch(const noh_gl_api *gl, uint32_t cap)
 {
@@ -120,6 +121,11 @@ void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     r->kept = r->enabled = 0;
     noh_gl_raster_keep(gl, r, NOH_KEEP_TESTS | NOH_KEEP_COVERAGE);
+    if (r->enabled & BIT_COVERAGE) {
+        int samples = 0;
+        gl->GetIntegerv(GL_SAMPLES, &samples);
+        if (samples < 2) r->enabled |= BIT_ONE_SAMPLE;
+    }
     for (uint32_t i = 0; i < SWITCHES; i++) {
         const uint32_t cap = switches[i].cap;
         if (cap == GL_DEPTH_TEST) {
@@ -134,7 +140,7 @@ void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *r)
 
 int noh_gl_is_covering(const noh_gl_raster *r)
 {
-    return (r->enabled & BIT_COVERAGE) != 0;
+    return !(r->enabled & BIT_COVERAGE) ? 0 : r->enabled & BIT_ONE_SAMPLE ? 2 : 1;
 }
 
 /* Alpha is no share of the pixel where it blends, and nothing where only depth is drawn. */

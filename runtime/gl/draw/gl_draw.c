@@ -388,17 +388,17 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage. */
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage; twice: a dither. */
 #define SOFT 2.0f
 static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_part part)
 {
-    const int is_soft = part == PART_OPAQUE && noh_gl_is_covering(&r->raster);
+    const int soft = part == PART_OPAQUE ? noh_gl_is_covering(&r->raster) : 0;
     if (part != PART_BLENDED && noh_material_has_core(m)) {
         return NOH_CORE_ALPHA;
     }
     if (!(m->flags & NOH_MATERIAL_MASK)) return -1.0f;
     const float cutoff = m->alpha_cutoff < 1.5f ? m->alpha_cutoff : 1.5f; /* above 1 nothing is drawn */
-    return cutoff + (is_soft ? SOFT : 0.0f);
+    return cutoff + SOFT * (float)soft;
 }
 
 static int is_in_depth(draw_part part)

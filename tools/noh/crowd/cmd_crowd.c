@@ -95,7 +95,9 @@ static int draw(crowd *c, gpu *g, const crowd_args *a, uint8_t *rgba)
         crowd_frame(c, FRAME_TICKS, &camera);
     }
     canvas_begin(&target);
+    g->gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     crowd_draw(c);
+    g->gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     status = canvas_read(&target, rgba);
     canvas_close(&target);
     return status;

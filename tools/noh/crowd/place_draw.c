@@ -58,7 +58,9 @@ static int paint(place_scene *s, gpu *g, const noh_stage_view *view, uint8_t *rg
     status = canvas_open(&target, g, s->options->width, s->options->height);
     if (status) return status;
     canvas_begin(&target);
+    g->gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     status = place_scene_draw(s, view);
+    g->gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     if (!status) status = canvas_read(&target, rgba);
     canvas_close(&target);
     return status;

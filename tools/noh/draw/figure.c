@@ -468,7 +468,7 @@ int figure_draw(figure *f)
     if (f->desc.body) figure_body_draw(f->desc.body, &f->seen);
     if (f->shows_floor) figure_draw_floor(f);
     if (f->blob.drawable.gl && f->desc.view == NOH_VIEW_LIT) figure_draw_blobs(f);
-    if (f->g->caps.samples_max > 1) f->g->gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
+    f->g->gl.Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     result = in_parts ? draw_in_parts(f, &error) : noh_stage_draw(f->stage, NOH_PASS_COLOR, 0, f->shader, &error);
     f->g->gl.Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     return result ? tool_fail_error(f->desc.file->path, &error) : 0;

@@ -33,6 +33,7 @@ int canvas_open(canvas *c, gpu *g, uint32_t width, uint32_t height)
 {
     const noh_gl_api *gl = &g->gl;
     GLsizei samples = g->caps.samples_max < SAMPLES ? (GLsizei)g->caps.samples_max : SAMPLES;
+    if (samples < 2) samples = 0; /* drivers give one sample as four */
     GLenum status;
     memset(c, 0, sizeof *c);
     c->g = g;
