@@ -87,10 +87,11 @@ static V3 skin_colour(const Seed *seed, double open)
 static V3 fold_colour(const Seed *seed, double open)
 {
     if (seed->region == ON_LID_FOLD) {
-        /* An inked upper edge, and bare flesh in the corner by the nose. */
-        double corner = smooth(-0.60, -0.85, (fabs(seed->s) - EYE_X) / EYE_HALF);
-        V3 edge = v3_mix(seed->eye > 0 && seed->k < 3 ? ink : flesh, flesh, corner);
-        return v3_mix(edge, ink, 0.12 * seed->k);
+        /* An inked upper edge; in the corner by the nose the ball's white goes on. */
+        double corner = smooth(-0.50, -0.80, (fabs(seed->s) - EYE_X) / EYE_HALF);
+        V3 edge = v3_mix(seed->eye > 0 && seed->k < 3 ? ink : flesh, ink, 0.12 * seed->k);
+        V3 wet = v3_mix(v3_mix(flesh, white_of_eye, 0.4), v3_scale(white_of_eye, 0.75), smooth(0, 1.5, seed->k));
+        return v3_mix(edge, wet, corner);
     }
     double k = smooth(0, 2.2, seed->k);
     return shade(v3_mix(v3_scale(red, 0.75), throat, k), open);
