@@ -9,7 +9,7 @@
 
 #define CROWN 0.16f   /* the height of a crown, in widths of the jaw */
 #define SOFT 0.35f    /* the share of it over which enamel turns to gum */
-#define ENAMEL 0.60f  /* the largest channel of the brightest place */
+#define ENAMEL 0.50f  /* the largest channel of the brightest place */
 #define HUES 0.02f    /* shares of red in one colour differ by less */
 #define PALE_MIN 0.4f /* of blue to red: less is a tongue or a gum */
 
