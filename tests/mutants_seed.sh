@@ -11,8 +11,9 @@
 # all (NOH_LONG=1: they are not).
 #
 # A mutant's place in the draw follows from the seed, its function and its line: an edit elsewhere draws the same
-# mutants. What is killed is kept in NOH_BUILD/mutants_seed/judged until its file changes, so that a run that was
-# interrupted goes on, and after new tests only survivors are run again (to judge all: remove the file).
+# mutants. What is killed is kept in NOH_BUILD/mutants_seed/judged until its file or the test that killed it changes, so
+# that a run that was interrupted goes on, and after new tests only survivors are run again (to judge all: remove the
+# file).
 #
 # tests/survivors.txt lists survivors that were looked at, with the reason: they are run with NOH_LONG=1 alone. Prints a
 # table by room and operator, survivors, the largest functions that no test runs, and "N passed, N failed, N skipped".
@@ -135,6 +136,11 @@ remake_tests() { # NUMBER FILE
     done
 }
 
+# Of the source of a test, which has killed a mutant until it changes.
+sum_of() { # PROGRAM
+    cksum <"tests/$1.c" | tr ' ' -
+}
+
 # Tries the mutant on a line of the plan; fails if it has to be replaced.
 try() { # NUMBER LINE-OF-THE-PLAN
     IFS="$tab" read -r key operator file line _ _ _ change programs <<END
@@ -143,18 +149,18 @@ END
     [ -n "$operator" ] || return 0
     [ "$programs" != - ] || programs=
     why='' killer=''
-    before=$(grep "^$key$tab" "$seeded/judged" | tail -n 1 | cut -f2)
-    case $before in
-    replaced) return 1 ;;
-    ?*) killer=$before ;;
-    *)
-        if [ -n "${NOH_LONG:-}" ] || ! grep -qxF "$file: $change" tests/survivors.txt; then
-            judge "$@"
-        fi
-        ;;
-    esac
+    before=$(grep "^$key$tab" "$seeded/judged" | tail -n 1 | cut -f2-)
+    [ "$before" != replaced ] || return 1
+    killed_by=${before%%"$tab"*}
+    if [ -n "$before" ] && [ "$before" = "$killed_by$tab$(sum_of "$killed_by")" ]; then
+        killer=$killed_by
+    elif [ -n "${NOH_LONG:-}" ] || ! grep -qxF "$file: $change" tests/survivors.txt; then
+        # shellcheck disable=SC2086 # words
+        [ -z "$killed_by" ] || programs="$(printf '%s\n' $programs | grep "^$killed_by:") $programs"
+        judge "$@"
+        [ -z "$killer" ] || echo "$key$tab$killer$tab$(sum_of "$killer")" >>"$seeded/judged"
+    fi
     [ -z "$why" ] || { echo "$key${tab}replaced" >>"$seeded/judged" && return 1; }
-    [ -z "$killer" ] || [ -n "$before" ] || echo "$key$tab$killer" >>"$seeded/judged"
     [ -n "$killer$programs" ] || killer='?'
     printf '%s\t%s\t%s\t%s\t%s\n' "${killer:--}" "$operator" "$file" "$line" "$change"
 }

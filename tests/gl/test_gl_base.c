@@ -690,9 +690,12 @@ static void program_counts_and_dies(void **state)
     noh_gl_program_desc desc = good_desc();
     char log[256] = "old";
     GLuint program = 0;
+    GLint in_use = -1;
     memset(&ledger, 0, sizeof ledger);
     desc.ledger = &ledger;
     assert_int_equal(noh_gl_program_create(&c->gl, &desc, &program, log, sizeof log, NULL), NOH_OK);
+    c->gl.GetIntegerv(GL_CURRENT_PROGRAM, &in_use);
+    assert_int_equal(in_use, 0);
     assert_string_equal(log, "");
     assert_true(program != 0);
     assert_int_equal(ledger.programs, 1);

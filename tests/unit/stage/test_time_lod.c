@@ -9,6 +9,7 @@
 #include "core/base/math_internal.h"
 #include "support/raw_play.h"
 #include "motion/anim/tracks_internal.h"
+#include "stage/character/measure_internal.h"
 #include "stage/character/time_lod_internal.h"
 #include "noh/base.h"
 #include "noh/low_stage.h"
@@ -553,6 +554,40 @@ static void waking_does_not_forgive_lateness(void **state)
     assert_int_equal(noh_time_lod_late(&t), 1600);
 }
 
+/* A difference whose linear part has known singular values, between two rotations: what is measured is never less than
+ * the largest of them says, and more by a factor of 3^(1/8) at most. */
+static void a_difference_is_measured_by_its_largest_singular_value(void **state)
+{
+    test_random r = test_random_from(27);
+    (void)state;
+    for (uint32_t round = 0; round < 2000; round++) {
+        float difference[12], left[12], right[12], values[3], largest = 0.0f, radius = test_random_float(&r, 0.0f, 2.0f);
+        noh_transform turn = { .scale = { 1.0f, 1.0f, 1.0f } };
+        for (int side = 0; side < 2; side++) {
+            for (int i = 0; i < 4; i++) turn.rotation[i] = test_random_float(&r, -1.0f, 1.0f);
+            noh_quat_normalize(turn.rotation);
+            noh_transform_matrix(&turn, side ? right : left);
+        }
+        for (uint32_t i = 0; i < 3; i++) {
+            values[i] = i && round % 3u == 0 ? 0.0f : test_random_float(&r, 0.0f, 1.0f);
+            largest = fmaxf(largest, values[i]);
+            difference[4 * i + 3] = test_random_float(&r, -1.0f, 1.0f);
+        }
+        for (uint32_t i = 0; i < 9; i++) {
+            const uint32_t row = 4u * (i / 3u), column = i % 3u;
+            difference[row + column] = 0.0f;
+            for (uint32_t k = 0; k < 3; k++) {
+                difference[row + column] += left[row + k] * values[k] * right[4u * column + k];
+            }
+        }
+        const float shift = sqrtf(difference[3] * difference[3] + difference[7] * difference[7] +
+                                  difference[11] * difference[11]);
+        const float off = noh_probe_off(difference, radius, 0.0f);
+        assert_true(off >= shift + 0.9999f * radius * largest && off <= shift + 1.1473f * radius * largest + 1e-5f);
+        assert_true(noh_probe_off(difference, radius, 10.0f) == 10.0f);
+    }
+}
+
 /* A real clip and its measured errors. */
 typedef struct played {
     raw_play p;
@@ -664,6 +699,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(measuring_checks_its_fields_and_its_memory),
         cmocka_unit_test(errors_of_what_plays),
         cmocka_unit_test(waking_does_not_forgive_lateness),
+        cmocka_unit_test(a_difference_is_measured_by_its_largest_singular_value),
         cmocka_unit_test(real_clips_stay_within_what_was_measured),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
