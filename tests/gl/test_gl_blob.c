@@ -19,7 +19,8 @@
 /* From above: x to the right, z up, from -1 to 1; y from -1 to 1 is nearer. */
 static const noh_stage_view above = { .view_projection = { 1, 0, 0, 0, 0, 0, -0.5f, 0, 0, 1, 0, 0, 0, 0, 0, 1 } };
 
-static void picture(gpu *g, noh_stage_blob *b, const noh_blob *blobs, uint32_t count, float nearest, uint8_t *rgba)
+static void picture_from(gpu *g, noh_stage_blob *b, const noh_stage_view *view, const noh_blob *blobs, uint32_t count,
+                         float nearest, uint8_t *rgba)
 {
     canvas c;
     assert_int_equal(canvas_open(&c, g, SIDE, SIDE), 0);
@@ -28,9 +29,14 @@ static void picture(gpu *g, noh_stage_blob *b, const noh_blob *blobs, uint32_t c
     g->gl.ClearDepthf(nearest);
     g->gl.Clear(GL_DEPTH_BUFFER_BIT);
     g->gl.ClearDepthf(1.0f);
-    noh_stage_blob_draw(b, &above, blobs, count);
+    noh_stage_blob_draw(b, view, blobs, count);
     assert_int_equal(canvas_read(&c, rgba), 0);
     canvas_close(&c);
+}
+
+static void picture(gpu *g, noh_stage_blob *b, const noh_blob *blobs, uint32_t count, float nearest, uint8_t *rgba)
+{
+    picture_from(g, b, &above, blobs, count, nearest, rgba);
 }
 
 /* What a spot leaves at a place, by its definition. */
@@ -87,6 +93,32 @@ static void pixels_are_those_of_the_formula(void **state)
     fixture_expect_no_errors();
 }
 
+/* A thousand kilometres away, where floats are 0.125 m apart, by the view's own origin: the last view had another. */
+static void spots_far_away_are_as_near_by(void **state)
+{
+    static const noh_blob spot = { { 0.125f, 0.0f, -0.25f }, 0.8f, { 0.53f, 0.0f, 0.2f }, { -0.11f, 0.0f, 0.27f } };
+    static uint8_t rgba[SIDE * SIDE * 4];
+    const float away[2] = { 1048576.0f, -1048576.0f };
+    noh_stage_view view = above;
+    noh_blob far = spot;
+    gpu *g = fixture_gpu();
+    const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, NULL, 0 };
+    noh_stage_blob b;
+    (void)state;
+    for (uint32_t i = 0; i < 2; i++) {
+        view.eye[2u * i] = away[i];
+        view.view_projection[12 + i] = -away[i];
+        far.centre[2u * i] += away[i];
+    }
+    assert_int_equal(noh_stage_blob_create(&device, &b, NULL), NOH_OK);
+    picture(g, &b, &spot, 1, 1.0f, rgba);
+    expect(rgba, &spot, 1);
+    picture_from(g, &b, &view, &far, 1, 1.0f, rgba);
+    expect(rgba, &spot, 1);
+    noh_stage_blob_delete(&b);
+    fixture_expect_no_errors();
+}
+
 static void many_are_a_few_draws(void **state)
 {
     static uint8_t all[SIDE * SIDE * 4];
@@ -114,6 +146,7 @@ static void many_are_a_few_draws(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(pixels_are_those_of_the_formula),
+                                        cmocka_unit_test(spots_far_away_are_as_near_by),
                                         cmocka_unit_test(many_are_a_few_draws) };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }
