@@ -792,6 +792,38 @@ static void automatic_weighs_draws_against_a_pass(void **state)
     }
 }
 
+static noh_gl_morph_costs costs_of(const char *renderer, const noh_mesh *meshes, uint32_t count, float active)
+{
+    const noh_gl_morph_desc desc = { .meshes = meshes, .mesh_count = count, .expected_active = active };
+    noh_gl_morph_plan plan;
+    noh_gl_caps caps;
+    noh_gl_caps_nominal(&caps);
+    strcpy(caps.renderer, renderer);
+    assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+    return plan.costs;
+}
+
+/* Twice the meshes cost twice as much, but for the passes of a GPU, which all instances of an update share; and each
+ * path costs more with more active targets. */
+static void costs_add_up(void **state)
+{
+    static const char *const renderers[] = { "a GPU", "llvmpipe", "Apple A8 GPU" };
+    noh_mesh meshes[2];
+    (void)state;
+    meshes[0] = meshes[1] = set.meshes[2];
+    for (size_t i = 0; i < TEST_COUNT(renderers); i++) {
+        const noh_gl_morph_costs one = costs_of(renderers[i], meshes, 1, 0.5f),
+                                 two = costs_of(renderers[i], meshes, 2, 0.5f),
+                                 all = costs_of(renderers[i], meshes, 1, 1.0f);
+        assert_float_equal(two.cpu, 2.0f * one.cpu, 1e-3f * one.cpu);
+        assert_float_equal(two.direct, 2.0f * one.direct, 1e-3f * one.direct);
+        if (i == 1) assert_float_equal(two.gather, 2.0f * one.gather, 1e-3f * one.gather);
+        if (i == 1) assert_float_equal(two.mrt, 2.0f * one.mrt, 1e-3f * one.mrt);
+        assert_true(all.cpu > 1.01f * one.cpu && all.gather > 1.01f * one.gather && all.mrt > 1.01f * one.mrt &&
+                    all.direct > 1.01f * one.direct);
+    }
+}
+
 /* No accumulator: what a GPU holds for direct are deltas and lists, and the CPU holds no more than for gather. */
 static void direct_holds_no_accumulator(void **state)
 {
@@ -1072,6 +1104,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(automatic_falls_to_the_next_path),
     cmocka_unit_test(blending_is_layered_or_per_layer),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
+    cmocka_unit_test(costs_add_up),
     cmocka_unit_test(automatic_weighs_draws_against_a_pass),
     cmocka_unit_test(tile_memory_is_by_gpu),
     cmocka_unit_test(direct_holds_no_accumulator),
