@@ -46,6 +46,22 @@ static void the_nearest_obstacle_is_the_ground(void **state)
     assert_true(below(NULL, 3.0f, 2.0f, 0.0f, 9.0f, n) < 0.0f);
 }
 
+/* A plank on its edge, turned by 80 degrees about z: what is stood on is its broad side, wherever a foot is. */
+static void a_turned_box_is_stood_on_its_side(void **state)
+{
+    const float turn[3] = { 0.0f, 0.0f, 80.0f * 3.14159265f / 180.0f }, side[2] = { cosf(turn[2]), sinf(turn[2]) };
+    noh_obb box = { { 0.0f, 0.0f, 0.0f }, { 0.1f, 2.0f, 1.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    const noh_world w = { .boxes = &box, .box_count = 1 };
+    (void)state;
+    noh_quat_from_rotation(turn, box.rotation);
+    for (int i = -15; i <= 15; i++) {
+        const float along = 0.1f * (float)i, x = 0.1f * side[0] - along * side[1], y = 0.1f * side[1] + along * side[0];
+        float n[3];
+        assert_float_equal(below(&w, x, 3.0f, 0.2f, 9.0f, n), 3.0f - y, 1e-4f);
+        assert_true(fabsf(n[0] - side[0]) < 1e-5f && fabsf(n[1] - side[1]) < 1e-5f && fabsf(n[2]) < 1e-5f);
+    }
+}
+
 static float ask(const void *user, const float from[3], float depth, float normal[3])
 {
     const float height = *(const float *)user;
@@ -242,6 +258,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_nearest_obstacle_is_the_ground),  cmocka_unit_test(legs_are_found_in_real_characters),
         cmocka_unit_test(a_pose_stands_on_what_the_game_says), cmocka_unit_test(each_foot_has_its_own_ground),
+        cmocka_unit_test(a_turned_box_is_stood_on_its_side),
         cmocka_unit_test(the_same_instant_is_the_same_pose),   cmocka_unit_test(what_has_no_feet_is_refused),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

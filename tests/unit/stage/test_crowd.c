@@ -342,6 +342,18 @@ static void bad_values_are_refused(void **state)
 #undef REFUSED
     assert_int_equal(noh_crowd_hash(crowd), before);
     assert_false(noh_crowd_agent_at(crowd, 3, &a));
+    static const noh_crowd_obstacle wrong[] = { { { 0.0f, 0.0f }, { 1.0f, 0.0f }, -0.1f },
+                                                { { 0.0f, 0.0f }, { 1.0f, 0.0f }, 2e6f },
+                                                { { 0.0f, 0.0f }, { 1.0f, 0.0f }, NAN },
+                                                { { 0.0f, NAN }, { 1.0f, 0.0f }, 0.1f },
+                                                { { 0.0f, 0.0f }, { -2e6f, 0.0f }, 0.1f } };
+    desc.obstacle_count = 1;
+    for (size_t i = 0; i < TEST_COUNT(wrong); i++) {
+        desc.obstacles = &wrong[i];
+        assert_int_equal(noh_crowd_size(&desc), 0);
+        assert_int_equal(noh_crowd_init(crowd, 100, &desc, &crowd, &error), NOH_ERR_ARG);
+    }
+    desc.obstacle_count = 0;
     desc.extent[1] = 0.0f;
     assert_int_equal(noh_crowd_size(&desc), 0);
     assert_int_equal(noh_crowd_init(crowd, 100, &desc, &crowd, &error), NOH_ERR_ARG);
