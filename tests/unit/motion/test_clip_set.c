@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <stdlib.h>
 #include <string.h>
 #include <cmocka.h>
 
@@ -50,8 +51,27 @@ static void arrays_of_nothing_may_be_null(void **state)
     assert_non_null(strstr(error.what, "markers"));
 }
 
+static void as_many_clips_as_the_limit_are_a_set(void **state)
+{
+    noh_clip_entry *clips = calloc(NOH_CLIPS_MAX + 1u, sizeof *clips);
+    const noh_transform bind = { .scale = { 1.0f, 1.0f, 1.0f } };
+    noh_clip_set set = { .clips = clips, .joint_count = 1, .bind_pose = &bind, .sample = rest };
+    noh_error error = { NOH_OK, NULL, 0, 0 };
+    (void)state;
+    for (uint32_t i = 0; i <= NOH_CLIPS_MAX; i++) clips[i].loop = NOH_LOOP_ONCE;
+    set.clip_count = NOH_CLIPS_MAX;
+    assert_int_equal(noh_clip_set_check(&set, &error), NOH_OK);
+    set.clip_count = NOH_CLIPS_MAX + 1u;
+    assert_int_equal(noh_clip_set_check(&set, &error), NOH_ERR_ARG);
+    assert_non_null(strstr(error.what, "clip_count"));
+    set.clip_count = 0;
+    assert_int_equal(noh_clip_set_check(&set, &error), NOH_ERR_ARG);
+    free(clips);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(arrays_of_nothing_may_be_null),
+    cmocka_unit_test(as_many_clips_as_the_limit_are_a_set),
 };
 
 int main(void)
