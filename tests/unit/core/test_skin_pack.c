@@ -113,6 +113,9 @@ static forged reach(uint8_t *bytes)
     X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                               \
     X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                                  \
     X(joint_box_inside_out, f->joint_boxes[0] = f->joint_boxes[3] + 1.0f, "above its maximum")                      \
+    X(joint_box_empty_in_x_y, (f->joint_boxes[0] = f->joint_boxes[1] = 9.0f), "above its maximum")                  \
+    X(joint_box_empty_in_y_z, (f->joint_boxes[1] = f->joint_boxes[2] = 9.0f), "above its maximum")                  \
+    X(joint_box_empty_in_x_z, (f->joint_boxes[0] = f->joint_boxes[2] = 9.0f), "above its maximum")                  \
     X(target_box_inside_out, f->target_boxes[0] = 9.0f, "above its maximum")                                        \
     X(target_box_empty, (f->target_boxes[0] = f->target_boxes[1] = f->target_boxes[2] = 9.0f), "above its maximum") \
     X(reserved_field, f->mesh->reserved[1] = 1, "reserved")
