@@ -270,6 +270,8 @@ static void bad_values_are_refused(void **state)
     assert_int_equal(noh_crowd_init(&desc, 8, &desc, &crowd, &error), NOH_ERR_LIMIT);
     desc.field_cell = NAN;
     assert_int_equal(noh_crowd_init(&desc, 8, &desc, &crowd, &error), NOH_ERR_ARG);
+    desc.field_cell = -1.0f;
+    assert_int_equal(noh_crowd_init(&desc, 8, &desc, &crowd, &error), NOH_ERR_ARG);
     desc = desc_of(1, 1, 0);
     desc.field_radius = 1.6f;
     assert_int_equal(noh_crowd_init(&desc, 8, &desc, &crowd, &error), NOH_ERR_ARG);
