@@ -77,7 +77,7 @@ int main(int argc, char **argv)
     kind.graphs = noh_graph_module("*");
     kind.face = noh_face_module(&face);
     kind.ragdoll = noh_ragdoll_module(&ragdoll);
-    kind.springs = noh_springs_module();
+    kind.springs = noh_springs_module(NULL);
 #endif
     if (!in || noh_pack_open(file, fread(file, 1, sizeof file, in), &pack, NULL)) return 1;
     if (noh_stage_plan_make(&desc, NULL, &plan, NULL)) return 1;

@@ -5,7 +5,7 @@
 
 void web_cast_add_springs(noh_kind_desc *kind)
 {
-    kind->springs = noh_springs_module();
+    kind->springs = noh_springs_module(NULL);
 }
 
 static const noh_modifier *add_modifier(web_cast *cast, uint32_t kind, noh_modifier modifier)

@@ -482,6 +482,8 @@ typedef struct noh_spring_move {
     const noh_spring_carrier *carrier;    /* at the end of the call's time; interpolated in between */
     const noh_spring_collider *colliders; /* [desc->collider_count], likewise; NULL if there are none */
     float *rotations;                     /* [desc->joint_count][4]: output of noh_spring_rotations */
+    const noh_touches *touches;           /* [desc->joint_count] planes that an end stays in front of by its radius,
+                                           * relative to carrier->position; NULL: none */
 } noh_spring_move;
 
 /* Floats of scratch to step chains with at most this many colliders. */

@@ -385,8 +385,12 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 #define NOH_SPRINGS_FADE_PIXELS 16.0f
 
 /* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the
- * pack has none. */
-noh_module noh_springs_module(void);
+ * pack has none.
+ * world  metres; the ends of joints stay out of it, without friction, after their own colliders. Frames ask it for every
+ *        chain that swings, up to eight chains of an actor at a time; must outlive the stage. It costs each job 1,664
+ *        bytes for each joint of the longest chain. Plans and init refuse a world whose physics answers one thread in a
+ *        stage with several jobs. NULL: none */
+noh_module noh_springs_module(const noh_world *world);
 
 /* ======== motion matching ========
  * Actors that go where the game wants by whatever moment of their clips goes there, without a graph.

@@ -1,5 +1,5 @@
 /* game_physics.h: the physics of a game that knows the same shapes as a noh_world: planes for bodies, all shapes for
- * rays. It counts what it is asked, and hashes it in order; with `threads` set it does not count rays. */
+ * rays. It counts what it is asked, and hashes it in order; with `threads` set it does neither. */
 #ifndef TESTS_GAME_PHYSICS_H
 #define TESTS_GAME_PHYSICS_H
 

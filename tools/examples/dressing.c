@@ -33,7 +33,7 @@ static int room_open(room *r)
           .mesh = &r->packs[GARMENTS],
           .actor_count = 1,
           .worn_by = 1u << BODIES,
-          .springs = noh_springs_module() },
+          .springs = noh_springs_module(NULL) },
     };
     const noh_stage_desc desc = { .kinds = kinds, .kind_count = KINDS, .height_px = HEIGHT, .gpu = &noh_stage_on_gl };
     noh_error e;

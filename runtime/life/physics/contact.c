@@ -332,3 +332,71 @@ void noh_contacts_find(const noh_world *w, const float origin[3], const noh_roun
         touch_round(body, &on, contacts);
     }
 }
+
+/* ---- balls ---- */
+
+typedef struct ball {
+    const noh_world_body *body;
+    noh_touches *touches;
+} ball;
+
+/* `far`: from the ball's centre to the surface. */
+static void add_touch(const ball *b, const float normal[3], float far)
+{
+    const float *at = b->body->capsule.from;
+    noh_touches *t = b->touches;
+    uint32_t to = t->count;
+    if (!(far < b->body->capsule.radius + b->body->reach)) return;
+    if (to == NOH_TOUCHES_MAX) {
+        float most = far;
+        for (uint32_t i = 0; i < NOH_TOUCHES_MAX; i++) {
+            const float own = noh_dot3(t->at[i].plane.normal, at) - t->at[i].plane.distance;
+            if (own > most) most = own, to = i;
+        }
+        if (to == NOH_TOUCHES_MAX) return;
+    } else {
+        t->count++;
+    }
+    memcpy(t->at[to].plane.normal, normal, sizeof t->at[to].plane.normal);
+    t->at[to].plane.distance = noh_dot3(normal, at) - far;
+    t->at[to].along = 0.0f;
+}
+
+static void touch_rounded(const ball *b, const noh_round_box *on)
+{
+    const float *at = b->body->capsule.from;
+    float normal[3];
+    const float far = from_box(&on->box, at, at, normal);
+    add_touch(b, normal, far - on->radius);
+}
+
+static void touch_shapes(const noh_world *w, const ball *b)
+{
+    const float *at = b->body->capsule.from, *origin = b->body->origin;
+    float height, normal[3];
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        const float *n = w->planes[i].normal;
+        add_touch(b, n, noh_dot3(n, at) - noh_plane_distance(&w->planes[i], origin));
+    }
+    if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &height, normal)) {
+        add_touch(b, normal, (at[1] - height) * normal[1]);
+    }
+    for (uint32_t i = 0; i < w->capsule_count; i++) {
+        const noh_round_box on = round_of_capsule(&w->capsules[i], origin);
+        touch_rounded(b, &on);
+    }
+    for (uint32_t i = 0; i < w->box_count; i++) {
+        noh_round_box on = { w->boxes[i], 0.0f };
+        noh_sub3(w->boxes[i].centre, origin, on.box.centre);
+        touch_rounded(b, &on);
+    }
+}
+
+void noh_touches_find(const noh_world *w, const noh_world_body *balls, uint32_t count, noh_touches *touches)
+{
+    noh_world_ask_touches(w, balls, count, touches);
+    for (uint32_t i = 0; i < count; i++) {
+        const ball b = { &balls[i], &touches[i] };
+        touch_shapes(w, &b);
+    }
+}

@@ -26,4 +26,9 @@ typedef struct noh_contacts {
 void noh_contacts_find(const noh_world *world, const float origin[3], const noh_round_box *body,
                        noh_contacts *contacts);
 
+/* Find the surfaces of a world within reach of balls: what its physics answers, then its own shapes; of too many the
+ * nearest.
+ * shapes  balls[count] one after the other in one question, touches[count] */
+void noh_touches_find(const noh_world *world, const noh_world_body *balls, uint32_t count, noh_touches *touches);
+
 #endif

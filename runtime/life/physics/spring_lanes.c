@@ -43,19 +43,22 @@ typedef struct group {
     const noh_spring_move *moves[NOH_LANES];
     per_lane joints;      /* per chain; 0 without one */
     per_lane restitution; /* per chain */
-    uint32_t joint_count, collider_count, used, bounces;
+    per_lane meets;       /* per chain: 1 with `touches` */
+    uint32_t joint_count, collider_count, used, bounces, touches;
 } group;
 
 static void fill_group(group *g, const noh_spring_move *moves, uint32_t count)
 {
     g->used = count < NOH_LANES ? count : NOH_LANES;
-    g->joint_count = g->collider_count = g->bounces = 0;
+    g->joint_count = g->collider_count = g->bounces = g->touches = 0;
     for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
         const noh_spring_desc *d = moves[lane < g->used ? lane : 0].desc;
         g->moves[lane] = &moves[lane < g->used ? lane : 0];
         g->joints.f[lane] = lane < g->used ? (float)d->joint_count : 0.0f;
         g->restitution.f[lane] = d->restitution;
         g->bounces |= d->restitution > 0.0f;
+        g->meets.f[lane] = g->moves[lane]->touches ? 1.0f : 0.0f;
+        g->touches |= g->moves[lane]->touches != NULL;
         if (d->joint_count > g->joint_count) g->joint_count = d->joint_count;
         if (d->collider_count > g->collider_count) g->collider_count = d->collider_count;
     }
@@ -149,6 +152,7 @@ NOH_ALWAYS_INLINE lane4 between(lane3 a, lane3 b, lanes size)
 typedef struct moment {
     lanes t, live;
     lane3 moved;
+    lane3 ahead; /* from the carriers at the end of the call */
     lane4 rotation;
 } moment;
 
@@ -174,6 +178,7 @@ static void move_carriers(const group *g, moment *m, lane3 *position)
     *position = lane3_mix(lane3_of(last), lane3_of(next), m->t);
     m->rotation = lane4_nlerp(lane4_of(last + 3), lane4_of(next + 3), m->t);
     m->moved = lane3_sub(*position, lane3_of(stepped));
+    m->ahead = lane3_sub(*position, lane3_of(next));
     const lanes now[ROW] = { position->x,   position->y,   position->z,  m->rotation.x,
                              m->rotation.y, m->rotation.z, m->rotation.w };
     const lanes then[ROW] = { m->moved.x, m->moved.y, m->moved.z, stepped[3], stepped[4], stepped[5], stepped[6] };
@@ -230,6 +235,53 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
     const lanes square = lane3_dot(bone, bone), is_long = lanes_less(lanes_set(1e-30f), square);
     const lanes scale = lanes_mul(length, lanes_inverse_root(is_long, square));
     return lane3_choose(lanes_and(hit, is_long), lane3_madd(head, scale, bone), tail);
+}
+
+/* Turn bones so that their ends are in front of a plane: the part of a bone along the normal is at least `least`, its
+ * length stays. A bone that points straight into the plane turns aside across x or z, whichever is more along it. */
+NOH_ALWAYS_INLINE lane3 turn_up(lane3 normal, lanes least, lane3 head, lanes length, lane3 tail)
+{
+    const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), tiny = lanes_mul(lanes_set(1e-8f), length);
+    const lane3 bone = lane3_sub(tail, head);
+    const lanes along = lane3_dot(bone, normal), hit = lanes_less(along, least);
+    if (!lanes_any(hit)) return tail;
+    const lanes flat = lanes_less(lanes_mul(normal.x, normal.x), lanes_set(0.5f));
+    const lane3 other = { lanes_choose(flat, one, zero), zero, lanes_choose(flat, zero, one) };
+    const lane3 beside = lane3_madd(other, lanes_negate(lane3_dot(other, normal)), normal);
+    lane3 side = lane3_madd(bone, lanes_negate(along), normal);
+    const lanes leans = lanes_less(lanes_mul(tiny, length), lane3_dot(side, side));
+    side = lane3_choose(leans, side, beside);
+    const lanes up = lanes_min(least, length), rest = lanes_sub(lanes_mul(length, length), lanes_mul(up, up));
+    const lanes across = lanes_div(lanes_sqrt(lanes_max(zero, rest)), lanes_sqrt(lane3_dot(side, side)));
+    const lane3 turned = lane3_madd(lane3_madd(head, up, normal), across, side);
+    return lane3_choose(hit, turned, tail);
+}
+
+/* Keep the ends of joints in front of what their chains touch.
+ * ahead  the joint, from the carrier at the end of the call
+ * turn   planes are turned by it; NULL: they are not */
+static NOH_NEVER_INLINE lane3 stay_in_front(const group *g, uint32_t joint, lane3 ahead, const lane4 *turn, lane3 head,
+                                            lanes radius, lanes length, lane3 tail)
+{
+    static const noh_touch none = { { { 0.0f, 1.0f, 0.0f }, -FAR_AWAY }, 0.0f };
+    for (uint32_t k = 0; k < NOH_TOUCHES_MAX; k++) {
+        const float *rows[NOH_LANES];
+        lanes plane[4];
+        uint32_t some = 0;
+        for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
+            const noh_spring_move *move = g->moves[lane];
+            const noh_touches *t = joint < move->desc->joint_count && move->touches ? &move->touches[joint] : NULL;
+            const int has = t && k < t->count;
+            rows[lane] = has ? t->at[k].plane.normal : none.plane.normal;
+            some |= (uint32_t)has;
+        }
+        if (!some) break;
+        lanes_gather(rows, 0, plane);
+        const lane3 normal = turn ? lane4_rotate(*turn, lane3_of(plane)) : lane3_of(plane);
+        const lanes least = lanes_sub(lanes_add(radius, plane[3]), lane3_dot(normal, ahead));
+        tail = turn_up(normal, least, head, length, tail);
+    }
+    return tail;
 }
 
 /* The previous position of an end, set so that it rebounds: it was pushed from `free` to `tail`, and `inertia` is its
@@ -310,6 +362,9 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
             if (lanes_any(lanes_less(obstacles[k].near, within))) {
                 tail = push_out(&obstacles[k], head, j.radius, length, tail);
             }
+        }
+        if (g->touches) {
+            tail = stay_in_front(g, i, lane3_add(m->ahead, head), NULL, head, j.radius, length, tail);
         }
         if (g->bounces) {
             const lane3 inertia = lane3_scale(lane3_sub(now, lane3_of(p + 3)), lanes_sub(one, j.drag));
@@ -411,8 +466,18 @@ uint32_t NOH_SPRING_STEP(const noh_spring_move *moves, uint32_t count, uint32_t 
 
 /* ---- results ---- */
 
+/* The rotation of a group's planes into the space in which it is shown. */
+static lane4 turn_of(const group *g, lane4 carrier)
+{
+    const float *rows[NOH_LANES];
+    lanes last[4];
+    for (uint32_t lane = 0; lane < NOH_LANES; lane++) rows[lane] = g->moves[lane]->spring->last.rotation;
+    lanes_gather(rows, 0, last);
+    return lane4_mul(carrier, lane4_conjugate(lane4_of(last)));
+}
+
 /* Interpolate between the last two steps, turned with the carrier, which turns nothing within the chain: a chain that
- * is carried rigidly does not lag behind. */
+ * is carried rigidly does not lag behind. It stays in front of what it touches where it is carried to. */
 static void show_group(const group *g)
 {
     const float *rows[NOH_LANES], *was_rows[NOH_LANES];
@@ -428,10 +493,12 @@ static void show_group(const group *g)
     load_row(rows, stepped);
     load_row(was_rows, was);
     lane4 parent = lane4_nlerp(lane4_of(was + 3), lane4_of(stepped + 3), left.v);
+    const lane4 turn = turn_of(g, parent);
+    lane3 end = head; /* of the last bone, as shown */
     for (uint32_t i = 0; i < g->joint_count; i++) {
         const float *joint_rows[NOH_LANES];
         float *to[NOH_LANES], nowhere[4];
-        lanes p[ROW], j[ROW];
+        lanes p[ROW], j[ROW], more[4];
         for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
             const noh_spring_move *move = g->moves[lane];
             const int has = i < move->desc->joint_count;
@@ -444,7 +511,16 @@ static void show_group(const group *g)
         load_row(joint_rows, j);
         const lane3 tail = lane3_mix(lane3_add(lane3_of(p + 3), lane3_of(was)), lane3_of(p), left.v);
         const lane4 rest = lane4_normalize(lane4_of(j + 3));
-        const lane3 bone = lane4_rotate(lane4_conjugate(parent), lane3_sub(tail, head));
+        lane3 way = lane3_sub(tail, head);
+        if (g->touches) {
+            const lanes square = lane3_dot(way, way), is_long = lanes_less(lanes_set(1e-30f), square);
+            const lane3 free = lane3_madd(end, lanes_mul(p[6], lanes_inverse_root(is_long, square)), way);
+            lanes_gather(joint_rows, 6, more);
+            const lane3 kept = stay_in_front(g, i, end, &turn, end, more[3], p[6], free);
+            way = lane3_choose(lanes_less(lanes_set(0.0f), g->meets.v), lane3_sub(kept, end), way);
+            end = kept;
+        }
+        const lane3 bone = lane4_rotate(lane4_conjugate(parent), way);
         const lanes size = lanes_mul(p[6], lanes_sqrt(lane3_dot(bone, bone)));
         const lane4 local = lane4_mul(between(lane4_rotate(rest, lane3_of(j)), bone, size), rest);
         const lanes out[4] = { local.x, local.y, local.z, local.w };

@@ -8,6 +8,11 @@ int noh_world_asks(const noh_world *w)
     return w->physics != NULL;
 }
 
+int noh_world_may_ask(const noh_world *w, uint32_t job_count)
+{
+    return !w || !w->physics || w->physics->threads || job_count <= 1u;
+}
+
 static int is_normal(const float v[3])
 {
     const float square = noh_dot3(v, v);

@@ -89,6 +89,7 @@ typedef struct noh_module_type {
     uint32_t (*hash)(const noh_kind_desc *kind, const void *desc); /* what states depend on besides their bytes */
     int (*is_there)(const noh_kind_desc *kind, const void *desc);  /* 0: the desc asks for nothing */
     const char *(*bad)(const noh_kind_desc *kind, const void *desc);
+    const char *(*refuse)(const void *desc, uint32_t job_count); /* as noh_modifier.refuse */
     noh_result (*measure)(const noh_kind_desc *kind, const void *desc, const struct noh_stage_needs *clips,
                           noh_module_needs *needs, noh_error *error);
     noh_result (*init)(struct noh_stage_kind *k, const void *desc, noh_error *error);
@@ -134,7 +135,7 @@ typedef struct noh_source_type {
 noh_module noh_stage_wanted(const noh_kind_desc *kind, uint32_t slot);
 /* Of a desc: only what is there stays. */
 void noh_stage_fill_modules(noh_kind_desc *kind);
-const char *noh_stage_bad_modules(const noh_kind_desc *kind);
+const char *noh_stage_bad_modules(const noh_kind_desc *kind, uint32_t job_count);
 uint32_t noh_stage_hash_module(const noh_kind_desc *kind, uint32_t slot); /* 0: none */
 noh_result noh_stage_measure_modules(const noh_kind_desc *kind, struct noh_stage_needs *needs, noh_error *error);
 /* Whether something changes poses before they are shown. */

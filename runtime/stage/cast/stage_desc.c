@@ -228,10 +228,12 @@ static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
     filled = filled_kind(d);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->runs[NOH_CHUNK_SKELETON].count)
         return "skeleton of a kind is not in the mesh's pack";
-    if (noh_stage_bad_modules(&filled)) return noh_stage_bad_modules(&filled);
+    const uint32_t job_count = desc->job_count ? desc->job_count : 1u;
+    const char *bad_module = noh_stage_bad_modules(&filled, job_count);
+    if (bad_module) return bad_module;
     for (uint32_t i = 0; i < d->modifier_count; i++) {
         const noh_modifier *m = &d->modifiers[i];
-        const char *what = m->refuse ? m->refuse(m->user, desc->job_count ? desc->job_count : 1u) : NULL;
+        const char *what = m->refuse ? m->refuse(m->user, job_count) : NULL;
         if (what) return what;
     }
     return noh_stage_track_count(&filled) > NOH_TRACKS_MAX ? "layers of a kind: more tracks than NOH_TRACKS_MAX" : NULL;

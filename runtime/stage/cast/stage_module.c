@@ -39,7 +39,7 @@ void noh_stage_fill_modules(noh_kind_desc *d)
     fill(&d->match, d);
 }
 
-const char *noh_stage_bad_modules(const noh_kind_desc *d)
+const char *noh_stage_bad_modules(const noh_kind_desc *d, uint32_t job_count)
 {
     const char *what = NULL;
     for (uint32_t slot = 0; slot < NOH_SLOT_COUNT && !what; slot++) {
@@ -48,6 +48,7 @@ const char *noh_stage_bad_modules(const noh_kind_desc *d)
         if (m.type->slot != slot)
             return "graphs, face, ragdoll, springs or match of a kind holds the module of another field";
         what = m.type->bad ? m.type->bad(d, m.desc) : NULL;
+        if (!what && m.type->refuse) what = m.type->refuse(m.desc, job_count);
     }
     return what;
 }

@@ -3,6 +3,7 @@
  * They swing in the world, in the model's units and from the model's scale: what a place says is divided by its scale,
  * so an actor of twice the size swings as the small one does, twice as far. */
 #include "life/physics/spring_internal.h"
+#include "life/physics/world_ask_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"
@@ -22,7 +23,7 @@
 
 /* A chain as jobs use it. */
 typedef struct swing {
-    noh_spring_desc desc;
+    noh_spring_desc desc; /* the first: noh_spring_move.desc leads to its swing */
     uint32_t first_row;
     uint32_t collides;
     uint32_t state; /* where its spring lies in the state of an actor */
@@ -37,7 +38,6 @@ typedef struct together {
     uint32_t count;
     noh_spring_move moves[TOGETHER];
     noh_spring_carrier carriers[TOGETHER];
-    const swing *swings[TOGETHER];
     float shares[TOGETHER];
 } together;
 
@@ -48,11 +48,14 @@ typedef struct workspace {
     noh_spring_collider *all;     /* [collider_count] */
     noh_spring_collider *near_by; /* [TOGETHER][collider_count] */
     float *rotations;             /* [TOGETHER][joints of the longest chain][4] */
+    noh_springs_world asks;       /* with a world: [TOGETHER][joints of the longest chain] */
 } workspace;
 
 struct noh_springs {
-    uint32_t row_count, chain_count, collider_count, joint_count;
-    uint32_t state_bytes, scratch_bytes, longest;
+    uint32_t chain_count, state_bytes, scratch_bytes, longest;
+    uint16_t collider_count, joint_count;
+    float metres; /* of one unit of the skeleton */
+    const noh_world *world;
     uint32_t *joints;             /* [row_count] of the skeleton */
     noh_spring_joint *rows;       /* [row_count] */
     swing *swings;                /* [chain_count] */
@@ -253,13 +256,17 @@ static uint32_t longest_of(const noh_springs_desc *d)
     return longest;
 }
 
-static size_t carve_workspace(noh_arena *arena, uint32_t colliders, uint32_t longest, workspace *out)
+static size_t carve_workspace(noh_arena *arena, uint32_t colliders, uint32_t longest, int asks, workspace *out)
 {
     out->scratch = noh_arena_carve(arena, NOH_SPRING_SCRATCH_FLOATS(colliders) * sizeof(float), 16);
     out->chains = noh_arena_carve(arena, sizeof *out->chains, 16);
     out->all = noh_arena_carve(arena, colliders * sizeof *out->all, 16);
     out->near_by = noh_arena_carve(arena, TOGETHER * colliders * sizeof *out->near_by, 16);
     out->rotations = noh_arena_carve(arena, TOGETHER * 4u * (size_t)longest * sizeof(float), 16);
+    if (asks) {
+        out->asks.balls = noh_arena_carve(arena, TOGETHER * (size_t)longest * sizeof *out->asks.balls, 16);
+        out->asks.touches = noh_arena_carve(arena, TOGETHER * (size_t)longest * sizeof *out->asks.touches, 16);
+    }
     return arena->used;
 }
 
@@ -269,7 +276,7 @@ void noh_springs_measure(const noh_springs_desc *desc, size_t *state_bytes, size
     workspace none;
     NOH_ASSERT(desc && state_bytes && scratch_bytes);
     *state_bytes = state_bytes_of(desc, desc->chain_count);
-    *scratch_bytes = carve_workspace(&arena, desc->collider_count, longest_of(desc), &none);
+    *scratch_bytes = carve_workspace(&arena, desc->collider_count, longest_of(desc), desc->world != NULL, &none);
 }
 
 /* The number of the last chain before this one, plus 1, that has a joint above its first; 0: none has. */
@@ -336,10 +343,11 @@ noh_result noh_springs_init(void *memory, size_t bytes, const noh_springs_desc *
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_springs_size(desc), error);
     if (result) return result;
     carve(&arena, desc, &s);
-    s->row_count = desc->row_count;
     s->chain_count = desc->chain_count;
-    s->collider_count = desc->collider_count;
-    s->joint_count = desc->skeleton.joint_count;
+    s->collider_count = (uint16_t)desc->collider_count;
+    s->joint_count = (uint16_t)desc->skeleton.joint_count;
+    s->metres = desc->metres;
+    s->world = desc->world;
     s->longest = longest_of(desc);
     fill(s, desc);
     *springs = s;
@@ -423,9 +431,13 @@ static void rest(const noh_modifier_work *w, const noh_springs *s, const swing *
 static void swing_together(const noh_modifier_work *w, const noh_springs *s, const workspace *space)
 {
     together *t = space->chains;
+    if (space->asks.world) noh_springs_ask(w, &space->asks, t->moves, t->count);
     (void)noh_spring_step(t->moves, t->count, w->ticks, space->scratch);
     noh_spring_rotations(t->moves, t->count);
-    for (uint32_t i = 0; i < t->count; i++) show(w, s, t->swings[i], t->shares[i], t->moves[i].rotations);
+    for (uint32_t i = 0; i < t->count; i++) {
+        const swing *g = (const swing *)(const void *)t->moves[i].desc;
+        show(w, s, g, t->shares[i], t->moves[i].rotations);
+    }
     t->count = 0;
 }
 
@@ -459,6 +471,7 @@ static void add_chain(const noh_modifier_work *w, const noh_springs *s, uint32_t
     move->desc = &g->desc;
     move->carrier = &t->carriers[t->count];
     move->colliders = gather(s, g, space);
+    move->touches = NULL;
     move->rotations = space->rotations + t->count * 4u * (size_t)s->longest;
     if (w->cut || !*begun) { /* at rest: there is no time to go by, and nothing to go on from */
         *begun = noh_spring_init(spring, noh_spring_size(&g->desc), &g->desc, move->carrier, &spring, NULL) == NOH_OK;
@@ -468,7 +481,7 @@ static void add_chain(const noh_modifier_work *w, const noh_springs *s, uint32_t
         }
         return;
     }
-    t->swings[t->count++] = g;
+    t->count++;
 }
 
 static void modify(noh_modifier_work *w)
@@ -479,8 +492,10 @@ static void modify(noh_modifier_work *w)
     uint32_t first = 0; /* of the chains that are put together */
     if (w->skeleton->joint_count < s->joint_count) return;
     if (noh_arena_open(&arena, w->scratch, s->scratch_bytes, s->scratch_bytes, NULL)) return;
-    (void)carve_workspace(&arena, s->collider_count, s->longest, &space);
+    (void)carve_workspace(&arena, s->collider_count, s->longest, s->world != NULL, &space);
     space.chains->count = 0;
+    space.asks.metres = s->metres;
+    space.asks.world = s->world && noh_world_may_ask(s->world, w->stage->desc.job_count) ? s->world : NULL;
     if (noh_modifier_home_moved(w)) follow_home(w, s);
     for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &space.all[i]);
     for (uint32_t i = 0; i < s->chain_count; i++) {
@@ -520,11 +535,18 @@ static int is_there(const noh_kind_desc *d, const void *desc)
 static const char *bad(const noh_kind_desc *d, const void *desc)
 {
     noh_springs_desc springs;
-    (void)desc;
+    if (desc && noh_world_check(desc, NULL)) return "world of a kind's springs: see noh_world_check";
     return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
                    state_bytes_of(&springs, springs.chain_count) > NOH_MODIFIER_BYTES_MAX
                ? "springs of a kind: the springs of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"
                : NULL;
+}
+
+static const char *refuse(const void *desc, uint32_t job_count)
+{
+    return noh_world_may_ask(desc, job_count) ? NULL
+                                              : "springs of a kind: the physics of their world answers one thread, and "
+                                                "the stage has several jobs: set its `threads`, or job_count to 1";
 }
 
 static uint32_t hash(const noh_kind_desc *d, const void *desc)
@@ -537,8 +559,9 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
                           noh_error *error)
 {
     noh_springs_desc springs;
-    (void)desc, (void)n, (void)error;
+    (void)n, (void)error;
     if (!noh_springs_of_pack(d->mesh, d->skeleton, &springs)) return NOH_OK;
+    springs.world = desc;
     noh_springs_measure(&springs, &needs->actor_bytes, &needs->scratch_bytes);
     needs->kind_bytes = noh_springs_size(&springs);
     return NOH_OK;
@@ -548,8 +571,8 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
     noh_springs_desc of_pack;
     noh_springs *springs;
-    (void)desc;
     if (!noh_springs_of_pack(k->desc->mesh, k->desc->skeleton, &of_pack)) return NOH_OK;
+    of_pack.world = desc;
     return noh_springs_init(k->modules[NOH_SLOT_SPRINGS].shared, noh_springs_size(&of_pack), &of_pack, &springs, error);
 }
 
@@ -559,7 +582,7 @@ static noh_result check_module(const noh_stage_kind *k, const void *state, noh_e
     return what ? noh_fail(error, NOH_ERR_DATA, what, 0, 0) : NOH_OK;
 }
 
-noh_module noh_springs_module(void)
+noh_module noh_springs_module(const noh_world *world)
 {
     static const noh_module_type of_pack = {
         .slot = NOH_SLOT_SPRINGS,
@@ -567,12 +590,13 @@ noh_module noh_springs_module(void)
         .hash = hash,
         .is_there = is_there,
         .bad = bad,
+        .refuse = refuse,
         .measure = measure,
         .init = init,
         .check = check_module,
         .modify = modify,
     };
-    return (noh_module){ &of_pack, NULL };
+    return (noh_module){ &of_pack, world };
 }
 
 noh_modifier noh_springs_modifier(const noh_springs *springs)

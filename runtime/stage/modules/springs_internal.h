@@ -2,6 +2,8 @@
 #ifndef NOH_STAGE_SPRINGS_INTERNAL_H
 #define NOH_STAGE_SPRINGS_INTERNAL_H
 
+#include "noh/body.h"
+#include "noh/low_life.h"
 #include "noh/modules.h"
 
 #ifdef __cplusplus
@@ -21,7 +23,20 @@ typedef struct noh_springs_desc {
     const noh_spring_capsule *colliders;
     uint32_t collider_count; /* 0..NOH_SPRING_COLLIDERS_MAX */
     float restitution;       /* noh_spring_desc.restitution of all chains; 0 for a pack's springs */
+    const noh_world *world;  /* metres; read by frames, must outlive the stage; NULL: none */
 } noh_springs_desc;
+
+/* What a job asks with. */
+typedef struct noh_springs_world {
+    const noh_world *world;
+    float metres;          /* of one unit of the skeleton */
+    noh_world_body *balls; /* [joints of all moves of a call], with their answers; undefined before and after */
+    noh_touches *touches;
+} noh_springs_world;
+
+/* Ask what chains touch before they are stepped by the work's ticks: one question for all. Sets their `touches`. */
+void noh_springs_ask(const noh_modifier_work *w, const noh_springs_world *world, noh_spring_move *moves,
+                     uint32_t count);
 
 /* Get the springs that a pack has for one of its skeletons. `desc` points into the pack.
  * returns  0: the pack has none, and *desc is untouched */

@@ -1,4 +1,5 @@
 /* stage_feet.c: feet on the ground as a modifier of a kind. */
+#include "life/physics/world_ask_internal.h"
 #include "life/reach/feet_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/body.h"
@@ -46,18 +47,13 @@ static uint32_t standing_legs(const noh_modifier_work *w, const noh_feet_rig *ri
     return side_of(w, rig->legs[0].foot) > side_of(w, rig->legs[1].foot) ? bits : bits >> 1 | (bits & 1u) << 1;
 }
 
-/* Whether the jobs of its stage may ask a world: one that answers a single thread is not asked by several. */
-static int may_ask(const noh_world *world, uint32_t job_count)
-{
-    return !world || !world->physics || world->physics->threads || job_count == 1u;
-}
-
 const char *noh_modifier_feet_refuse(const void *user, uint32_t job_count)
 {
     const noh_kind_feet *f = user;
-    return may_ask(f->ground.world, job_count) ? NULL
-                                               : "feet of a kind: the physics of their world answers one thread, and "
-                                                 "the stage has several jobs: set its `threads`, or job_count to 1";
+    return noh_world_may_ask(f->ground.world, job_count)
+               ? NULL
+               : "feet of a kind: the physics of their world answers one thread, and "
+                 "the stage has several jobs: set its `threads`, or job_count to 1";
 }
 
 void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet *f, float seconds, int cut)
@@ -67,7 +63,7 @@ void noh_modifier_feet(noh_modifier_work *w, noh_feet *feet, const noh_kind_feet
     const int is_home = w->home[0] == 0.0 && w->home[1] == 0.0 && w->home[2] == 0.0;
     noh_feet_place place;
     if (noh_modifier_home_moved(w)) noh_feet_shift(feet, w->home_moved);
-    if (!may_ask(f->ground.world, w->stage->desc.job_count)) return; /* a world that was set after init */
+    if (!noh_world_may_ask(f->ground.world, w->stage->desc.job_count)) return; /* a world that was set after init */
     memcpy(place.position, w->near_place, sizeof place.position);
     memcpy(place.rotation, w->place.rotation, sizeof place.rotation);
     place.scale = w->place.scale;

@@ -13,6 +13,7 @@
 #define JOINTS 5u
 #define COLLIDERS 8u
 #define BUNDLE_CRC 0x653c6a2du
+#define MEETING_CRC 0x3501a4a2u /* with planes */
 #define SECOND 48000u
 
 static noh_spring_joint joints[JOINTS];
@@ -42,13 +43,13 @@ static uint32_t step_one(noh_spring *spring, const noh_spring_desc *desc, const 
                          const noh_spring_collider *colliders, uint32_t ticks)
 {
     static float scratch[NOH_SPRING_SCRATCH_FLOATS(COLLIDERS)];
-    const noh_spring_move move = { spring, desc, carrier, colliders, NULL };
+    const noh_spring_move move = { spring, desc, carrier, colliders, NULL, NULL };
     return noh_spring_step(&move, 1, ticks, scratch);
 }
 
 static void rotations_of(noh_spring *spring, const noh_spring_desc *desc, float *rotations)
 {
-    const noh_spring_move move = { spring, desc, NULL, NULL, rotations };
+    const noh_spring_move move = { spring, desc, NULL, NULL, rotations, NULL };
     noh_spring_rotations(&move, 1);
 }
 
@@ -491,6 +492,7 @@ typedef struct bundle {
     noh_spring_carrier carriers[CHAINS];
     noh_spring_collider colliders[COLLIDERS];
     float rotations[CHAINS][CHAIN_JOINTS][4], scratch[NOH_SPRING_SCRATCH_FLOATS(COLLIDERS)];
+    noh_touches touches[CHAIN_JOINTS];
     noh_spring_move moves[CHAINS];
 } bundle;
 
@@ -498,6 +500,19 @@ static void carry(bundle *b, uint32_t chain, double seconds)
 {
     b->carriers[chain] = swaying(seconds + chain);
     b->carriers[chain].position[1] += 0.02f * (float)chain;
+}
+
+/* None to three planes for each joint, one of them right through the chains; two chains of three meet them. */
+static void meet_planes(bundle *b)
+{
+    static const noh_plane planes[3] = { { { 0.0f, 1.0f, 0.0f }, -0.25f },
+                                         { { 0.6f, 0.0f, 0.8f }, -0.1f },
+                                         { { 0.0f, 0.0f, -1.0f }, -0.02f } };
+    for (uint32_t j = 0; j < CHAIN_JOINTS; j++) {
+        b->touches[j].count = (j + 1u) % 4u;
+        for (uint32_t k = 0; k < 3; k++) b->touches[j].at[k].plane = planes[k];
+    }
+    for (uint32_t n = 0; n < CHAINS; n++) b->moves[n].touches = n % 3u ? b->touches : NULL;
 }
 
 static bundle *make_bundle(void)
@@ -528,8 +543,8 @@ static bundle *make_bundle(void)
         b->descs[n] = (noh_spring_desc){ b->joints[n], 1u + n % CHAIN_JOINTS, colliders, 0.125f * (float)(n % 3u) };
         carry(b, n, 0.0);
         b->springs[n] = made(&b->descs[n], &b->carriers[n]);
-        b->moves[n] = (noh_spring_move){ b->springs[n], &b->descs[n], &b->carriers[n], b->colliders,
-                                         b->rotations[n][0] };
+        b->moves[n] = (noh_spring_move){ b->springs[n], &b->descs[n],       &b->carriers[n],
+                                         b->colliders,  b->rotations[n][0], NULL };
     }
     return b;
 }
@@ -541,10 +556,11 @@ static void free_bundle(bundle *b)
 }
 
 /* Five seconds in frames of any length, in calls of `at_once` chains; a hash of every byte and rotation. */
-static uint32_t hash_of_bundle(step_many *step, rotate_many *turn, uint32_t at_once)
+static uint32_t hash_of_bundle(step_many *step, rotate_many *turn, uint32_t at_once, int meets)
 {
     bundle *b = make_bundle();
     uint32_t crc = 0;
+    if (meets) meet_planes(b);
     for (uint32_t f = 1; f <= 300; f++) {
         for (uint32_t n = 0; n < CHAINS; n++) carry(b, n, f / 60.0);
         for (uint32_t k = 0; k < COLLIDERS; k++) b->colliders[k].from[0] += k & 1u ? 1e-3f : -1e-3f;
@@ -569,19 +585,63 @@ static uint32_t hash_of_bundle(step_many *step, rotate_many *turn, uint32_t at_o
 
 static void every_width_and_company_gives_the_same_bits(void **state)
 {
-    const uint32_t crc = hash_of_bundle(noh_spring_step, noh_spring_rotations, CHAINS);
+    static const uint32_t crcs[2] = { BUNDLE_CRC, MEETING_CRC }; /* on every processor */
     (void)state;
-    assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 1), crc);
-    assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 3), crc);
+    for (int meets = 0; meets < 2; meets++) {
+        const uint32_t crc = hash_of_bundle(noh_spring_step, noh_spring_rotations, CHAINS, meets);
+        assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 1, meets), crc);
+        assert_int_equal(hash_of_bundle(noh_spring_step, noh_spring_rotations, 3, meets), crc);
 #if defined(__x86_64__) /* elsewhere the tests are linked with the library's own width alone */
-    assert_int_equal(hash_of_bundle(noh_spring_step_scalar, noh_spring_rotations_scalar, CHAINS), crc);
-    assert_int_equal(hash_of_bundle(noh_spring_step_sse2, noh_spring_rotations_sse2, 5), crc);
-    if (__builtin_cpu_supports("avx2")) {
-        assert_int_equal(hash_of_bundle(noh_spring_step_avx2, noh_spring_rotations_avx2, CHAINS), crc);
-    }
+        assert_int_equal(hash_of_bundle(noh_spring_step_scalar, noh_spring_rotations_scalar, CHAINS, meets), crc);
+        assert_int_equal(hash_of_bundle(noh_spring_step_sse2, noh_spring_rotations_sse2, 5, meets), crc);
+        if (__builtin_cpu_supports("avx2")) {
+            assert_int_equal(hash_of_bundle(noh_spring_step_avx2, noh_spring_rotations_avx2, CHAINS, meets), crc);
+        }
 #endif
-    print_message("# %u chains by every width: %08x\n", CHAINS, crc);
-    assert_int_equal(crc, BUNDLE_CRC); /* and on every processor */
+        print_message("# %u chains by every width: %08x\n", CHAINS, crc);
+        assert_int_equal(crc, crcs[meets]);
+    }
+}
+
+/* A chain that hangs straight down is lowered onto a plane, which leaves it no direction to turn to; then the plane
+ * leans. As shown, its ends are in front by their radius, and its bones have their lengths. */
+static void ends_are_shown_in_front_of_planes(void **state)
+{
+    const noh_spring_desc desc = hanging(1.0f, 0.2f, 1.0f);
+    noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_spring *spring = made(&desc, &at);
+    noh_touches touches[JOINTS];
+    float turned[JOINTS][4], deepest = 0.0f;
+    (void)state;
+    memset(touches, 0, sizeof touches);
+    for (uint32_t f = 0; f < 240; f++) {
+        const noh_spring_move move = { spring, &desc, &at, NULL, turned[0], touches };
+        const float lean = f < 120 ? 0.0f : 0.005f * (float)(f - 120u), normal[3] = { sinf(lean), cosf(lean), 0.0f };
+        const float floor_at = f < 100 ? -1.0f + 0.0095f * (float)f : -0.05f;
+        float end[3] = { 0.0f, 0.0f, 0.0f }, rotation[4];
+        at.position[0] = 0.2f * sinf(0.1f * (float)f);
+        noh_quat_from_rotation((const float[3]){ 0.0f, 0.05f * (float)f, 0.0f }, at.rotation);
+        for (uint32_t i = 0; i < JOINTS; i++) {
+            touches[i].count = 1;
+            memcpy(touches[i].at[0].plane.normal, normal, sizeof normal);
+            touches[i].at[0].plane.distance = floor_at;
+        }
+        noh_spring_step(&move, 1, f % 3u ? 800 : 500, NULL);
+        noh_spring_rotations(&move, 1);
+        memcpy(rotation, at.rotation, sizeof rotation);
+        for (uint32_t i = 0; i < JOINTS; i++) {
+            float bone[3];
+            noh_quat_mul(rotation, turned[i], rotation);
+            noh_quat_rotate(rotation, desc.joints[i].bone, bone);
+            for (int k = 0; k < 3; k++) end[k] += bone[k];
+            const float over = normal[0] * end[0] + normal[1] * end[1] - floor_at - desc.joints[i].radius;
+            deepest = fmaxf(deepest, -over);
+            if (!(over > -1e-4f)) fail_msg("frame %u: end %u is %.2f mm deep", f, i, -1e3 * (double)over);
+        }
+    }
+    print_message("# at most %.4f mm deep\n", 1e3 * (double)deepest);
+    assert_null(noh_spring_check(spring, &desc));
+    free(spring);
 }
 
 static void bad_values_are_refused(void **state)
@@ -623,6 +683,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(it_stays_whole),
         cmocka_unit_test(leaps_and_long_times_stay_finite),
         cmocka_unit_test(a_copy_goes_on),
+        cmocka_unit_test(ends_are_shown_in_front_of_planes),
         cmocka_unit_test(every_width_and_company_gives_the_same_bits),
         cmocka_unit_test(bad_values_are_refused),
     };

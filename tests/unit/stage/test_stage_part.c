@@ -231,7 +231,7 @@ static void face_parts_ragdoll_and_springs_in_this_order(void **state)
         .actor_count = 2,
         .face = noh_face_module(&face),
         .ragdoll = noh_ragdoll_module(&ragdoll),
-        .springs = noh_springs_module(),
+        .springs = noh_springs_module(NULL),
         .modifiers = &part,
         .modifier_count = 1,
     };

@@ -33,13 +33,13 @@ static void open_show(show *w)
     w->candidates[0] = w->c.kinds[MASKS];
     w->candidates[1] = w->c.kinds[TUBES];
     w->candidates[2] = w->c.kinds[PUPPETS];
-    w->candidates[2].springs = noh_springs_module();
+    w->candidates[2].springs = noh_springs_module(NULL);
     w->candidates[2].inertia = 1;
     w->candidates[2].actor_count = 2;
     w->candidates[3].mesh = &coat_pack;
     w->candidates[3].actor_count = PLAYERS;
     w->candidates[3].worn_by = 1u << PUPPETS;
-    w->candidates[3].springs = noh_springs_module();
+    w->candidates[3].springs = noh_springs_module(NULL);
     w->candidates[4] = w->candidates[2];
     w->candidates[4].graphs = noh_graph_module("moves");
     w->candidates[4].ragdoll = noh_ragdoll_module(&dolls);

@@ -298,7 +298,7 @@ static void open_swingers(cast *c, uint32_t actors, int without)
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
     c->kinds[0].root_up = 1;
-    if (!without) c->kinds[0].springs = noh_springs_module();
+    if (!without) c->kinds[0].springs = noh_springs_module(NULL);
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;
     cast_make(c, NULL);

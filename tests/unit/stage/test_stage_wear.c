@@ -26,7 +26,7 @@ static void wardrobe_open(cast *c, uint32_t jobs)
     c->kinds[BODIES].root_axes = NOH_ROOT_GROUND;
     c->kinds[BODIES].root_up = 1;
     c->kinds[COATS].worn_by = 1u << BODIES;
-    c->kinds[COATS].springs = noh_springs_module();
+    c->kinds[COATS].springs = noh_springs_module(NULL);
     c->desc.kinds = c->kinds;
     c->desc.kind_count = KINDS;
     c->desc.job_count = jobs;

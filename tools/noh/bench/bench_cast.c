@@ -65,7 +65,7 @@ static int open_stage(cast *c, gpu *g, const noh_pack *pack, uint32_t actors)
     memset(c, 0, sizeof *c);
     c->kind.mesh = pack;
     c->kind.actor_count = actors;
-    c->kind.springs = noh_springs_module();
+    c->kind.springs = noh_springs_module(NULL);
     c->desc.kinds = &c->kind;
     c->desc.kind_count = 1;
     c->desc.lod.pixels = 1.0f;

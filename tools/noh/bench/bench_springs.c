@@ -76,8 +76,9 @@ static void swing(void *self, uint32_t frame)
     }
     for (uint32_t c = 0; c < CHARACTERS; c++) {
         for (uint32_t i = 0; i < CHAINS; i++) {
-            moves[i] = (noh_spring_move){ w->springs[c * CHAINS + i], &w->desc, &carriers[i], w->capsules,
-                                          w->rotations[i] };
+            moves[i] = (noh_spring_move){
+                w->springs[c * CHAINS + i], &w->desc, &carriers[i], w->capsules, w->rotations[i], NULL
+            };
         }
         (void)w->step(moves, CHAINS, NOH_SPRING_STEP_TICKS, w->scratch);
         w->rotate(moves, CHAINS);

@@ -161,7 +161,7 @@ static int budget_of_kind(const budget_args *a, const pack_file *file, const noh
         kind = people.kind;
     }
     kind.name = name ? name : a->pack;
-    kind.springs = noh_springs_module();
+    kind.springs = noh_springs_module(NULL);
     kind.mesh = &file->pack;
     kind.clip_packs = a->clips.count ? clips : NULL;
     kind.clip_pack_count = (uint32_t)a->clips.count;

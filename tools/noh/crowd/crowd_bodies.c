@@ -80,7 +80,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->kind.root_up = 1;
     c->kind.root_by_game = 1;
     c->kind.unpickable = 1;
-    c->kind.springs = noh_springs_module();
+    c->kind.springs = noh_springs_module(NULL);
     c->desc.kinds = &c->kind;
     c->desc.kind_count = 1;
     c->desc.lod.pixels = o->pixels;

@@ -63,7 +63,7 @@ static void fill_kind(place_people *p, const pack_file *file, uint32_t agents, u
     k->root_up = 1;
     k->root_by_game = 1;
     k->unpickable = 1;
-    k->springs = noh_springs_module();
+    k->springs = noh_springs_module(NULL);
     k->modifiers = p->parts;
     k->modifier_count = 1;
     p->ragdoll.count = ragdolls;

@@ -38,7 +38,7 @@ static void fill_desc(session_stage *s, uint32_t actor_count)
     if (s->pack->runs[NOH_CHUNK_SKELETON].count) s->kind.root_axes = NOH_ROOT_GROUND;
     s->kind.root_up = 1;
     s->kind.graphs = noh_graph_module(s->pack->runs[NOH_CHUNK_GRAPH].count ? "*" : NULL);
-    s->kind.springs = noh_springs_module();
+    s->kind.springs = noh_springs_module(NULL);
     s->desc.kinds = &s->kind;
     s->desc.kind_count = 1;
     find_face(s);
