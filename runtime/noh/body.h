@@ -350,11 +350,12 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
 
 /* Set velocity and spin.
  * shapes  velocity[3] m/s of its centre; spin[3] rad/s about the world's axes
- * errors  ARG not finite; nothing changes */
+ * errors  ARG a number beyond NOH_NUMBER_MAX; nothing changes */
 noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error);
 
 /* Apply a force at a point, a torque, or an impulse at a point. Forces and torques add up, act during the whole next
- * noh_rigid_step, and are then cleared. Gravity is separate. Calls with values that are not finite do nothing.
+ * noh_rigid_step, and are then cleared. Gravity is separate. Calls with values that are not finite do nothing. Sums,
+ * speed and spin stay below NOH_NUMBER_MAX.
  * units  force newtons, torque newton metres, impulse newton seconds; points in world space */
 void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3]);
 void noh_rigid_torque(noh_rigid *body, const float torque[3]);

@@ -126,7 +126,7 @@ noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdol
  * twice the mean speed, or more than the limit below.
  * units   impulse in newton seconds; the point in the space of the bodies
  * ranges  no body moves faster than 23 sizes per second, 40 m/s for 1.75 m: excess, beyond 2,800 Ns on 70 kg at rest,
- *         is lost. Does nothing if the impulse is not finite or beyond 1e15 */
+ *         is lost. Does nothing if a number is not finite or beyond NOH_NUMBER_MAX */
 void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3]);
 
 /* Advance time for all dolls that are awake, in pieces of any length. A doll whose bodies all moved by less than a 50th

@@ -270,7 +270,7 @@ noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
  * one that gets up, falls; one that has fallen is pushed.
  * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, spread
  *         over the bodies and limited to about 40 m/s (noh_ragdoll_push)
- * errors  as noh_actor_fall; also ARG not finite */
+ * errors  as noh_actor_fall; also ARG a number beyond NOH_NUMBER_MAX */
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                          noh_error *error);
 

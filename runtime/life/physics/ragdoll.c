@@ -621,9 +621,10 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
 {
     NOH_ASSERT(doll < set->count);
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
-    const float most = 1e15f; /* squares stay finite */
     float from[3], own[3], rest[3];
-    if (!noh_is_finite3(point) || !(noh_dot3(impulse, impulse) < most * most)) return;
+    for (int k = 0; k < 3; k++) {
+        if (!noh_is_number(point[k]) || !noh_is_number(impulse[k])) return;
+    }
     noh_sub3(point, d->origin, from);
     const uint32_t i = nearest_body(&set->shape, d, from);
     const float alone = PUSH_PART * set->size * set->shape.bodies[i].mass, size = noh_length3(impulse);

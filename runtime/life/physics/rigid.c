@@ -63,8 +63,10 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
         if (!(inertia[i] > 0.0f && noh_is_finite(inertia[i]) && noh_is_finite(1.0f / inertia[i])))
             return noh_fail(error, NOH_ERR_ARG, wrong, 2, 0);
     }
-    if (!noh_is_finite3(desc->position) || !(turned == 0.0f || (turned > 0.99f && turned < 1.01f)))
-        return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
+    for (int i = 0; i < 3; i++) {
+        if (!noh_is_number(desc->position[i])) return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
+    }
+    if (!(turned == 0.0f || (turned > 0.99f && turned < 1.01f))) return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
     memset(body, 0, sizeof *body);
     memcpy(body->half, desc->half, sizeof body->half);
     body->radius = desc->radius;
@@ -90,12 +92,37 @@ static void by_inertia(const noh_rigid *b, const float v[3], int over, float out
     noh_quat_rotate(b->rotation, out, out);
 }
 
+static float capped(float x, float most)
+{
+    return x > most ? most : x < -most ? -most : x >= -most ? x : 0.0f;
+}
+
+/* Add to a velocity or a force, so that squares stay finite. */
+static void add(float sum[3], float factor, const float more[3])
+{
+    for (int i = 0; i < 3; i++) sum[i] = capped(sum[i] + factor * more[i], NOH_NUMBER_MAX);
+}
+
+/* The same for a momentum or a torque: the spin, too, has to stay a number. */
+static void add_turn(const noh_rigid *b, float sum[3], float factor, const float more[3])
+{
+    float least = 1.0f;
+    for (int i = 0; i < 3; i++) least = b->inertia[i] < least ? b->inertia[i] : least;
+    for (int i = 0; i < 3; i++) sum[i] = capped(sum[i] + factor * more[i], least * NOH_NUMBER_MAX);
+}
+
 noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error)
 {
-    if (!noh_is_finite3(velocity) || !noh_is_finite3(spin))
-        return noh_fail(error, NOH_ERR_ARG, "a rigid body's velocity or spin is not finite", 0, 0);
+    static const float none[3] = { 0.0f, 0.0f, 0.0f };
+    for (int i = 0; i < 3; i++) {
+        if (!noh_is_number(velocity[i]) || !noh_is_number(spin[i])) {
+            return noh_fail(error, NOH_ERR_ARG, "a rigid body's velocity or spin is not a number, or larger than 10^12",
+                            (uint64_t)i, 0);
+        }
+    }
     memcpy(body->velocity, velocity, sizeof body->velocity);
     by_inertia(body, spin, 0, body->momentum);
+    add_turn(body, body->momentum, 0.0f, none);
     body->still = 0;
     return NOH_OK;
 }
@@ -112,15 +139,15 @@ void noh_rigid_force(noh_rigid *body, const float point[3], const float force[3]
     if (!noh_is_finite3(point) || !noh_is_finite3(force)) return;
     arm_of(body, point, arm);
     noh_cross3(arm, force, torque);
-    noh_madd3(body->force, 1.0f, force, body->force);
-    noh_madd3(body->torque, 1.0f, torque, body->torque);
+    add(body->force, 1.0f, force);
+    add_turn(body, body->torque, 1.0f, torque);
     body->still = 0;
 }
 
 void noh_rigid_torque(noh_rigid *body, const float torque[3])
 {
     if (!noh_is_finite3(torque)) return;
-    noh_madd3(body->torque, 1.0f, torque, body->torque);
+    add_turn(body, body->torque, 1.0f, torque);
     body->still = 0;
 }
 
@@ -130,8 +157,8 @@ void noh_rigid_push(noh_rigid *body, const float point[3], const float impulse[3
     if (!noh_is_finite3(point) || !noh_is_finite3(impulse)) return;
     arm_of(body, point, arm);
     noh_cross3(arm, impulse, twist);
-    noh_madd3(body->velocity, 1.0f / body->mass, impulse, body->velocity);
-    noh_madd3(body->momentum, 1.0f, twist, body->momentum);
+    add(body->velocity, 1.0f / body->mass, impulse);
+    add_turn(body, body->momentum, 1.0f, twist);
     body->still = 0;
 }
 
@@ -309,11 +336,12 @@ static void turn_by(noh_rigid *b, const float spin[3])
 static float substep(noh_rigid *b, const noh_world *world, const float gravity[3])
 {
     solver s;
-    float before[3], turned[3];
+    float before[3], turned[3], pull[3];
     memcpy(before, b->velocity, sizeof before);
     memcpy(turned, b->momentum, sizeof turned);
-    for (int k = 0; k < 3; k++) b->velocity[k] += SECONDS * (gravity[k] + b->force[k] / b->mass);
-    noh_madd3(b->momentum, SECONDS, b->torque, b->momentum);
+    for (int k = 0; k < 3; k++) pull[k] = gravity[k] + b->force[k] / b->mass;
+    add(b->velocity, SECONDS, pull);
+    add_turn(b, b->momentum, SECONDS, b->torque);
     s.contacts.count = 0;
     if (world) {
         noh_round_box shape;

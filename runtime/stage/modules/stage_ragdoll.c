@@ -423,8 +423,10 @@ noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3]
     NOH_ASSERT(point && impulse);
     if (!b) return result;
     for (int i = 0; i < 3; i++) {
-        if (!noh_is_finite(point[i]) || !noh_is_finite(impulse[i]))
-            return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not finite", (uint64_t)i, 0);
+        if (!noh_is_number(point[i]) || !noh_is_number(impulse[i])) {
+            return noh_fail(error, NOH_ERR_ARG, "a hit's point or impulse is not a number, or larger than 10^12",
+                            (uint64_t)i, 0);
+        }
     }
     return noh_stage_begin_stagger(k, a, b, &push) ? NOH_OK : noh_stage_knock_down(k, a, b, &push, error);
 }

@@ -361,7 +361,7 @@ static void bad_bodies_are_refused(void **state)
         if (i == 3) d.mass = 0.0f;
         if (i == 4) d.mass = INFINITY;
         if (i == 5) d.inertia[1] = 1.0f;
-        if (i == 6) d.position[2] = INFINITY;
+        if (i == 6) d.position[2] = 2.0f * NOH_NUMBER_MAX;
         if (i == 7) d.rotation[0] = 2.0f;
         if (i == 8) d.half[0] = d.half[1] = 0.0f; /* a line without a radius */
         assert_int_equal(noh_rigid_init(&body, &d, &error), NOH_ERR_ARG);
@@ -373,6 +373,31 @@ static void bad_bodies_are_refused(void **state)
     noh_rigid_force(&body, zero, nan3);
     noh_rigid_torque(&body, nan3);
     assert_memory_equal(&body, &before, sizeof body);
+}
+
+static void extreme_pushes_keep_numbers(void **state)
+{
+    static const float sizes[] = { 1.0f, 1e12f, 1e20f, 3e38f };
+    const noh_rigid_desc desc = { .half = { 0.5f, 0.2f, 0.3f }, .mass = 1.0f, .position = { 0.0f, 0.5f, 0.0f } };
+    const noh_world world = ground_world(0.5f, 0.2f);
+    (void)state;
+    for (int i = 0; i < 48; i++) {
+        const float point[3] = { sizes[i % 4], 0.0f, 1.0f }, by[3] = { 1.0f, sizes[i / 4 % 4], -2.0f };
+        float place[3], rotation[4], velocity[3], spin[3], sum = 0.0f;
+        noh_rigid body;
+        assert_int_equal(noh_rigid_init(&body, &desc, NULL), NOH_OK);
+        if (i < 16) noh_rigid_push(&body, point, by);
+        if (i >= 16 && i < 32) noh_rigid_force(&body, point, by);
+        if (i >= 32) noh_rigid_torque(&body, by);
+        run(&body, &world, 30);
+        noh_rigid_place(&body, place, rotation);
+        noh_rigid_motion(&body, velocity, spin, NULL);
+        for (int k = 0; k < 3; k++) sum += 0.0f * (place[k] + rotation[k] + velocity[k] + spin[k]);
+        assert_true(sum == 0.0f);
+    }
+    noh_rigid body;
+    assert_int_equal(noh_rigid_init(&body, &desc, NULL), NOH_OK);
+    assert_int_equal(noh_rigid_set_motion(&body, (const float[3]){ 0.0f, 1e13f, 0.0f }, zero, NULL), NOH_ERR_ARG);
 }
 
 /* ---- point masses ---- */
@@ -454,14 +479,23 @@ static void points_leave_what_they_begin_in(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(it_falls_by_half_g_t_squared),    cmocka_unit_test(a_torque_spins_it_up),
-    cmocka_unit_test(a_force_at_a_point_turns_it),     cmocka_unit_test(a_free_body_tumbles_on),
-    cmocka_unit_test(it_bounces_to_e_squared),         cmocka_unit_test(friction_stops_it),
-    cmocka_unit_test(a_ball_begins_to_roll),           cmocka_unit_test(it_rests_on_everything),
-    cmocka_unit_test(anything_comes_to_rest),          cmocka_unit_test(it_leaves_what_it_begins_in),
-    cmocka_unit_test(pieces_and_places_do_not_matter), cmocka_unit_test(bad_bodies_are_refused),
-    cmocka_unit_test(points_bounce_and_slide),         cmocka_unit_test(ends_of_rods_bounce),
-    cmocka_unit_test(points_at_rest_do_not_bounce),    cmocka_unit_test(points_leave_what_they_begin_in),
+    cmocka_unit_test(it_falls_by_half_g_t_squared),
+    cmocka_unit_test(a_torque_spins_it_up),
+    cmocka_unit_test(a_force_at_a_point_turns_it),
+    cmocka_unit_test(a_free_body_tumbles_on),
+    cmocka_unit_test(it_bounces_to_e_squared),
+    cmocka_unit_test(friction_stops_it),
+    cmocka_unit_test(a_ball_begins_to_roll),
+    cmocka_unit_test(it_rests_on_everything),
+    cmocka_unit_test(anything_comes_to_rest),
+    cmocka_unit_test(it_leaves_what_it_begins_in),
+    cmocka_unit_test(pieces_and_places_do_not_matter),
+    cmocka_unit_test(bad_bodies_are_refused),
+    cmocka_unit_test(extreme_pushes_keep_numbers),
+    cmocka_unit_test(points_bounce_and_slide),
+    cmocka_unit_test(ends_of_rods_bounce),
+    cmocka_unit_test(points_at_rest_do_not_bounce),
+    cmocka_unit_test(points_leave_what_they_begin_in),
 };
 
 TEST_MAIN(tests, NULL, NULL)
