@@ -36,6 +36,16 @@ bvh walk 25
 bvh kick 80
 noh build "$work/walk.bvh" "$work/kick.bvh" -o "$work/leg.noh" --quiet
 expect 0 'two clips of one skeleton'
+sed 's/knee/knie/' "$work/kick.bvh" >"$work/knie.bvh"
+for option in "kick.bvh --events" "knie.bvh --rename" "knie.bvh --retarget"; do # the message begins with a clip's file
+    noh build "$work/walk.bvh" "$work/"$option "$work/none.txt" -o "$work/bad.noh"
+    expect 1 "$option without its file"
+    says "No such file or directory ($work/none.txt)"
+done
+printf 'wlk 0.1 step\n' >"$work/wrong.txt"
+noh build "$work/walk.bvh" -o "$work/bad.noh" --events "$work/wrong.txt"
+expect 1 'a clip that is not there'
+says "($work/wrong.txt, line 1)"
 
 # Where a recording faces, and what its rest pose is. This one faces +x: its left is at -z.
 cat >"$work/sides.bvh" <<'END'

@@ -83,6 +83,15 @@ says "bad.names: 'foo' is none of target, joint, material and strip (line 2)"
 noh build "$work/ours.gltf" -o "$work/bad.noh" --names "$work/missing.names"
 expect 1 'a missing file'
 says 'missing.names: the file cannot be read'
+printf '\377\376t\000' >"$work/wide.names"
+noh build "$work/ours.gltf" -o "$work/bad.noh" --names "$work/wide.names"
+expect 1 'UTF-16'
+says 'wide.names: this is a text in UTF-16: save it as UTF-8'
+printf 'target aa Schnabel_Auf\rmaterial skin leder\r' >"$work/cr.names"
+noh build "$work/ours.gltf" -o "$work/cr.noh" --names "$work/cr.names"
+expect 0 'lines that end with CR'
+noh face "$work/cr.noh"
+shows aa 'Schnabel_Auf 1'
 noh render "$work/our.names" -o "$work/out.png"
 expect 1 'it is no model'
 says 'noh build MODEL --names FILE'

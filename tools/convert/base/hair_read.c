@@ -155,7 +155,7 @@ int hair_read(const char *path, hair_text **out, uint32_t *line, model_error *er
     size_t size = 0;
     const char *slash = strrchr(path, '/');
     char folder[1024] = "";
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     int failed = 0;
     *out = text ? with_defaults() : NULL;
     if (!*out) {

@@ -1,5 +1,6 @@
 #include "input_file.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -147,6 +148,32 @@ char *input_read(const char *path, size_t *bytes, model_error *error)
     }
     input_unmap(data, count);
     return copy;
+}
+
+char *input_read_text(const char *path, size_t *bytes, model_error *error)
+{
+    char *text = input_read(path, bytes, error);
+    if (!text) return NULL;
+    if (*bytes >= 2 && (memcmp(text, "\xff\xfe", 2) == 0 || memcmp(text, "\xfe\xff", 2) == 0)) {
+        free(text);
+        model_fail(error, "", "this is a text in UTF-16: save it as UTF-8");
+        return NULL;
+    }
+    for (size_t i = 0; i < *bytes; i++) {
+        if (text[i] == '\r' && text[i + 1] != '\n') text[i] = '\n';
+    }
+    return text;
+}
+
+int input_fail_beside(const char *path, model_error *error)
+{
+    char place[sizeof error->where];
+    memcpy(place, error->where, sizeof place);
+    const size_t own = strlen(place) + 3u, length = strlen(path), room = sizeof place > own ? sizeof place - own : 0;
+    const char *end = path + (length > room ? length - room : 0); /* a long path loses its beginning */
+    const int cut = snprintf(error->where, sizeof error->where, "%s%s%s", end, place[0] ? ", " : "", place);
+    if (cut < 0) error->where[0] = '\0';
+    return 1;
 }
 
 char *input_stem(const char *path)

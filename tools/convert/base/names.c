@@ -199,7 +199,7 @@ static int read_text(name_rows *all, const char *text, size_t size, model_error 
 int names_use(const char *path, model_error *error)
 {
     size_t size;
-    char *text = path ? input_read(path, &size, error) : NULL;
+    char *text = path ? input_read_text(path, &size, error) : NULL;
     int failed = path && !text;
     names_free();
     if (text) failed = read_text(&in_use, text, size, error);

@@ -110,7 +110,7 @@ int ragdoll_read(const char *path, ragdoll_text **out, uint32_t *line, model_err
 {
     text_scan s;
     size_t size = 0;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     int failed = 0;
     *out = text ? calloc(1, sizeof **out) : NULL;
     if (!*out) {

@@ -483,7 +483,7 @@ int recipe_add_text(recipe_text *recipe, const char *text, size_t size, uint32_t
 int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error *error)
 {
     size_t size = 0;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     int failed;
     *out = text ? recipe_new() : NULL;
     if (!*out) {

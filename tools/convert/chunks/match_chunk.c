@@ -108,7 +108,7 @@ static int read_line(text_scan *s, match_table *t)
 static int read_text(const char *path, match_table *t, uint32_t *line, model_error *error)
 {
     size_t size = 0;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     text_scan s;
     int failed = !text;
     if (text) text_start(&s, text, size, error);

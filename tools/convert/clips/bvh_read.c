@@ -333,7 +333,7 @@ int bvh_read(const char *path, const bvh_options *options, raw_set **out, model_
     *out = NULL;
     if (!(unit_cm > 0.0 && unit_cm <= 1e9))
         return model_fail(error, "", "the unit must be above 0, not %g cm", unit_cm);
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     if (!text) return 1;
     text_start(&f.text, text, size, error);
     f.end_joints = options && options->end_joints;

@@ -125,7 +125,7 @@ int events_read(const char *path, event_list **out, model_error *error)
     size_t size = 0;
     events_reader r = { 0 };
     *out = NULL;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     if (!text) return 1;
     text_start(&r.text, text, size, error);
     r.list = model_zeros(1, sizeof *r.list);

@@ -326,7 +326,7 @@ int face_csv_read(const char *path, raw_set **out, model_error *error)
 {
     face_csv *f = calloc(1, sizeof *f);
     size_t size = 0;
-    char *bytes = f ? input_read(path, &size, error) : NULL;
+    char *bytes = f ? input_read_text(path, &size, error) : NULL;
     int failed = !bytes;
     *out = NULL;
     if (!f) return model_fail(error, "", "out of memory");

@@ -142,7 +142,7 @@ int trc_read(const char *path, double unit_cm, raw_set **out, model_error *error
     trc_file f = { 0 };
     byte_buffer names = { NULL, 0, 0, 0 };
     size_t size = 0;
-    char *bytes = input_read(path, &size, error);
+    char *bytes = input_read_text(path, &size, error);
     int failed = !bytes, taken = 0;
     *out = NULL;
     if (!failed) {

@@ -477,7 +477,7 @@ int graph_text_read(const char *path, graph_file **out, uint32_t *line, model_er
     size_t size = 0;
     graph_reader r;
     int failed;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     *out = NULL;
     *line = 0;
     if (!text) return 1;

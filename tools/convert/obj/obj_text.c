@@ -342,7 +342,7 @@ static void join_lines(char *text, size_t size)
 int obj_text_read(const char *path, int positions_only, obj_text *out, model_error *error)
 {
     size_t bytes = 0;
-    char *text = input_read(path, &bytes, error);
+    char *text = input_read_text(path, &bytes, error);
     reader r = { .out = out, .positions_only = positions_only };
     int failed;
     memset(out, 0, sizeof *out);

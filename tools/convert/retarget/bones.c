@@ -130,15 +130,15 @@ int bones_read(const char *path, const raw_skeleton *theirs, const raw_skeleton 
     const raw_skeleton *const skeletons[2] = { theirs, ours };
     uint16_t *const bones[2] = { their_bones, our_bones };
     size_t bytes;
-    char *text = input_read(path, &bytes, error);
+    char *text = input_read_text(path, &bytes, error);
     text_scan scan;
     text_word word;
     int failed;
-    if (!text) return 1;
+    if (!text) return input_fail_beside(path, error);
     text_start(&scan, text, bytes, error);
     do {
         failed = text_take_on_line(&scan, &word) || (word.size && read_line(&scan, word, skeletons, bones, frame));
     } while (!failed && text_next_line(&scan));
     free(text);
-    return failed;
+    return failed ? input_fail_beside(path, error) : 0;
 }

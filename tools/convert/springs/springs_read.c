@@ -192,7 +192,7 @@ int springs_text_add(springs_text *springs, const char *text, size_t size, uint3
 int springs_text_read(springs_text *springs, const char *path, uint32_t *line, model_error *error)
 {
     size_t size = 0;
-    char *text = input_read(path, &size, error);
+    char *text = input_read_text(path, &size, error);
     int failed;
     if (!text) return 1;
     failed = springs_text_add(springs, text, size, line, error);

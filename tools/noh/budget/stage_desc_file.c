@@ -551,7 +551,7 @@ static int read_all(reader *r)
     model_error error = { "", "" };
     size_t bytes = 0;
     int status = 0;
-    f->text = input_read(r->path, &bytes, &error);
+    f->text = input_read_text(r->path, &bytes, &error);
     if (!f->text) {
         return tool_fail(r->path, "%s", error.what);
     }

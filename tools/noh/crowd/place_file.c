@@ -383,7 +383,7 @@ int place_read(const char *path, place_file **out)
     model_error error;
     uint32_t line = 0;
     size_t size;
-    char *text = input_read(path, &size, &error);
+    char *text = input_read_text(path, &size, &error);
     const int status = text ? place_parse(text, size, out, &line, &error) : 1;
     free(text);
     if (!status) return 0;

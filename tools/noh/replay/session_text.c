@@ -191,7 +191,7 @@ static int read_body(text_scan *t, session *s)
 int session_read(session *s, const char *path, model_error *error)
 {
     size_t bytes;
-    char *text = input_read(path, &bytes, error);
+    char *text = input_read_text(path, &bytes, error);
     text_scan t;
     int failed;
     memset(s, 0, sizeof *s);
