@@ -49,7 +49,7 @@ printf '%-12s %-10s %7s %7s\n' 'still, %' '' outline brows
 for file; do
     head=$(basename "$file" .glb)
     pack=$out/$head.noh
-    "$noh" build "$file" -o "$pack" --quiet
+    "$noh" build "$file" -o "$pack" --plain --wrinkles face --quiet
     "$noh" speak "$words" --face "$pack" -o "$out/line.noh" --json >/dev/null
     row idle --idle 10
     strip idle --time 10

@@ -179,7 +179,7 @@ if [ "${NOH_LONG:-0}" != 1 ]; then
     [ ! -f "$build/web/puppet_levels/index.html" ] || [ -n "${NOH_WEB_ONLY:-}" ] || inside puppet_levels 3 dance
 elif [ -f "$assets/hero/body.glb" ]; then
     mkdir -p "$build/web-check/body"
-    "$build/noh" build "$assets/hero/body.glb" -o "$build/web-check/body.noh" --quiet &&
+    "$build/noh" build "$assets/hero/body.glb" -o "$build/web-check/body.noh" --plain --wrinkles face --quiet &&
         make --no-print-directory DEPS=0 BUILD="${NOH_BUILD:-build}" web WEB_PACK="$build/web-check/body.noh" >/dev/null || not_ok 'no page of the body'
     inside body 30
 fi

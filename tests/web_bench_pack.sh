@@ -3,8 +3,8 @@
 # Babylon.js, so that frames are comparable.
 set -eu
 noh=${NOH_BUILD:-build}/noh
-"$noh" build "$1" -o "$2" --quiet
-set -- "$1" "$2" --quiet
+"$noh" build "$1" -o "$2" --plain --wrinkles face --quiet
+set -- "$1" "$2" --plain --wrinkles face --quiet
 while read -r name; do set -- "$@" --surface "$name=plain"; done <<END
 $("$noh" info "$2" | sed -n "s/^material '\(.*\)': \(skin\|eye\|teeth\|toon\),.*/\1/p")
 END

@@ -20,7 +20,7 @@ echo "== a stage of the puppet with LOD levels" >&2
 for name in head body; do
     asset=${NOH_ASSETS:-}/hero/$name.glb
     if [ -f "$asset" ]; then
-        "$build/noh" build "$asset" -o "$build/$name.noh" --quiet
+        "$build/noh" build "$asset" -o "$build/$name.noh" --plain --wrinkles face --quiet
         echo "== $asset" >&2
         "$build/noh" bench "$build/$name.noh" --source "$asset" "$@"
     else
@@ -30,7 +30,7 @@ done
 
 body=${NOH_ASSETS:-}/hero/body.glb
 if [ -f "$body" ]; then
-    "$build/noh" build "$body" -o "$build/body_levels.noh" --lod 4 --quiet
+    "$build/noh" build "$body" -o "$build/body_levels.noh" --plain --wrinkles face --lod 4 --quiet
     echo "== a crowd of $body with LOD levels" >&2
     "$build/noh" bench "$build/body_levels.noh" --only crowd "$@"
     "$build/noh" bench "$build/body_levels.noh" --only stage "$@"

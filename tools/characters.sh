@@ -25,7 +25,7 @@ for file in "$folder"/*.glb "$folder"/*.gltf "$folder"/*.vrm "$folder"/*.fbx "$f
     [ -f "$file" ] || continue
     name=$(basename "$file")
     bytes=$(wc -c <"$file")
-    if ! "$build/noh" build "$file" -o "$work/a.noh" >"$work/said" 2>"$work/err"; then
+    if ! "$build/noh" build "$file" -o "$work/a.noh" --plain --wrinkles face >"$work/said" 2>"$work/err"; then
         grep -q '^noh: ' "$work/err" || { cat "$work/err" >&2 && exit 1; } # it did not run
         echo "| $name | $(thousands "$bytes") | refused | | | | $(sed 's/^noh: //; s/|/\\|/g' "$work/err" | head -n 1) |"
         continue

@@ -11,7 +11,7 @@ echo
 "$noh" sheet "$build/demo/nell.noh" -o "$build/nell_faces.png" --target smile --target surprise --target blink \
     --target viseme_aa --columns 5 --tile 288
 echo
-"$noh" build "$build/mask.glb" -o "$build/mask.noh"
+"$noh" build "$build/mask.glb" -o "$build/mask.noh" --plain --wrinkles face
 echo
 way=$(sh tools/demo_path.sh "$noh" "$build/mask.noh")
 path=$(echo "$way" | sed -n 1p)

@@ -7,7 +7,7 @@ out=$build/demo
 noh=$build/noh
 
 echo
-"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto
+"$noh" build "$out/puppet.glb" -o "$out/puppet.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --plain --wrinkles auto
 echo
 "$noh" render "$out/puppet.noh" -o "$out/puppet.png" --size 640x720 --clip dance --time 14.73 --camera 15,4
 for clip in walk bow look_round dance; do
@@ -34,7 +34,7 @@ echo
 body=${NOH_ASSETS:-}/hero/body.glb
 if [ -f "$body" ]; then
     echo
-    "$noh" build "$body" -o "$out/body.noh" --quiet
+    "$noh" build "$body" -o "$out/body.noh" --plain --wrinkles face --quiet
     for clip in walk run dance; do
         "$noh" sheet "$out/body.noh" -o "$out/body_$clip.png" --clip $clip --camera 25,4 --tiles 8 --columns 8 --tile 240
     done

@@ -7,9 +7,9 @@ out=$build/demo
 noh=$build/noh
 text=${NOH_TEXT:-'Bob and Mabel pump up five balloons before supper.'}
 
-"$noh" build "$out/puppet.glb" -o "$out/puppet_says_pack.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --wrinkles auto \
+"$noh" build "$out/puppet.glb" -o "$out/puppet_says_pack.noh" --graph tools/demo_assets/puppet/puppet.graph --springs tools/demo_assets/puppet/puppet.springs --plain --wrinkles auto \
     --lips --quiet
-"$noh" build "$build/mask.glb" -o "$out/mask_says_pack.noh" --wrinkles auto --lips --quiet
+"$noh" build "$build/mask.glb" -o "$out/mask_says_pack.noh" --plain --wrinkles auto --lips --quiet
 if ! "$noh" speak "$text" --face "$out/puppet_says_pack.noh" -o "$out/says.noh" --wav "$out/says.wav"; then
     echo 'demo-face: nothing is said without eSpeak NG (Debian: apt install libespeak-ng1 espeak-ng-data)'
     exit 0

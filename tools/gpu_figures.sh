@@ -40,7 +40,7 @@ measure mask "$build/mask.noh" "$build/mask.glb" "$@"
 for name in head identity; do
     asset=${NOH_ASSETS:-}/hero/$name.glb
     if [ -f "$asset" ]; then
-        "$build/noh" build "$asset" -o "$out/$name.noh" --quiet
+        "$build/noh" build "$asset" -o "$out/$name.noh" --plain --wrinkles face --quiet
         measure "$name" "$out/$name.noh" "$asset" "$@"
     else
         echo "no hero/$name.glb in NOH_ASSETS"

@@ -104,7 +104,7 @@ check '--path' grep -q '^cpu, float accumulators, on a nominal' "$work/out"
 noh budget "$puppet" --actors 20 --driver null
 expect 0 'by the capabilities of a driver'
 check 'it is named' sh -c '! grep -q nominal "$1"' - "$work/out"
-noh build "$build/demo/puppet.glb" -o "$work/clips.noh" --only anim --quiet
+noh build "$build/demo/puppet.glb" -o "$work/clips.noh" --plain --only anim --quiet
 noh budget "$puppet" --actors 20 --nominal --clips "$work/clips.noh"
 expect 0 '--clips'
 check 'of the same clips, the same sum' test "$(sum_of 2 "$work/out")" = "$(sum_of 2 "$work/whole")"

@@ -175,9 +175,9 @@ check 'and names the walk' grep -q '^noh: .*walk.bvh: ' "$work/err"
 
 # ---- mesh and clips apart ----
 
-noh build "$mask" -o "$work/mesh.noh" --only mesh --quiet
+noh build "$mask" -o "$work/mesh.noh" --plain --wrinkles face --only mesh --quiet
 expect 0 'a mesh pack'
-noh build "$mask" -o "$work/anim.noh" --only anim --quiet
+noh build "$mask" -o "$work/anim.noh" --plain --only anim --quiet
 expect 0 'an animation pack'
 noh dump "$build/mask.noh" -o "$work/whole.obj" --clip speak --time 1.2
 expect 0 'dump of a clip'

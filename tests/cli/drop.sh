@@ -2,7 +2,7 @@
 # noh lab drop: output, quality of falls, written files, refused input.
 . "$(dirname "$0")/lib.sh"
 
-noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --effort 1 --quiet
+noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --plain --wrinkles face --effort 1 --quiet
 expect 0 'build the puppet'
 
 noh lab drop "$work/puppet.noh" --dolls 16 --seconds 10 --json --dump "$work/fall.csv" -o "$work/fall.png"
@@ -36,7 +36,7 @@ shin.L hinge backward bend 0 140 friction 5
 thigh.L forward bend -20 95 side 40 twist 30 friction 5   # as names have it
 spine bend -15 25 side 15 twist 15 friction 5
 END
-noh build "$build/demo/puppet.glb" -o "$work/own.noh" --effort 1 --quiet --ragdoll "$work/puppet.ragdoll"
+noh build "$build/demo/puppet.glb" -o "$work/own.noh" --plain --wrinkles face --effort 1 --quiet --ragdoll "$work/puppet.ragdoll"
 expect 0 'a ragdoll of its own'
 noh lab drop "$work/own.noh" --dolls 4 --seconds 1 --json
 expect 0 'drop that'

@@ -36,7 +36,7 @@ expect 1 'a file that is no pack is refused'
 run face_cpu
 expect 2 'no file is a mistake of usage'
 
-noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --effort 1 --quiet
+noh build "$build/demo/puppet.glb" -o "$work/puppet.noh" --plain --wrinkles face --effort 1 --quiet
 run walker_cpu puppet.noh
 expect 0 'walker_cpu walks'
 check 'its feet come down in turn' sh -c 'test "$(sed -n "s/.* s  //p" "$1" | tr "\n" " ")" = "foot_left foot_right foot_left "' - "$work/out"

@@ -10,10 +10,10 @@ aa smile 0.75
 joy-mouth smile -0.5
 PP noSuchTarget
 END
-noh build "$mask" -o "$work/with.noh" --recipe "$work/mask.recipe"
+noh build "$mask" -o "$work/with.noh" --plain --wrinkles face --recipe "$work/mask.recipe"
 expect 0 'a recipe is built in'
 check 'a target that is not there is a warning' grep -q "mask.recipe:5: no mesh has the target 'noSuchTarget'" "$work/out"
-noh build "$mask" -o "$work/without.noh" --quiet
+noh build "$mask" -o "$work/without.noh" --plain --wrinkles face --quiet
 expect 0 'without one'
 noh face "$work/with.noh"
 expect 0 'face'

@@ -83,7 +83,7 @@ elif [ -n "${NOH_SAN:-}" ]; then
     skip 'figures of a head' 'millions of rays take long under a sanitizer'
 else
     for order in 4 6; do
-        noh build "$head" -o "$work/head.noh" --quiet --transfer $order
+        noh build "$head" -o "$work/head.noh" --plain --wrinkles face --quiet --transfer $order
         expect 0 "build a head with order $order"
         noh lab light "$work/head.noh" --json --rays 1024
         expect 0 'measure it'

@@ -119,12 +119,12 @@ check 'gives the same bytes' cmp "$work/clip.noh" "$work/clip_lod.noh"
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'head.glb with levels' 'takes long under a sanitizer'
 elif [ -f "$head" ]; then
-    noh build "$head" -o "$work/head.noh" --lod 4 --lod-fast
+    noh build "$head" -o "$work/head.noh" --plain --wrinkles face --lod 4 --lod-fast
     expect 0 'build of head.glb with --lod 4 --lod-fast'
     check 'reports three levels' test "$(levels)" = 3
     noh verify "$work/head.noh"
     expect 0 'verify of it'
-    noh build "$head" -o "$work/joints.noh" --lod 4 --lod-fast --lod-faces joints
+    noh build "$head" -o "$work/joints.noh" --plain --wrinkles face --lod 4 --lod-fast --lod-faces joints
     expect 0 'build of it with --lod-faces joints'
     check 'in one level' test "$(grep -c '^  level .* virtual joints' "$work/out")" = 1
     noh verify "$work/joints.noh" --lod 3
@@ -134,7 +134,7 @@ elif [ -f "$head" ]; then
         expect 0 "dump of it with the mouth at $weight"
     done
     check 'targets move its vertices' sh -c '! cmp -s "$1" "$2"' - "$work/mouth0.obj" "$work/mouth1.obj"
-    noh build "$head" -o "$work/joints.noh" --lod 4 --lod-fast --lod-faces joints:2 --quiet
+    noh build "$head" -o "$work/joints.noh" --plain --wrinkles face --lod 4 --lod-fast --lod-faces joints:2 --quiet
     noh info "$work/joints.noh"
     check 'from level 2 on' test "$(grep -c '^  level .* 0 texels' "$work/out")" = 2
 else

@@ -130,7 +130,7 @@ noh build "$work/nod.bvh" "$work/turn.bvh" -o "$work/two.noh" --quiet
 expect 0 'a pack of clips'
 ineffective --path budget "$work/two.noh" --path cpu
 ineffective --accumulate budget "$work/two.noh" --accumulate f16
-noh build "$build/mask.glb" -o "$work/x.noh" --dual-quaternion all
+noh build "$build/mask.glb" -o "$work/x.noh" --plain --dual-quaternion all
 expect 1 'dual quaternions for all of a rigid model'
 says 'no mesh is skinned'
 # The events file of the help, with the names of these clips.

@@ -9,7 +9,7 @@ check 'and has the same bytes too' cmp "$work/mask.glb" "$build/mask.glb"
 check 'the head is made' "$build/demo_assets" --nell "$work/nell.glb"
 check 'with the same bytes as well' cmp "$work/nell.glb" "$build/demo/nell.glb"
 
-noh build "$work/puppet.glb" -o "$work/puppet.noh" --effort 1
+noh build "$work/puppet.glb" -o "$work/puppet.noh" --plain --wrinkles face --effort 1
 expect 0 'the converter takes the puppet'
 check 'without a warning' sh -c '! grep -q warning "$1"' sh "$work/err"
 noh info "$work/puppet.noh"

@@ -6,9 +6,9 @@
 puppet=$build/demo/puppet.glb
 text=tools/demo_assets/puppet/puppet.springs
 
-noh build "$puppet" -o "$work/a.noh" --springs $text --effort 1 --quiet
+noh build "$puppet" -o "$work/a.noh" --plain --wrinkles face --springs $text --effort 1 --quiet
 expect 0 'build --springs'
-noh build "$puppet" -o "$work/plain.noh" --effort 1 --quiet
+noh build "$puppet" -o "$work/plain.noh" --plain --wrinkles face --effort 1 --quiet
 noh info "$work/a.noh"
 expect 0 'info'
 check 'tells how many swing' grep -q '^  springs: 4 joints in 4 chains, 4 colliders, ' "$work/out"
@@ -39,7 +39,7 @@ expect 0 'sheet --springs off'
 noh render "$work/a.noh" -o "$work/x.png" --springs maybe
 expect 2 'neither on nor off'
 
-noh build "$puppet" -o "$work/x.noh" --only mesh --spring 'chain sleeve* stiffness 0.5' --spring 'collider chest 0.1' --quiet
+noh build "$puppet" -o "$work/x.noh" --plain --wrinkles face --only mesh --spring 'chain sleeve* stiffness 0.5' --spring 'collider chest 0.1' --quiet
 expect 0 'lines of the command line'
 bones=$build/demo/get_up.glb # the same skeleton, without meshes
 noh build "$bones" -o "$work/x.noh" --spring 'chain sleve*'
@@ -51,8 +51,8 @@ expect 1 'a joint that swings twice'
 says 'twice.springs:2: '
 noh build "$bones" -o "$work/x.noh" --springs "$work/none.springs"
 check 'a file that is not there' test "$code" != 0
-noh build "$puppet" -o "$work/x.noh" --springs $text --only anim
+noh build "$puppet" -o "$work/x.noh" --plain --springs $text --only anim
 expect 2 'clips alone have none'
-noh build "$puppet" -o "$work/x.noh" --springs $text --only mesh --quiet
+noh build "$puppet" -o "$work/x.noh" --plain --wrinkles face --springs $text --only mesh --quiet
 expect 0 'meshes alone have them'
 finish

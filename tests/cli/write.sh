@@ -109,7 +109,7 @@ fi
 check 'dump -o /dev/stdout into a pipe' cmp "$work/stdout.obj" "$work/plain.obj"
 "$build/noh" dump "$pack" -o /dev/stdout >"$work/stdout.obj"
 check 'and into a file' cmp "$work/stdout.obj" "$work/plain.obj"
-"$build/noh" build "$build/mask.glb" -o /dev/stdout --wrinkles auto 2>"$work/err" | cat >"$work/stdout.noh"
+"$build/noh" build "$build/mask.glb" -o /dev/stdout --plain --wrinkles auto 2>"$work/err" | cat >"$work/stdout.noh"
 check 'build -o /dev/stdout is the pack and nothing else' cmp "$work/stdout.noh" "$pack"
 check 'and the report is on stderr' grep -q 'bytes' "$work/err"
 

@@ -75,7 +75,7 @@ for model in $models; do
         skip "hero/$model.glb" 'not in NOH_ASSETS'
         continue
     fi
-    noh build "$assets/hero/$model.glb" -o "$work/$model.noh" --lod 4 --lod-fast --quiet
+    noh build "$assets/hero/$model.glb" -o "$work/$model.noh" --plain --wrinkles face --lod 4 --lod-fast --quiet
     expect 0 "build of $model"
     [ $model = head ] && pose=$face || pose="--clip walk --time 0.5 --weight mouth-corner-puller=1"
     zooms $model 4 "$work/$model.noh" $few $every $pose

@@ -21,6 +21,7 @@
 #include "convert/base/image_file.h"
 #include "convert/base/ragdoll_read.h"
 #include "convert/base/recipe_read.h"
+#include "convert/choices.h"
 #include "convert/clips/events_read.h"
 #include "convert/convert.h"
 #include "convert/graph/graph_text.h"
@@ -85,6 +86,8 @@ static convert_options options_of(int more, int split_eyes)
     o.lod.level_count = more ? 2 : 0;
     o.source.clean = more ? ~0u : 0u;
     o.source.split_eyes = split_eyes;
+    o.source.choices = more ? CHOICE_EYES | CHOICE_LIPS : 0u;
+    o.choose_levels = more;
     o.blocks = MODEL_BLOCKS_ETC2;
     o.texture_max = 256;
     return o;

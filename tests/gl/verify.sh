@@ -37,7 +37,7 @@ options=
 
 # Vertices that name their delta texels themselves: with LOD levels, and split by palettes.
 verify 'the mask with levels' "$build/mask_levels.noh"
-noh build "$build/demo/puppet.glb" -o "$work/split.noh" --quiet --only mesh --palette 6
+noh build "$build/demo/puppet.glb" -o "$work/split.noh" --plain --wrinkles face --quiet --only mesh --palette 6
 expect 0 'build of a puppet that is split'
 verify 'a puppet that is split' "$work/split.noh"
 
@@ -50,7 +50,7 @@ for model in hero/head.glb hero/head_sparse.glb hero/head_meshopt.glb hero/ident
         skip "$model" 'not in NOH_ASSETS'
         continue
     fi
-    noh build "$assets/$model" -o "$work/model.noh" --quiet
+    noh build "$assets/$model" -o "$work/model.noh" --plain --wrinkles face --quiet
     expect 0 "build of $model"
     verify "$model" "$work/model.noh"
 done
@@ -64,7 +64,7 @@ skinned() { # MODEL, OPTIONS OF noh build
         skip "$model $*" 'not in NOH_ASSETS'
         return
     fi
-    noh build "$assets/$model" -o "$work/skin.noh" --quiet --only mesh "$@"
+    noh build "$assets/$model" -o "$work/skin.noh" --plain --wrinkles face --quiet --only mesh "$@"
     expect 0 "build of $model $*"
     verify "$model $*" "$work/skin.noh"
     check "and skinned vertices were compared" sh -c 'test "$(grep -c "\"path\": \"skin/" "$1")" = 2' - "$work/out"

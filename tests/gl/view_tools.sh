@@ -384,7 +384,7 @@ if [ ! -f "$body" ]; then
     skip 'every clip of a body' 'no assets'
     finish
 fi
-"$build/noh" build "$body" -o "$work/body.noh" --error-cm 0.1 --effort 1 --quiet
+"$build/noh" build "$body" -o "$work/body.noh" --plain --wrinkles face --error-cm 0.1 --effort 1 --quiet
 for clip in walk jump dance_jetes punch; do
     printf 'click %s/play\nframes 2\nexpect "seen 1.0000"\ndrag "body %s/at" 0.35\nframes 2\nexpect "seen 1.0000"\ndrag "body %s/at" 0.7\nframes 2\nexpect "seen 1.0000"\n' $clip $clip $clip
 done >"$work/clips.txt"

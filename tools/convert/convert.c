@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "choices.h"
 #include "convert/base/names.h"
 #include "convert/clips/events_read.h"
 #include "convert/chunks/chunk_maker.h"
@@ -132,10 +133,11 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     return 0;
 }
 
-static int encode_meshes(model *m, const convert_options *options, encoded *e, model_error *error)
+static int encode_meshes(const source *s, model *m, const convert_options *options, encoded *e, model_error *error)
 {
     lod_settings levels = options->lod;
     int failed;
+    if (options->choose_levels) choices_levels(m, s->sets, s->set_count, &levels, options->report);
     levels.progress = options->progress;
     failed = model_levels_make(m, &levels, e->levels, error);
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
@@ -296,7 +298,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     if (options->warnings || options->report) {
         report_warnings(options->warnings ? options->warnings : options->report, s);
     }
-    failed = failed || pack_check_model(m, error) || encode_meshes(m, options, &meshes, error) ||
+    failed = failed || pack_check_model(m, error) || encode_meshes(s, m, options, &meshes, error) ||
              trim_textures(s->m, meshes.levels, options, error);
     if (!failed) {
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
@@ -335,6 +337,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
             reading.identity = NULL;
             reading.split_eyes = 0;
             reading.lips = 0;
+            reading.choices = 0;
             reading.targets = NULL;
             reading.attached_count = 0;
             reading.extras.count = 0;

@@ -42,6 +42,7 @@ typedef struct convert_options {
     const char *const *spring_lines;    /* [spring_line_count] lines of springs, after the file's */
     uint32_t spring_line_count;
     terrain_options ground; /* of the terrain */
+    int choose_levels;      /* 1: LOD levels of a face by choices.h; lod has none then */
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */

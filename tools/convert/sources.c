@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "choices.h"
 #include "convert/clips/bvh_read.h"
 #include "convert/clips/face_csv.h"
 #include "convert/clips/markers.h"
@@ -127,6 +128,13 @@ static int attach_all(const source_options *options, model *m, model_error *erro
     return 0;
 }
 
+static int add_lips(model *m, FILE *report, model_error *error)
+{
+    char why[LIP_WHY_BYTES];
+    if (lip_target_add(m, report, why, error)) return 1;
+    return why[0] && model_warn(m, "--lips: %s; f and v use its recipe", why) ? out_of_memory(error) : 0;
+}
+
 static int read_model_file(const char *path, const source_options *options, source *s, model_error *error)
 {
     sample_options sampling = { options->sample_rate_hz };
@@ -148,9 +156,10 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }
-    if (options->lips && s->m->mesh_count && lip_target_add(s->m, options->skin.report, error)) {
+    if (options->lips && s->m->mesh_count && add_lips(s->m, options->skin.report, error)) {
         return 1;
     }
+    if (choices_shape(s->m, options->choices, options->skin.report, error)) return 1;
     if (seams_close(s->m, options->seam, options->skin.report, error)) {
         return 1;
     }

@@ -30,6 +30,7 @@ typedef struct source_options {
     const char *identity;        /* a file of identity targets, see identity_join.h; NULL: none */
     int split_eyes;              /* 1: eyeballs get joints, see eye_split.h */
     int lips;                    /* 1: a target that brings the lower lip to the teeth, see lip_target.h */
+    unsigned choices;            /* CHOICE_* of choices.h: eyes and lips of a face, where neither is asked for above */
     const char *targets;         /* of .obj: a folder of targets, see obj_read.h; NULL: none */
     const char *const *attached; /* [attached_count] models whose meshes are added to the first, see model_attach.h */
     uint32_t attached_count;

@@ -149,7 +149,7 @@ $(BUILD)/demo/nell.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --nell $@
 $(BUILD)/demo/nell.noh: $(BUILD)/demo/nell.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --quiet
+	$(BUILD)/noh build $< -o $@ --plain --wrinkles face --quiet
 
 $(BUILD)/demo/puppet.glb: $(BUILD)/demo_assets
 	@mkdir -p $(@D)
@@ -177,34 +177,34 @@ $(BUILD)/demo/arm.glb: $(BUILD)/demo_assets
 	$(BUILD)/demo_assets --arm $@
 
 $(BUILD)/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --quiet
+	$(BUILD)/noh build $< -o $@ --plain --wrinkles face --quiet
 # The mask with colours that fade in with its targets.
 FLUSH := tools/demo_assets/mask/flush.recipe
 $(BUILD)/demo/flush.noh: $(BUILD)/mask.glb $(FLUSH) $(BUILD)/noh
 	@mkdir -p $(@D)
 	$(BUILD)/demo_assets --flush $(BUILD)/demo/flush.png
-	$(BUILD)/noh build $< -o $@ --color-map $(BUILD)/demo/flush.png --recipe $(FLUSH) --only mesh --quiet
+	$(BUILD)/noh build $< -o $@ --plain --wrinkles face --color-map $(BUILD)/demo/flush.png --recipe $(FLUSH) --only mesh --quiet
 $(BUILD)/page/mask.noh: $(BUILD)/mask.glb $(BUILD)/noh
 	@mkdir -p $(@D)
-	$(BUILD)/noh build $< -o $@ --lod 4 --lod-fast --lod-color 1.2 --quiet
+	$(BUILD)/noh build $< -o $@ --plain --wrinkles face --lod 4 --lod-fast --lod-color 1.2 --quiet
 $(BUILD)/page/nell.noh: $(BUILD)/demo/nell.glb $(BUILD)/noh
 	@mkdir -p $(@D)
-	$(BUILD)/noh build $< -o $@ --lod 4 --lod-color 1.2 --quiet
-# Packs of tests that count bytes have no folds.
+	$(BUILD)/noh build $< -o $@ --plain --wrinkles face --lod 4 --lod-color 1.2 --quiet
+# Packs of tests that count bytes have only what is asked for.
 $(BUILD)/mask_levels.noh: $(BUILD)/mask.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --wrinkles off --lod 4 --lod-fast --quiet
+	$(BUILD)/noh build $< -o $@ --plain --lod 4 --lod-fast --quiet
 # Far heads without targets.
 $(BUILD)/mask_far.noh: $(BUILD)/mask.glb $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --wrinkles off --lod 4 --lod-fast --lod-faces joints --lod-from 3 --quiet
+	$(BUILD)/noh build $< -o $@ --plain --lod 4 --lod-fast --lod-faces joints --lod-from 3 --quiet
 MASK_HAIR := tools/demo_assets/mask/mask.hair
 $(BUILD)/wig.noh: $(BUILD)/mask.glb $(MASK_HAIR) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --wrinkles off --hair $(MASK_HAIR) --quiet
+	$(BUILD)/noh build $< -o $@ --plain --hair $(MASK_HAIR) --quiet
 PUPPET_GRAPH := tools/demo_assets/puppet/puppet.graph
 PUPPET_SPRINGS := tools/demo_assets/puppet/puppet.springs
 
 # With what gets up from a fall.
 $(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
-	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --wrinkles off --quiet
+	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --plain --quiet
 
 $(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --transfer 4 --quiet
@@ -219,9 +219,9 @@ $(COPIED:%=$(BUILD)/%): $(BUILD)/demo/%.noh: build/demo/%.noh
 	@cp $< $@
 else
 $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRINGS) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --graph $(PUPPET_GRAPH) --springs $(PUPPET_SPRINGS) --wrinkles auto --quiet
+	$(BUILD)/noh build $< -o $@ --plain --graph $(PUPPET_GRAPH) --springs $(PUPPET_SPRINGS) --wrinkles auto --quiet
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --wrinkles off --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
+	$(BUILD)/noh build $< -o $@ --plain --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
 $(BUILD)/demo/roam.noh: $(BUILD)/demo/roam.glb $(ROAM_MATCH) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --match $(ROAM_MATCH) --quiet
 endif

@@ -216,7 +216,7 @@ $(WEB_FESTIVAL)/program.js: $(WEB_FESTIVAL_O) $(filter-out $(WEB_OBJECTS)/platfo
 # From the third level down: a camera that is 3 m away sees no finer one.
 $(WEB_OBJECTS)/festival/people.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
 	@mkdir -p $(@D)
-	$(Q)$(BUILD)/noh build $< -o $@ --lod 8 --lod-from 2 --graph $(PUPPET_MOVES) --quiet
+	$(Q)$(BUILD)/noh build $< -o $@ --plain --wrinkles face --lod 8 --lod-from 2 --graph $(PUPPET_MOVES) --quiet
 $(WEB_FESTIVAL)/people.nohz: $(WEB_OBJECTS)/festival/people.noh
 	@mkdir -p $(@D)
 	$(Q)$(BUILD)/noh pack $< -o $@ --error-um 10 --quiet

@@ -417,17 +417,16 @@ static int try_mesh(model *m, uint32_t index, FILE *report, const char **why, mo
     return failed;
 }
 
-int lip_target_add(model *m, FILE *report, model_error *error)
+int lip_target_add(model *m, FILE *report, char why[LIP_WHY_BYTES], model_error *error)
 {
-    const char *why = "no mesh has targets";
+    const char *reason = "no mesh has targets";
     const char *name = "";
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
+    for (uint32_t i = 0; i < m->mesh_count && reason; i++) {
         if (!m->meshes[i].target_count) continue;
         name = m->meshes[i].name;
-        if (try_mesh(m, i, report, &why, error)) return 1;
-        if (!why) return 0;
+        if (try_mesh(m, i, report, &reason, error)) return 1;
     }
-    return model_warn(m, "--lips: mesh '%s': %s; f and v use its recipe", name, why)
-               ? model_fail(error, "", "out of memory")
-               : 0;
+    why[0] = '\0';
+    if (reason) (void)snprintf(why, LIP_WHY_BYTES, "mesh '%.120s': %s", name, reason);
+    return 0;
 }

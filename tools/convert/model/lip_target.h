@@ -15,9 +15,12 @@
 
 #define LIP_TARGET "lipToTeeth"
 
-/* Add the target to the first mesh that has lips and teeth. If none has, a warning gives the reason.
+#define LIP_WHY_BYTES 256u
+
+/* Add the target to the first mesh that has lips and teeth.
  * report  a line on the result; NULL: none
+ * why     the reason why no mesh has it; "": one has
  * errors  1 and *error: out of memory */
-int lip_target_add(model *m, FILE *report, model_error *error);
+int lip_target_add(model *m, FILE *report, char why[LIP_WHY_BYTES], model_error *error);
 
 #endif

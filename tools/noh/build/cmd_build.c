@@ -10,6 +10,7 @@
 #include "build/build_options.h"
 #include "build/depfile.h"
 #include "cli/args.h"
+#include "convert/choices.h"
 #include "convert/convert.h"
 #include "convert/mocap/clean.h"
 #include "convert/model/model_extra.h"
@@ -83,7 +84,7 @@ typedef struct build_args {
     const char *inputs[INPUTS_MAX], *output, *depfile, *rects, *only;
     const char *texts[NOH_CHUNK_TYPES]; /* as in convert_options */
     option_list spring_lines;
-    int input_count, quiet, warnings;
+    int input_count, quiet, warnings, plain;
     const char *error_um;
     clip_args clips;
     lod_args lod;
@@ -286,10 +287,10 @@ static int set_wrinkles(const build_args *a, convert_options *o)
                    { "channel", NOH_WRINKLE_BY_CHANNEL } };
     static const char *const made[] = { "off", "auto", "face" }; /* WRINKLES_* */
     size_t kind = 0;
-    while (o->wrinkles.automatic < 3 && strcmp(a->wrinkles.make, made[o->wrinkles.automatic]) != 0)
-        o->wrinkles.automatic++;
+    const char *make = a->wrinkles.make ? a->wrinkles.make : a->plain ? "off" : "face";
+    while (o->wrinkles.automatic < 3 && strcmp(make, made[o->wrinkles.automatic]) != 0) o->wrinkles.automatic++;
     if (o->wrinkles.automatic == 3) {
-        return tool_usage("--wrinkles must be auto, face or off, not '%s'", a->wrinkles.make);
+        return tool_usage("--wrinkles must be auto, face or off, not '%s'", make);
     }
     while (kind < sizeof models / sizeof models[0] && strcmp(a->wrinkles.models, models[kind].name) != 0) kind++;
     if (kind == sizeof models / sizeof models[0]) {
@@ -398,6 +399,11 @@ static int set_options(const build_args *a, convert_options *o)
     o->spring_lines = a->spring_lines.items;
     o->spring_line_count = (uint32_t)a->spring_lines.count;
     o->source.lips = a->face.lips;
+    /* Another joint or target would part the model from clips of other files. */
+    if (!a->plain && a->input_count == 1) {
+        o->source.choices = (a->face.eyes ? 0u : CHOICE_EYES) | (a->face.lips ? 0u : CHOICE_LIPS);
+    }
+    o->choose_levels = !a->plain && !a->lod.levels;
     o->no_correctives = a->face.no_correctives;
     o->names = a->face.names;
     return status;
@@ -465,6 +471,11 @@ static const option options[] = {
       .at = offsetof(build_args, only),
       .value = "mesh|anim",
       .what = "write only meshes and skeletons, or only clips (for --anim)" },
+    { .name = "--plain",
+      .kind = OPTION_FLAG,
+      .at = offsetof(build_args, plain),
+      .what =
+          "choose nothing for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--warnings",
       .kind = OPTION_FLAG,
@@ -500,7 +511,7 @@ static const option options[] = {
       .at = offsetof(build_args, lod.levels),
       .value = "auto|N",
       .what =
-          "number of LOD levels including the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only",
+          "number of LOD levels including the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only, and what --plain says of faces",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod-from",
@@ -562,9 +573,8 @@ static const option options[] = {
       .kind = OPTION_TEXT,
       .at = offsetof(build_args, wrinkles.make),
       .value = "auto|face|off",
-      .initial = "face",
       .what =
-          "generate wrinkles from the compression of each target: a normal map, twelve regions, and the weight of each target in each region. face: a mesh whose targets blink and smile gets folds where faces have them, if its texture coordinates do not overlap; auto: other meshes get creases, too",
+          "generate wrinkles from the compression of each target: a normal map, twelve regions, and the weight of each target in each region. face: a mesh whose targets blink and smile gets folds where faces have them, if its texture coordinates do not overlap; auto: other meshes get creases, too; default: face, or off with --plain",
       .example = "off",
       .excludes = "--only=anim" },
     { .name = "--wrinkle-map",
