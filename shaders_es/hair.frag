@@ -30,7 +30,9 @@ void main()
     float edge = 1.0 - smoothstep(0.55, 1.0, abs(v_at.x));
     float end = mix(0.92, 0.72 + 0.28 * own.y, fine);
     float begin = mix(0.03, 0.004 + 0.08 * own.x * own.x, fine); /* irregular, so the hairline is not sharp */
-    float alpha = min(1.0, 1.6 * edge) * smoothstep(0.0, begin, v_at.y) * (1.0 - smoothstep(end - 0.12, end, v_at.y));
+    float grown = smoothstep(0.0, begin, v_at.y); /* strands begin as thin points, and soon fill the strip */
+    float filled = mix(grown, min(1.0, 3.0 * grown) * (1.0 - smoothstep(1.4 * grown - 0.4, 1.4 * grown, abs(between))), fine);
+    float alpha = min(1.0, 1.6 * edge) * filled * (1.0 - smoothstep(end - 0.12, end, v_at.y));
     if (alpha < u_alpha.x || alpha >= u_alpha.y || noh_fade_noise(gl_FragCoord.xy) >= v_fade) {
         discard;
     }

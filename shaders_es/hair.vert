@@ -93,12 +93,12 @@ vec3 to_world(head h, vec3 p, float w)
 void main()
 {
     ivec2 of_head = divide(gl_InstanceID, int(u_crowd.x)), of_patch = divide(of_head.y, int(u_counts.z));
-    uint strip = uint(of_head.y), turn = uint(of_patch.x);
+    uint strip = uint(of_head.y), turn = uint(of_patch.x), seed = mixed(uint(of_patch.y) + 1u);
     int count = int(u_counts.x), texel = of_patch.y * 2, record = (int(u_crowd.y) + of_head.x) * 5;
     vec3 own = fetch_from(int(u_crowd.z), record + 4); /* of the head */
     ivec2 near = ivec2(fetch_from(int(u_counts.y), texel).xy) + int(own.x);
     ivec2 far = ivec2(fetch_from(int(u_counts.y), texel + 1).xy) + int(own.x);
-    float u = share_of(turn * 0xc13fa9a9u + 0x80000000u), v = share_of(turn * 0x91e10da6u + 0x80000000u);
+    float u = share_of(turn * 0xc13fa9a9u + seed), v = share_of(turn * 0x91e10da6u + mixed(seed));
     float along = float(gl_VertexID >> 1) / u_counts.w;
     float x = along * (0.8 + 0.2 * share_of(mixed(strip * 3u))) * float(count - 1);
     int i = min(int(x), count - 2);

@@ -126,8 +126,10 @@ void noh_haircut_vertex(const noh_haircut *cut, const float *points, uint32_t st
 {
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
     const noh_pack_hair_header *h = cut->header;
-    const uint32_t *corners = cut->patches + 4u * (size_t)(strip % h->patch_count), turn = strip / h->patch_count;
-    const float u = share_of(turn * 0xc13fa9a9u + 0x80000000u), v = share_of(turn * 0x91e10da6u + 0x80000000u);
+    const uint32_t patch = strip % h->patch_count, turn = strip / h->patch_count, own = mixed(patch + 1u);
+    const uint32_t *corners = cut->patches + 4u * (size_t)patch;
+    /* each patch has the sequence from another place on, otherwise all have the same gaps */
+    const float u = share_of(turn * 0xc13fa9a9u + own), v = share_of(turn * 0x91e10da6u + mixed(own));
     const float t = along * (0.8f + 0.2f * share_of(mixed(strip * 3u)));
     const curve_weights w = weights_of(h->point_count, t);
     memset(position, 0, 3 * sizeof(float));

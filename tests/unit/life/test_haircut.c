@@ -169,7 +169,15 @@ static void hair_grows_on_the_skull(void **state)
     close_wig(&w);
 }
 
-/* A strip is the mean of its corners' curves, by the weights of the same place in the patch all along. */
+static uint32_t mixed(uint32_t x)
+{
+    x = (x ^ (x >> 16)) * 0x7feb352du;
+    x = (x ^ (x >> 15)) * 0x846ca68bu;
+    return x ^ (x >> 16);
+}
+
+/* A strip is the mean of its corners' curves, by the weights of the same place in the patch all along; every patch has
+ * places of its own. */
 static void strips_lie_within_their_patch(void **state)
 {
     wig w;
@@ -177,9 +185,10 @@ static void strips_lie_within_their_patch(void **state)
     open_wig(&w);
     const noh_pack_hair_header *h = w.cut.header;
     for (uint32_t strip = 0; strip < h->strip_count; strip++) {
-        const uint32_t *corner = w.cut.patches + 4u * (strip % h->patch_count), turn = strip / h->patch_count;
-        const float u = (float)((turn * 0xc13fa9a9u + 0x80000000u) >> 8) / 16777216.0f;
-        const float v = (float)((turn * 0x91e10da6u + 0x80000000u) >> 8) / 16777216.0f;
+        const uint32_t patch = strip % h->patch_count, turn = strip / h->patch_count, own = mixed(patch + 1u);
+        const uint32_t *corner = w.cut.patches + 4u * patch;
+        const float u = (float)((turn * 0xc13fa9a9u + own) >> 8) / 16777216.0f;
+        const float v = (float)((turn * 0x91e10da6u + mixed(own)) >> 8) / 16777216.0f;
         const float share[4] = { (1 - u) * (1 - v), u * (1 - v), (1 - u) * v, u * v };
         float at[3], tangent[3], root[3] = { 0.0f, 0.0f, 0.0f };
         noh_haircut_vertex(&w.cut, w.cut.desc.rest, strip, 0.0f, at, tangent);
