@@ -1,6 +1,7 @@
 /* Tests of rigid.c and contact.c: closed forms of flight, spin, impulses, bounces and friction; rest on
  * every kind of obstacle; overlaps; the same far away and in any pieces of time; point masses.
  * cross: slow, minutes of flight */
+#include "life/physics/contact_internal.h"
 #include "life/physics/rigid_internal.h"
 #include "life/physics/shape_internal.h"
 #include "life/physics/world_internal.h"
@@ -478,6 +479,38 @@ static void points_leave_what_they_begin_in(void **state)
     assert_true(p[0] > 100000.6f && p[0] < 100000.75f && v[0] == 0.0f);
 }
 
+/* A cube that stands on a corner, whichever way it is turned, touches the middle of a plate with that corner alone. */
+static void a_corner_touches_a_side(void **state)
+{
+    test_random r = test_random_from(14);
+    const noh_obb plate = { { 0.0f, -1.0f, 0.0f }, { 3.0f, 1.0f, 3.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    const noh_world on_plate = { .boxes = &plate, .box_count = 1 };
+    const float origin[3] = { 0.0f, 0.0f, 0.0f };
+    (void)state;
+    for (int round = 0; round < 200; round++) {
+        noh_round_box cube = { { { 0.0f, 0.0f, 0.0f }, { 0.5f, 0.5f, 0.5f }, { 0.0f, 0.0f, 0.0f, 1.0f } }, 0.0f };
+        float lowest[3] = { 0.0f, 1.0f, 0.0f }, next = 1.0f;
+        noh_contacts contacts;
+        for (int i = 0; i < 4; i++) cube.box.rotation[i] = test_random_float(&r, -1.0f, 1.0f);
+        noh_quat_normalize(cube.box.rotation);
+        for (uint32_t i = 0; i < 8; i++) {
+            float corner[3];
+            for (uint32_t k = 0; k < 3; k++) corner[k] = i >> k & 1u ? 0.5f : -0.5f;
+            noh_quat_rotate(cube.box.rotation, corner, corner);
+            next = fminf(next, fmaxf(corner[1], lowest[1]));
+            if (corner[1] < lowest[1]) memcpy(lowest, corner, sizeof lowest);
+        }
+        if (next - lowest[1] < 0.1f) continue; /* it stands on an edge, nearly */
+        cube.box.centre[1] = -lowest[1] - 0.01f;
+        noh_contacts_find(&on_plate, origin, &cube, &contacts);
+        assert_int_equal(contacts.count, 1);
+        assert_float_equal(contacts.at[0].gap, -0.01f, 1e-5f);
+        assert_true(contacts.at[0].normal[1] > 0.99999f);
+        assert_float_equal(contacts.at[0].point[0], lowest[0], 1e-5f);
+        assert_float_equal(contacts.at[0].point[2], lowest[2], 1e-5f);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_falls_by_half_g_t_squared),
     cmocka_unit_test(a_torque_spins_it_up),
@@ -491,6 +524,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_leaves_what_it_begins_in),
     cmocka_unit_test(pieces_and_places_do_not_matter),
     cmocka_unit_test(bad_bodies_are_refused),
+    cmocka_unit_test(a_corner_touches_a_side),
     cmocka_unit_test(extreme_pushes_keep_numbers),
     cmocka_unit_test(points_bounce_and_slide),
     cmocka_unit_test(ends_of_rods_bounce),

@@ -17,8 +17,11 @@ static const noh_viseme AA = NOH_VISEME_AA, PP = NOH_VISEME_PP, DD = NOH_VISEME_
 
 static void visemes_at(const noh_speech *s, int64_t tick, float *v)
 {
-    float sum = 0.0f;
-    noh_speech_visemes(s, tick, v);
+    float of[NOH_VISEME_COUNT + 1u], sum = 0.0f;
+    of[NOH_VISEME_COUNT] = 7.0f;
+    noh_speech_visemes(s, tick, of);
+    assert_true(of[NOH_VISEME_COUNT] == 7.0f);
+    memcpy(v, of, NOH_VISEME_COUNT * sizeof *v);
     for (int i = 0; i < NOH_VISEME_COUNT; i++) {
         assert_true(v[i] >= 0.0f && v[i] <= 1.00001f);
         sum += v[i];
