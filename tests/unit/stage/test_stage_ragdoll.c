@@ -9,6 +9,7 @@
 #include "noh/noh.h"
 #include "stage/cast/stage_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
+#include "support/pack_walk.h"
 
 #include <math.h>
 #include <string.h>
@@ -514,6 +515,59 @@ static void a_push_is_over_when_it_stands_again(void **state)
     close_cast(&c);
 }
 
+/* Where joints of a character whose unit is 25 cm are, some frames after a push or a hit at one of them as it falls. */
+static void pushed_in_other_units(int is_hit, const char *at, float out[3][3])
+{
+    static const char *const names[3] = { "hips", "foot.L", "foot.R" };
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    const float impulse[3] = { 30.0f, 0.0f, 60.0f };
+    const noh_skeleton_header *header;
+    noh_skeleton skeleton;
+    float point[3];
+    uint8_t *bytes;
+    noh_actor actor;
+    cast c;
+    open_cast(&c, 1, &ragdoll, 1);
+    bytes = test_aligned(c.files[PUPPETS].data, c.files[PUPPETS].bytes);
+    assert_int_equal(noh_pack_skeleton_at(&c.packs[0], 0, &skeleton, &header, NULL), NOH_OK);
+    const size_t offset = (size_t)((const uint8_t *)header - (const uint8_t *)c.packs[0].bytes);
+    ((noh_skeleton_header *)(void *)(bytes + offset))->unit_cm = 25.0f;
+    pack_repair(bytes, c.files[PUPPETS].bytes);
+    c.packs[0] = test_open(bytes, c.files[PUPPETS].bytes);
+    cast_make(&c, NULL);
+    actor = enter(&c, 3.0f);
+    run(&c, 40);
+    assert_int_equal(noh_actor_fall(c.stage, actor, &said), NOH_OK);
+    run(&c, 2);
+    joint_at(&c, actor, at, point);
+    if (is_hit) {
+        for (int i = 0; i < 3; i++) point[i] *= 0.25f;
+        assert_int_equal(noh_actor_hit(c.stage, actor, point, impulse, &said), NOH_OK);
+    } else {
+        assert_int_equal(noh_actor_push(c.stage, actor, point, impulse, &said), NOH_OK);
+    }
+    run(&c, 4);
+    for (int i = 0; i < 3; i++) joint_at(&c, actor, names[i], out[i]);
+    close_cast(&c);
+    free(bytes);
+}
+
+/* A point in units is that point in metres. */
+static void a_push_is_a_hit_in_metres(void **state)
+{
+    static const char *const at[] = { "foot.L", "foot.R", "head" };
+    float last[3][3] = { { 0.0f } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(at); i++) {
+        float pushed[3][3], hit[3][3];
+        pushed_in_other_units(0, at[i], pushed);
+        pushed_in_other_units(1, at[i], hit);
+        assert_memory_equal(pushed, hit, sizeof hit);
+        assert_memory_not_equal(pushed, last, sizeof last); /* the body that is hit makes a difference */
+        memcpy(last, pushed, sizeof last);
+    }
+}
+
 /* Without a clip it goes back to what plays, where it lies. */
 static void without_a_clip_it_goes_on(void **state)
 {
@@ -775,6 +829,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_cannot_fall_is_told),
     cmocka_unit_test(who_lies_gets_up),
     cmocka_unit_test(who_lies_breathes),
+    cmocka_unit_test(a_push_is_a_hit_in_metres),
     cmocka_unit_test(a_push_is_over_when_it_stands_again),
     cmocka_unit_test(who_falls_gets_up_at_speed),
     cmocka_unit_test(without_a_clip_it_goes_on),
