@@ -353,6 +353,18 @@ static void errors_name_the_field(void **state)
             free(bytes);
         }
     }
+    {
+        uint8_t *bytes = test_aligned(rigid.bytes, rigid.count);
+        forged f = reach(bytes);
+        const size_t at = (size_t)(f.chunk - bytes) + 2u * sizeof *f.h + offsetof(noh_mesh_header, level_error_clip);
+        noh_error error = { NOH_OK, "nothing", 0, 0 };
+        noh_pack pack;
+        f.h[1].level_error_clip = 2.0f * (f.h[2].level_error_clip = 1.0f);
+        pack_repair(bytes, rigid.count);
+        assert_int_equal(noh_pack_open(bytes, rigid.count, &pack, &error), NOH_ERR_DATA);
+        assert_int_equal(error.where, at);
+        free(bytes);
+    }
 }
 
 /* A mesh whose targets move every vertex needs no references: vertex and texel have the same number. */

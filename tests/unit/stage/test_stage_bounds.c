@@ -11,6 +11,7 @@
 #include "noh/deform.h"
 #include "noh/noh.h"
 #include "noh/pack.h"
+#include "stage/cast/stage_internal.h"
 
 #define HALF_ROOT 0.70710678f
 
@@ -587,6 +588,48 @@ static void the_nearer_of_two_has_the_finer_level(void **state)
     cast_close(&c);
 }
 
+static uint32_t targets_shown(const noh_stage *s, uint32_t kind)
+{
+    const noh_stage_kind *k = &s->kinds[kind];
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < k->weight_count; i++) count += k->weights[i] != 0.0f;
+    return count;
+}
+
+/* The larger the error that the stage allows, the fewer targets are left of an expression that is far away; an actor
+ * that asks for an error of its own has that. */
+static void targets_too_small_to_see_are_left_out(void **state)
+{
+    static const float middle[3] = { 0.0f, 0.0f, 0.0f }, pixels[3] = { 0.01f, 1.0f, 50.0f };
+    uint32_t before = UINT32_MAX;
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        const noh_place place = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f }, 1.0f };
+        const noh_appearance finest = { .pixels = 1e-4f };
+        noh_stage_view view;
+        noh_actor actor;
+        cast c;
+        cast_open(&c);
+        c.desc.lod.pixels = pixels[i];
+        cast_make(&c, NULL);
+        noh_view_orbit(&view, middle, 0.0f, 0.0f, 12.0f, 640, 360);
+        assert_int_equal(noh_stage_spawn(c.stage, MASKS, &place, &actor, NULL), NOH_OK);
+        assert_int_equal(noh_actor_play(c.stage, actor, 1, "speak", NULL, NULL), NOH_OK);
+        for (int f = 0; f < 20; f++) {
+            assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        }
+        const uint32_t shown = targets_shown(c.stage, MASKS);
+        assert_true(shown < before);
+        before = shown;
+        assert_int_equal(noh_actor_set_appearance(c.stage, actor, &finest, NULL), NOH_OK);
+        for (int f = 0; f < 2; f++) {
+            assert_int_equal(noh_stage_frame(c.stage, 0, &view, NULL, NULL, NULL), NOH_OK);
+        }
+        assert_true(targets_shown(c.stage, MASKS) > shown);
+        cast_close(&c);
+    }
+}
+
 /* A parallel view shows all of them in the same size: the slot goes to the nearest. */
 static void of_equal_sizes_the_nearer_has_the_slot(void **state)
 {
@@ -742,6 +785,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(pixels_a_metre_are_those_of_the_nearest_point),
         cmocka_unit_test(a_turned_actor_is_seen_anywhere),
         cmocka_unit_test(the_nearer_of_two_has_the_finer_level),
+        cmocka_unit_test(targets_too_small_to_see_are_left_out),
         cmocka_unit_test(of_equal_sizes_the_nearer_has_the_slot),
         cmocka_unit_test(a_cut_gives_the_slot_to_whoever_is_nearer_now),
         cmocka_unit_test(what_hangs_on_a_scaled_figure_is_measured_where_it_hangs),
