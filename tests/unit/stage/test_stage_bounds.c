@@ -588,6 +588,36 @@ static void the_nearer_of_two_has_the_finer_level(void **state)
     cast_close(&c);
 }
 
+/* A view of light from a sphere sets all fields, whatever was there. */
+static void a_view_of_light_is_whole(void **state)
+{
+    static const float sphere[4] = { 1.0f, 2.0f, 3.0f, 0.5f }, light[3] = { 0.0f, 0.6f, 0.8f };
+    noh_stage_view view;
+    (void)state;
+    memset(&view, 0xa5, sizeof view);
+    noh_view_shadow(&view, sphere, light);
+    assert_true(view.height_px == 0 && view.cut == 0);
+    for (int i = 0; i < 4; i++) assert_true(view.column_rest[i] == 0.0f);
+    for (int i = 0; i < 3; i++) assert_true(view.eye_rest[i] == 0.0f && view.light[i] == light[i]);
+}
+
+/* Of more meshes than a kind may draw, all are counted and as many listed as there is room for. */
+static void more_meshes_than_fit_are_counted(void **state)
+{
+    const test_model_desc desc = { .meshes = NOH_STAGE_MESHES_MAX + 2u, .side = 2 };
+    noh_stage_item items[NOH_STAGE_MESHES_MAX + 1u];
+    size_t count;
+    uint8_t *bytes = test_pack(&desc, &count);
+    const noh_pack pack = test_open(bytes, count);
+    const noh_kind_desc kind = { .mesh = &pack };
+    (void)state;
+    memset(items, 0xa5, sizeof items);
+    assert_int_equal(noh_stage_items(&kind, items), NOH_STAGE_MESHES_MAX + 2u);
+    assert_int_equal(items[NOH_STAGE_MESHES_MAX - 1u].mesh, NOH_STAGE_MESHES_MAX - 1u);
+    assert_int_equal(items[NOH_STAGE_MESHES_MAX].mesh, 0xa5a5a5a5u);
+    free(bytes);
+}
+
 static uint32_t targets_shown(const noh_stage *s, uint32_t kind)
 {
     const noh_stage_kind *k = &s->kinds[kind];
@@ -785,6 +815,8 @@ int main(int argc, char **argv)
         cmocka_unit_test(pixels_a_metre_are_those_of_the_nearest_point),
         cmocka_unit_test(a_turned_actor_is_seen_anywhere),
         cmocka_unit_test(the_nearer_of_two_has_the_finer_level),
+        cmocka_unit_test(a_view_of_light_is_whole),
+        cmocka_unit_test(more_meshes_than_fit_are_counted),
         cmocka_unit_test(targets_too_small_to_see_are_left_out),
         cmocka_unit_test(of_equal_sizes_the_nearer_has_the_slot),
         cmocka_unit_test(a_cut_gives_the_slot_to_whoever_is_nearer_now),
