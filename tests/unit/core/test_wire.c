@@ -157,7 +157,7 @@ static void packs_come_back_to_the_byte(void **state)
  * raise NOH_WIRE_VERSION. */
 static void the_form_stays(void **state)
 {
-    const test_model_desc desc = { .side = 12, .targets = 5, .flags = TEST_UVS | TEST_TANGENTS | TEST_COLORS, .seed = 8 };
+    const test_model_desc desc = { 1, 12, 5, TEST_UVS | TEST_TANGENTS | TEST_COLORS, 8 };
     uint32_t crc = 0;
     size_t count;
     uint8_t *bytes = test_pack(&desc, &count);
