@@ -824,6 +824,26 @@ static void costs_add_up(void **state)
     }
 }
 
+/* Tiles of more and more instances: the texture is as wide as they need, and no wider. */
+static void a_texture_is_as_wide_as_its_tiles_need(void **state)
+{
+    uint32_t widest = 0;
+    (void)state;
+    for (uint32_t count = 1; count <= 20000; count *= 10) {
+        noh_gl_morph_desc desc = { .meshes = &set.meshes[2], .mesh_count = 1, .instance_counts = &count };
+        noh_gl_morph_plan plan;
+        noh_gl_caps caps;
+        noh_gl_caps_nominal(&caps);
+        desc.path = NOH_MORPH_GATHER;
+        assert_int_equal(noh_gl_morph_plan_make(&desc, &caps, &plan, NULL), NOH_OK);
+        assert_true(plan.atlas_width >= widest && plan.atlas_width <= 2048 && plan.atlas_height <= 2048);
+        assert_true((uint64_t)plan.atlas_width * plan.atlas_height >=
+                    (uint64_t)count * set.meshes[2].header->touched_count);
+        widest = plan.atlas_width;
+    }
+    assert_true(widest > 1u << set.meshes[2].header->morph_width_log2);
+}
+
 /* No accumulator: what a GPU holds for direct are deltas and lists, and the CPU holds no more than for gather. */
 static void direct_holds_no_accumulator(void **state)
 {
@@ -1105,6 +1125,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(blending_is_layered_or_per_layer),
     cmocka_unit_test(automatic_weighs_blending_against_lists),
     cmocka_unit_test(costs_add_up),
+    cmocka_unit_test(a_texture_is_as_wide_as_its_tiles_need),
     cmocka_unit_test(automatic_weighs_draws_against_a_pass),
     cmocka_unit_test(tile_memory_is_by_gpu),
     cmocka_unit_test(direct_holds_no_accumulator),
