@@ -397,12 +397,13 @@ typedef struct noh_ragdoll_fit {
     uint32_t body_count;
     uint32_t joints[NOH_RAGDOLL_BODIES_MAX];         /* the joint where each body begins */
     noh_ragdoll_pose bodies[NOH_RAGDOLL_BODIES_MAX]; /* in the space of the joint, metres */
+    float metres;                                    /* of one unit of the skeleton */
 } noh_ragdoll_fit;
 
 /* Transform from model space to the space of bodies: position + rotation * (metres * point). */
 typedef struct noh_ragdoll_frame {
     float position[3], rotation[4]; /* rotation: unit */
-    float metres;                   /* metres per unit of the skeleton, as the rig was made with; above 0 */
+    float metres;                   /* the fit's, times the size of the figure; above 0 */
 } noh_ragdoll_frame;
 
 /* Make a fit.

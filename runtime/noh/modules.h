@@ -235,6 +235,9 @@ noh_modifier noh_stand_modifier(const noh_kind_stand *stand);
  * Precision does not depend on the distance from the origin: bodies are stored relative to a nearby origin. Bodies
  * inside an obstacle at the start of a fall leave it at NOH_PUSH_OUT_SPEED (body.h), without an impulse.
  *
+ * An actor of another scale falls as a ragdoll of that size: masses go by the cube of it, and heights take as long as
+ * gravity has it. What is given as mass or speed is for scale 1; speeds go by the square root.
+ *
  * For one limp limb, hold all bodies except the limb's, then let the actor fall. For a fall with strength, set
  * noh_body_hold.hertz: joints then turn towards the angles of the clips.
  *
@@ -261,7 +264,7 @@ typedef struct noh_kind_ragdoll {
 noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
 
 /* Turn an actor into a ragdoll. No effect if it is one already.
- * errors  also ARG the actor's scale is not 1, or it is attached; LIMIT `count` actors of the kind are down */
+ * errors  also ARG it is attached, or its scale is not in 0.01..100; LIMIT `count` actors of the kind are down */
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* Push an actor. The impulse over the actor's mass decides what a standing one with two legs does: it sways on its
@@ -386,7 +389,7 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 
 /* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the
  * pack has none.
- * world  metres; the ends of joints stay out of it, without friction, after their own colliders. Frames ask it for every
+ * world  metres; ends of joints stay out of it, without friction, after their own colliders. Frames ask it for every
  *        chain that swings, up to eight chains of an actor at a time; must outlive the stage. It costs each job 1,664
  *        bytes for each joint of the longest chain. Plans and init refuse a world whose physics answers one thread in a
  *        stage with several jobs. NULL: none */

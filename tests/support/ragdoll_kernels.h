@@ -7,11 +7,11 @@
 
 #if defined(__x86_64__)
 void noh_ragdoll_step_dolls_scalar(const noh_ragdoll_shape *shape, const noh_world *world,
-                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch);
+                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch, float size);
 void noh_ragdoll_step_dolls_sse2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
+                                 uint32_t count, float *scratch, float size);
 void noh_ragdoll_step_dolls_avx2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
+                                 uint32_t count, float *scratch, float size);
 #endif
 
 #endif

@@ -334,10 +334,85 @@ void noh_ragdoll_origin_near(const float at[3], float origin[3])
     for (int k = 0; k < 3; k++) origin[k] = whole(at[k]);
 }
 
-/* Convert a point from one origin to another. */
-static void from_origin(const float point[3], const float old[3], const float origin[3], float out[3])
+/* ---- sizes ---- */
+
+#define SIZE_ONE 0x3f800000u /* the bits of 1 */
+
+float noh_ragdoll_size(const noh_ragdoll_doll *doll)
 {
-    for (int k = 0; k < 3; k++) out[k] = point[k] - (origin[k] - old[k]);
+    const uint32_t bits = ((uint32_t)doll->size_high << 16 | doll->size_low) ^ SIZE_ONE;
+    float size;
+    memcpy(&size, &bits, sizeof size);
+    return size;
+}
+
+static void set_size(noh_ragdoll_doll *doll, float size)
+{
+    uint32_t bits;
+    memcpy(&bits, &size, sizeof bits);
+    bits ^= SIZE_ONE;
+    doll->size_low = (uint16_t)bits;
+    doll->size_high = (uint16_t)(bits >> 16);
+}
+
+static int is_size(float size)
+{
+    return size >= NOH_RAGDOLL_SIZE_MIN && size <= NOH_RAGDOLL_SIZE_MAX;
+}
+
+/* Convert a point from metres about an origin to a doll's unit and origin. */
+static void enter(const noh_ragdoll_doll *doll, const float point[3], const float origin[3], float out[3])
+{
+    const float size = noh_ragdoll_size(doll);
+    for (int k = 0; k < 3; k++) {
+        const double at = (double)origin[k] + (double)point[k];
+        out[k] = size == 1.0f ? point[k] - (doll->origin[k] - origin[k])
+                              : (float)(at / (double)size - (double)doll->origin[k]);
+    }
+}
+
+/* A world as dolls of some size see it; its physics is asked in metres. */
+typedef struct sized_world {
+    noh_world world;
+    noh_field field;
+    noh_plane planes[NOH_OBSTACLES_MAX];
+    noh_capsule capsules[NOH_OBSTACLES_MAX];
+    noh_obb boxes[NOH_OBSTACLES_MAX];
+} sized_world;
+
+static void divide3(const float v[3], float size, float out[3])
+{
+    for (int k = 0; k < 3; k++) out[k] = v[k] / size;
+}
+
+static const noh_world *sized(const noh_world *w, float size, sized_world *out)
+{
+    if (!w || size == 1.0f) return w;
+    out->world = *w;
+    for (uint32_t i = 0; i < w->plane_count; i++) {
+        out->planes[i] = w->planes[i];
+        out->planes[i].distance /= size;
+    }
+    for (uint32_t i = 0; i < w->capsule_count; i++) {
+        divide3(w->capsules[i].from, size, out->capsules[i].from);
+        divide3(w->capsules[i].to, size, out->capsules[i].to);
+        out->capsules[i].radius = w->capsules[i].radius / size;
+    }
+    for (uint32_t i = 0; i < w->box_count; i++) {
+        out->boxes[i] = w->boxes[i];
+        divide3(w->boxes[i].centre, size, out->boxes[i].centre);
+        divide3(w->boxes[i].half, size, out->boxes[i].half);
+    }
+    out->world.planes = out->planes;
+    out->world.capsules = out->capsules;
+    out->world.boxes = out->boxes;
+    if (!w->field) return &out->world;
+    out->field = *w->field;
+    divide3(w->field->origin, size, out->field.origin);
+    out->field.spacing /= size;
+    out->field.scale /= size;
+    out->world.field = &out->field;
+    return &out->world;
 }
 
 static void rest_doll(noh_ragdoll_doll *doll, const noh_ragdoll_rig *rig)
@@ -401,6 +476,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
         if (!noh_is_finite3(doll->origin)) return "state: a ragdoll's position is not finite";
+        if (!is_size(noh_ragdoll_size(doll))) return "state: a ragdoll's size is out of range";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
                 return "state: a ragdoll's body is not finite";
@@ -430,10 +506,10 @@ static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
 noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *bodies,
                              const noh_ragdoll_motion *motions, noh_error *error)
 {
-    return noh_ragdoll_place_about(set, doll, world_origin, bodies, motions, error);
+    return noh_ragdoll_place_about(set, doll, world_origin, 1.0f, bodies, motions, error);
 }
 
-noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3], float size,
                                    const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error)
 {
     const uint32_t count = set->shape.body_count;
@@ -448,16 +524,22 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
         return noh_fail(error, NOH_ERR_ARG, "a placed body's position is not finite, or its rotation is not unit", bad,
                         0);
     }
+    NOH_ASSERT(is_size(size));
+    set_size(d, size);
     noh_ragdoll_origin_near(bodies[0].position, d->origin);
     noh_madd3(d->origin, 1.0f, origin, d->origin);
+    if (size != 1.0f) {
+        divide3(d->origin, size, d->origin);
+        noh_ragdoll_origin_near(d->origin, d->origin);
+    }
     for (uint32_t i = 0; i < count; i++) {
         noh_ragdoll_state *s = &d->bodies[i];
-        from_origin(bodies[i].position, origin, d->origin, s->position);
+        enter(d, bodies[i].position, origin, s->position);
         memcpy(s->rotation, bodies[i].rotation, sizeof s->rotation);
         memset(s->velocity, 0, sizeof s->velocity);
         memset(s->spin, 0, sizeof s->spin);
         if (motions) {
-            memcpy(s->velocity, motions[i].velocity, sizeof s->velocity);
+            divide3(motions[i].velocity, size, s->velocity);
             memcpy(s->spin, motions[i].spin, sizeof s->spin);
         }
     }
@@ -489,7 +571,7 @@ noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const floa
     memset(d->hertz, 0, sizeof d->hertz);
     d->held = goals ? held : 0;
     for (uint32_t i = 0; goals && i < count; i++) {
-        from_origin(goals[i].position, origin, d->origin, d->bodies[i].goal_position);
+        enter(d, goals[i].position, origin, d->bodies[i].goal_position);
         memcpy(d->bodies[i].goal_rotation, goals[i].rotation, sizeof goals[i].rotation);
         if (hertz) d->hertz[i] = hertz[i];
     }
@@ -621,11 +703,14 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
 {
     NOH_ASSERT(doll < set->count);
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
-    float from[3], own[3], rest[3];
+    const float unit = noh_ragdoll_size(d);
+    float from[3], own[3], rest[3], sized_impulse[3];
+    divide3(impulse, unit * unit * unit * unit, sized_impulse); /* its mass, and its metres */
+    impulse = sized_impulse;
     for (int k = 0; k < 3; k++) {
         if (!noh_is_number(point[k]) || !noh_is_number(impulse[k])) return;
     }
-    noh_sub3(point, d->origin, from);
+    enter(d, point, world_origin, from);
     const uint32_t i = nearest_body(&set->shape, d, from);
     const float alone = PUSH_PART * set->size * set->shape.bodies[i].mass, size = noh_length3(impulse);
     const float part = !is_free(d, i) ? 0.0f : size > alone ? alone / size : 1.0f;
@@ -669,7 +754,7 @@ static void brake(const noh_ragdolls *set, noh_ragdoll_doll *d)
     for (uint32_t i = 0; i < set->shape.body_count && !fast; i++) {
         fast = is_fast(&set->shape.bodies[i], &d->bodies[i], SLOW_PART * set->size);
     }
-    d->slow = fast ? 0 : d->slow < SLOW_STEPS + BRAKE_STEPS ? d->slow + 1u : d->slow;
+    d->slow = fast ? 0 : (uint16_t)(d->slow < SLOW_STEPS + BRAKE_STEPS ? d->slow + 1u : d->slow);
     if (d->slow <= SLOW_STEPS) return;
     const float part = d->slow < SLOW_STEPS + BRAKE_STEPS ? (float)(d->slow - SLOW_STEPS) / (float)BRAKE_STEPS : 1.0f;
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
@@ -691,7 +776,7 @@ static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
             memcpy(d->lain[i], d->bodies[i].position, sizeof d->lain[i]);
         }
     }
-    d->still = moves ? 1u : d->still + 1u;
+    d->still = (uint16_t)(moves ? 1u : d->still + 1u);
     if (d->still > STILL_STEPS) {
         d->asleep = 1;
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
@@ -715,25 +800,34 @@ static void follow_origin(const noh_ragdolls *set, noh_ragdoll_doll *d)
     }
 }
 
+/* Dolls of one size. */
+static void step_some(noh_ragdolls *set, const noh_world *world, noh_ragdoll_doll *const *dolls, uint32_t count,
+                      float *scratch)
+{
+    const float size = noh_ragdoll_size(dolls[0]);
+    sized_world own;
+    noh_ragdoll_step_dolls(&set->shape, sized(world, size, &own), dolls, count, scratch, size);
+    for (uint32_t k = 0; k < count; k++) {
+        if (dolls[k]->bent) dolls[k]->bent--;
+        brake(set, dolls[k]);
+        rest_or_go_on(set, dolls[k]);
+    }
+}
+
 static void step_all(noh_ragdolls *set, const noh_world *world, float *scratch)
 {
     noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set), *awake[NOH_RAGDOLL_LANES_MAX];
     uint32_t count = 0;
     for (uint32_t i = 0; i < set->count; i++) {
-        if (!dolls[i].asleep) {
-            follow_origin(set, &dolls[i]);
-            awake[count++] = &dolls[i];
-        }
-        if (count == NOH_RAGDOLL_LANES_MAX || (count && i + 1u == set->count)) {
-            noh_ragdoll_step_dolls(&set->shape, world, awake, count, scratch);
-            for (uint32_t k = 0; k < count; k++) {
-                if (awake[k]->bent) awake[k]->bent--;
-                brake(set, awake[k]);
-                rest_or_go_on(set, awake[k]);
-            }
+        if (dolls[i].asleep) continue;
+        if (count == NOH_RAGDOLL_LANES_MAX || (count && noh_ragdoll_size(awake[0]) != noh_ragdoll_size(&dolls[i]))) {
+            step_some(set, world, awake, count, scratch);
             count = 0;
         }
+        follow_origin(set, &dolls[i]);
+        awake[count++] = &dolls[i];
     }
+    if (count) step_some(set, world, awake, count, scratch);
 }
 
 uint32_t noh_ragdolls_step(noh_ragdolls *set, const noh_world *world, uint32_t ticks)
@@ -775,9 +869,14 @@ void noh_ragdoll_bodies(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_pose
 void noh_ragdoll_bodies_local(const noh_ragdolls *set, uint32_t doll, float origin[3], noh_ragdoll_pose *bodies)
 {
     const noh_ragdoll_doll *d = doll_of(set, doll);
-    memcpy(origin, d->origin, sizeof d->origin);
+    const float size = noh_ragdoll_size(d);
+    for (int k = 0; k < 3; k++) origin[k] = size == 1.0f ? d->origin[k] : whole(size * d->origin[k]);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
-        memcpy(bodies[i].position, d->bodies[i].position, sizeof bodies[i].position);
+        const float *at = d->bodies[i].position;
+        for (int k = 0; k < 3; k++) {
+            const double real = (double)size * ((double)d->origin[k] + (double)at[k]) - (double)origin[k];
+            bodies[i].position[k] = size == 1.0f ? at[k] : (float)real;
+        }
         memcpy(bodies[i].rotation, d->bodies[i].rotation, sizeof bodies[i].rotation);
     }
 }
@@ -797,8 +896,14 @@ void noh_ragdolls_shift(noh_ragdolls *set, const float by[3])
     noh_ragdoll_doll *dolls = noh_ragdoll_dolls(set);
     NOH_ASSERT(noh_is_finite3(by));
     for (uint32_t d = 0; d < set->count; d++) {
-        float lost[3];
-        noh_ragdoll_origin_shift(dolls[d].origin, by, lost);
+        const float size = noh_ragdoll_size(&dolls[d]);
+        float lost[3], own[3], rest[3];
+        for (int k = 0; k < 3; k++) {
+            own[k] = by[k] / size;
+            rest[k] = (float)((double)by[k] / (double)size - (double)own[k]);
+        }
+        noh_ragdoll_origin_shift(dolls[d].origin, own, lost);
+        if (size != 1.0f) noh_madd3(lost, 1.0f, rest, lost);
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             noh_ragdoll_state *s = &dolls[d].bodies[i];
             noh_madd3(s->position, 1.0f, lost, s->position);
@@ -812,7 +917,7 @@ void noh_ragdoll_motions(const noh_ragdolls *set, uint32_t doll, noh_ragdoll_mot
 {
     const noh_ragdoll_doll *d = doll_of(set, doll);
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
-        memcpy(motions[i].velocity, d->bodies[i].velocity, sizeof motions[i].velocity);
+        for (int k = 0; k < 3; k++) motions[i].velocity[k] = noh_ragdoll_size(d) * d->bodies[i].velocity[k];
         memcpy(motions[i].spin, d->bodies[i].spin, sizeof motions[i].spin);
     }
 }

@@ -15,7 +15,7 @@ extern "C" {
 
 typedef struct noh_ragdoll_measures {
     float limit;           /* radians beyond the limits, worst joint */
-    float penetration;     /* metres of the deepest body inside the world */
+    float penetration;     /* metres of the deepest body inside the world; of dolls of size 1 */
     float separation;      /* metres between the anchors of the worst joint; for sliding joints beyond their limits */
     float separation_mean; /* mean over all joints */
     float energy;          /* joules: kinetic, and potential above height 0 */
@@ -65,6 +65,8 @@ noh_result noh_ragdoll_rig_check(const noh_ragdoll_rig *rig, noh_error *error);
 }
 #endif
 
+#define NOH_RAGDOLL_SIZE_MIN 0.01f
+#define NOH_RAGDOLL_SIZE_MAX 100.0f
 #define NOH_RAGDOLL_LANES_MAX 8u
 #define NOH_RAGDOLL_LANE_FLOATS 52u                       /* per body in the shared memory, for each lane */
 #define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* per doll: its origin, and planes relative to it */
@@ -88,11 +90,17 @@ typedef struct noh_ragdoll_doll {
     float hertz[NOH_RAGDOLL_BODIES_MAX];
     uint32_t held;
     uint32_t asleep;
-    uint32_t still;  /* steps since then */
-    uint32_t slow;   /* steps since any body was fast */
+    uint16_t still; /* steps since then */
+    uint16_t size_low;
+    uint16_t slow; /* steps since any body was fast */
+    uint16_t size_high;
     float origin[3]; /* of all its positions, near its first body: keeps the precision of floats everywhere */
     uint32_t bent;   /* steps for which joints placed beyond their limits are brought back slowly */
 } noh_ragdoll_doll;
+
+/* The size of a doll, as a multiple of its rig's; 0 in its bytes is 1. Its positions, origin and velocities are in
+ * multiples of it, not in metres: to a large doll the world is small and gravity weak. Functions take and give metres. */
+float noh_ragdoll_size(const noh_ragdoll_doll *doll);
 
 /* Shared data of a body and of the joint to its parent, in the bodies' own spaces. */
 typedef struct noh_ragdoll_constants {
@@ -135,13 +143,15 @@ struct noh_ragdolls {
 #endif
 
 /* 1/60 s.
+ * world   its own shapes are in the dolls' unit
+ * size    of the dolls
  * shapes  dolls[count], all awake; scratch[NOH_RAGDOLL_SCRATCH_FLOATS], aligned to 32 bytes; the larger one if the
  *         world asks */
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                      uint32_t count, float *scratch);
+                      uint32_t count, float *scratch, float size);
 
 /* Ask what the bodies of a doll touch during the next 1/60 s.
- * shapes  touches[body_count] */
+ * shapes  touches[body_count], in the doll's unit */
 void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, const noh_ragdoll_doll *doll,
                      noh_touches *touches);
 
@@ -157,13 +167,14 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
 uint32_t noh_ragdolls_take(noh_ragdolls *set, uint32_t ticks);
 void noh_ragdolls_step_once(noh_ragdolls *set, const noh_world *world, float *scratch, uint32_t asks);
 
-/* Variants of the public functions with positions relative to `origin`, a point of the bodies' space. */
-noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
+/* Variants of the public functions with positions relative to `origin`, a point of the bodies' space.
+ * size    the doll's from now on, NOH_RAGDOLL_SIZE_MIN.._MAX: lengths of its rig times it, masses times its cube */
+noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float origin[3], float size,
                                    const noh_ragdoll_pose *bodies, const noh_ragdoll_motion *motions, noh_error *error);
 noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const float origin[3],
                                     const noh_ragdoll_pose *goals, uint32_t held, const float *hertz, noh_error *error);
 
-/* Get the bodies as stored, relative to *origin.
+/* Get the bodies relative to *origin: as stored if their size is 1.
  * shapes  bodies[body_count] */
 void noh_ragdoll_bodies_local(const noh_ragdolls *set, uint32_t doll, float origin[3], noh_ragdoll_pose *bodies);
 

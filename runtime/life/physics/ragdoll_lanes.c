@@ -678,12 +678,12 @@ static inline void solve_pair(const noh_ragdoll_shape *shape, const noh_ragdoll_
 
 /* ---- substeps ---- */
 
-static inline void predict(lane_body *b, lanes h, float seconds, float speed_max)
+static inline void predict(lane_body *b, lanes h, float fall, float speed_max)
 {
     const lanes free = lanes_less(lanes_set(0.0f), b->mass), top = lanes_set(speed_max);
     b->p_before = b->p;
     b->q_before = b->q;
-    b->v.y = lanes_choose(free, lanes_sub(b->v.y, lanes_set(NOH_GRAVITY * seconds)), b->v.y);
+    b->v.y = lanes_choose(free, lanes_sub(b->v.y, lanes_set(fall)), b->v.y);
     const lanes square = lane3_dot(b->v, b->v), fast = lanes_and(free, lanes_less(lanes_mul(top, top), square));
     if (lanes_any(fast)) {
         b->v = lane3_choose(fast, lane3_scale(b->v, lanes_mul(top, lanes_inverse_root(fast, square))), b->v);
@@ -696,7 +696,7 @@ static inline void predict(lane_body *b, lanes h, float seconds, float speed_max
 
 /* Stop what separates from the world, or let it leave at a share of its approach speed; approach speeds up to what
  * gravity adds in two substeps only rest. */
-static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float restitution, float seconds)
+static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float restitution, float fall)
 {
     const lanes zero = lanes_set(0.0f);
     for (uint32_t point = 0; point < POINTS; point++) {
@@ -707,7 +707,7 @@ static inline void bounce(lane_body *b, const noh_ragdoll_constants *c, float re
         const lane3 cross = lane3_cross(r, n);
         lanes wanted = zero;
         if (restitution > 0.0f) {
-            const lanes fast = lanes_less(b->approach[point], lanes_set(-2.0f * NOH_GRAVITY * seconds));
+            const lanes fast = lanes_less(b->approach[point], lanes_set(-2.0f * fall));
             wanted = lanes_choose(fast, lanes_mul(b->approach[point], lanes_set(-restitution)), zero);
         }
         const lanes over = lanes_sub(away, wanted);
@@ -740,10 +740,11 @@ static inline void rub_joint(const joint *j, float seconds)
 }
 
 static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane_world *place, lane_body *bodies,
-                    const lane_touch *touches, float seconds)
+                    const lane_touch *touches, float seconds, float size)
 {
     const lanes h = lanes_set(seconds);
-    for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, seconds, shape->speed_max);
+    const float fall = NOH_GRAVITY * seconds / size; /* the speed that gravity adds */
+    for (uint32_t i = 0; i < shape->body_count; i++) predict(&bodies[i], h, fall, shape->speed_max);
     for (uint32_t i = 0; i < shape->pair_count; i++) solve_pair(shape, &shape->pairs[i], bodies, place->push_out);
     for (uint32_t i = 1; i < shape->body_count; i++) {
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
@@ -755,11 +756,11 @@ static void substep(const noh_ragdoll_shape *shape, const noh_world *world, lane
     }
     for (uint32_t i = 0; i < shape->body_count; i++) {
         take_velocity(&bodies[i], lanes_set(1.0f / seconds));
-        if (world) bounce(&bodies[i], &shape->bodies[i], world->restitution, seconds);
+        if (world) bounce(&bodies[i], &shape->bodies[i], world->restitution, fall);
     }
     for (uint32_t i = 1; i < shape->body_count; i++) {
         const joint j = { &shape->bodies[i], &bodies[shape->bodies[i].parent], &bodies[i], place->turn_back };
-        if (j.c->friction > 0.0f) rub_joint(&j, seconds);
+        if (j.c->friction > 0.0f) rub_joint(&j, seconds / size);
     }
 }
 
@@ -823,7 +824,7 @@ static void ask(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragd
 }
 
 void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                      uint32_t count, float *scratch)
+                      uint32_t count, float *scratch, float size)
 {
     const int asks = world && noh_world_asks(world);
     lane_body *bodies = (lane_body *)(void *)scratch;
@@ -838,9 +839,9 @@ void NOH_RAGDOLL_STEP(const noh_ragdoll_shape *shape, const noh_world *world, no
             load_place(world, doll, seconds, place, lane);
         }
         if (asks) ask(shape, world, dolls + first, lanes_used, touches);
-        place->push_out = lanes_set(NOH_PUSH_OUT_SPEED * seconds);
+        place->push_out = lanes_set(NOH_PUSH_OUT_SPEED * seconds / size);
         for (uint32_t i = 0; i < shape->body_count; i++) send_held(&bodies[i], lanes_set(60.0f));
-        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, place, bodies, touches, seconds);
+        for (uint32_t s = 0; s < shape->substeps; s++) substep(shape, world, place, bodies, touches, seconds, size);
         settle(shape, world, place, bodies, touches);
         for (uint32_t lane = 0; lane < lanes_used; lane++) store_doll(shape, dolls[first + lane], bodies, lane);
     }

@@ -162,19 +162,27 @@ void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, con
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
     noh_world_body asked[NOH_RAGDOLL_BODIES_MAX];
+    const float size = noh_ragdoll_size(doll);
     for (uint32_t i = 0; i < shape->body_count; i++) {
         const noh_ragdoll_constants *c = &shape->bodies[i];
         const noh_ragdoll_state *s = &doll->bodies[i];
         noh_world_body *a = &asked[i];
         float axis[3];
         noh_quat_rotate(s->rotation, z, axis);
-        memcpy(a->origin, doll->origin, sizeof a->origin);
         noh_madd3(s->position, -c->half, axis, a->capsule.from);
         noh_madd3(s->position, c->half, axis, a->capsule.to);
-        a->capsule.radius = c->radius;
-        a->reach = (noh_length3(s->velocity) + c->half * noh_length3(s->spin)) / 30.0f + REACH_LEAST;
+        for (int k = 0; k < 3; k++) {
+            a->origin[k] = size * doll->origin[k];
+            a->capsule.from[k] *= size;
+            a->capsule.to[k] *= size;
+        }
+        a->capsule.radius = size * c->radius;
+        a->reach = size * ((noh_length3(s->velocity) + c->half * noh_length3(s->spin)) / 30.0f) + REACH_LEAST;
     }
     noh_world_ask_touches(world, asked, shape->body_count, touches);
+    for (uint32_t i = 0; i < shape->body_count; i++) {
+        for (uint32_t k = 0; k < touches[i].count; k++) touches[i].at[k].plane.distance /= size;
+    }
 }
 
 /* ---- all ---- */
@@ -191,6 +199,7 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
     NOH_ASSERT(doll < set->count);
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
     const noh_ragdoll_doll *d = doll_of(set, doll);
+    NOH_ASSERT(!world || noh_ragdoll_size(d) == 1.0f);
     noh_touches touches[NOH_RAGDOLL_BODIES_MAX];
     const int asks = world && noh_world_asks(world);
     memset(m, 0, sizeof *m);

@@ -85,6 +85,7 @@ void noh_ragdoll_fit_make(const noh_ragdoll_rig *rig, const noh_skeleton *skelet
     NOH_ASSERT(rig && skeleton && fit);
     memset(fit, 0, sizeof *fit);
     fit->body_count = rig->body_count;
+    fit->metres = metres;
     for (uint32_t i = 0; i < rig->body_count; i++) {
         noh_ragdoll_pose joint, body;
         fit->joints[i] = rig->bodies[i].joint;
@@ -94,6 +95,14 @@ void noh_ragdoll_fit_make(const noh_ragdoll_rig *rig, const noh_skeleton *skelet
         memcpy(body.rotation, rig->bodies[i].rotation, sizeof body.rotation);
         relative(&joint, &body, &fit->bodies[i]);
     }
+}
+
+/* A body on its joint, of a figure of the frame's size. */
+static noh_ragdoll_pose sized_body(const noh_ragdoll_fit *fit, const noh_ragdoll_frame *frame, uint32_t i)
+{
+    noh_ragdoll_pose body = fit->bodies[i];
+    for (int k = 0; k < 3; k++) body.position[k] *= frame->metres / fit->metres;
+    return body;
 }
 
 static noh_ragdoll_pose pose_of_frame(const noh_ragdoll_frame *frame)
@@ -109,10 +118,11 @@ void noh_ragdoll_from_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skele
 {
     const noh_ragdoll_pose model = pose_of_frame(frame);
     for (uint32_t i = 0; i < fit->body_count; i++) {
+        const noh_ragdoll_pose body = sized_body(fit, frame, i);
         noh_ragdoll_pose joint;
         joint_at(skeleton, local, fit->joints[i], &joint);
         for (int k = 0; k < 3; k++) joint.position[k] *= frame->metres;
-        absolute(&joint, &fit->bodies[i], &bodies[i]);
+        absolute(&joint, &body, &bodies[i]);
         absolute(&model, &bodies[i], &bodies[i]);
     }
 }
@@ -121,13 +131,13 @@ void noh_ragdoll_from_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skele
 static void joint_of_body(const noh_ragdoll_fit *fit, const noh_ragdoll_frame *frame, uint32_t i,
                           const noh_ragdoll_pose *body, noh_ragdoll_pose *joint)
 {
-    const noh_ragdoll_pose model = pose_of_frame(frame);
+    const noh_ragdoll_pose model = pose_of_frame(frame), own = sized_body(fit, frame, i);
     noh_ragdoll_pose in_model;
     float back[4], offset[3];
     relative(&model, body, &in_model);
     noh_quat_conjugate(fit->bodies[i].rotation, back);
     noh_quat_mul(in_model.rotation, back, joint->rotation);
-    noh_quat_rotate(joint->rotation, fit->bodies[i].position, offset);
+    noh_quat_rotate(joint->rotation, own.position, offset);
     for (int k = 0; k < 3; k++) joint->position[k] = (in_model.position[k] - offset[k]) / frame->metres;
 }
 

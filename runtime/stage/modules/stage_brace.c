@@ -87,9 +87,10 @@ void noh_stage_find_parts(noh_stage_ragdoll_kind *shared, const noh_ragdoll_sour
 
 /* All bodies get the push together: the feet stay and the rest goes over them, up to some spin; a push far below the
  * centre of mass takes the feet away. Momentum is the push's. */
-static void topple(const noh_stage_ragdoll_kind *shared, noh_ragdoll_doll *doll, const float height,
-                   const float impulse[3])
+static void topple(const noh_stage_ragdoll_kind *shared, noh_ragdoll_doll *doll, const noh_stage_push *push)
 {
+    const float size = noh_ragdoll_size(doll), height = push->point[1] / size - doll->origin[1];
+    const float mass = shared->mass * size * size * size;
     const noh_ragdoll_rig *rig = &shared->rig;
     float centre[3] = { 0.0f, 0.0f, 0.0f }, low = doll->bodies[0].position[1], spin[3], speed[3];
     for (uint32_t i = 0; i < rig->body_count; i++) {
@@ -100,9 +101,9 @@ static void topple(const noh_stage_ragdoll_kind *shared, noh_ragdoll_doll *doll,
     const float high = centre[1] - low > 0.1f ? centre[1] - low : 0.1f;
     const float from_centre = 1.0f + 2.0f * (height - centre[1]) / high;
     const float share = from_centre > 1.0f ? 1.0f : from_centre < -1.0f ? -1.0f : from_centre;
-    for (int n = 0; n < 3; n++) speed[n] = impulse[n] / shared->mass;
+    for (int n = 0; n < 3; n++) speed[n] = push->impulse[n] / mass / size;
     noh_cross3(up, speed, spin);
-    const float rate = noh_length3(spin) / high, most = SPIN_MAX * noh_sqrt(NOH_GRAVITY / high);
+    const float rate = noh_length3(spin) / high, most = SPIN_MAX * noh_sqrt(NOH_GRAVITY / size / high);
     const float scale = share / high * (rate > most ? most / rate : 1.0f);
     for (int n = 0; n < 3; n++) spin[n] *= scale;
     for (uint32_t i = 0; i < rig->body_count; i++) {
@@ -125,7 +126,7 @@ noh_result noh_stage_brace_fall(noh_stage_kind *k, const noh_stage_actor *a, noh
     noh_ragdoll_doll *doll = &noh_ragdoll_dolls(shared->dolls)[b->doll - 1u];
     noh_stage_brace *brace = &b->of.brace;
     float toward[3];
-    if (push) topple(shared, doll, push->point[1] - doll->origin[1], push->impulse);
+    if (push) topple(shared, doll, push);
     memset(brace, 0, sizeof *brace);
     brace->strength = 1.0f;
     memcpy(toward, doll->bodies[0].velocity, sizeof toward);
@@ -308,7 +309,7 @@ void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *
     noh_stage_brace *brace = &body->of.brace;
     const noh_ragdoll_doll *doll = &noh_ragdoll_dolls(shared->dolls)[body->doll - 1u];
     const uint32_t trunk = shared->parts.chest == NOH_NONE ? 0u : shared->parts.chest;
-    const float down = -doll->bodies[trunk].velocity[1];
+    const float down = -noh_ragdoll_size(doll) * doll->bodies[trunk].velocity[1];
     brace->fastest = down > brace->fastest ? down : brace->fastest;
     brace->ticks += ticks < BRACE_MAX_TICKS ? ticks : BRACE_MAX_TICKS;
     const int landed = brace->ticks > BRACE_MIN_TICKS && brace->fastest > 1.0f && down < LANDED * brace->fastest;

@@ -109,8 +109,9 @@ static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_s
     const noh_world *world = shared->world;
     float ground;
     noh_ragdoll_place_under(bodies, b->bodies[0], shared->rig.body_count, &frame);
-    if (!world || !noh_world_ground_below(world, b->origin, first->position,
-                                          first->position[1] + shared->rig.bodies[0].radius, &ground)) {
+    if (!world ||
+        !noh_world_ground_below(world, b->origin, first->position,
+                                first->position[1] + a->place.scale * shared->rig.bodies[0].radius, &ground)) {
         ground = frame.position[1] + first->position[1] - bodies[0].position[1];
     }
     frame.position[1] = ground;

@@ -43,7 +43,7 @@ static void move_alone(const noh_skeleton *k, noh_transform *local, uint32_t joi
 static void lift_chest(const noh_stage_kind *k, const noh_modifier_work *w, float share)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
-    float up[3] = { 0.0f, share * LIFT_M / (shared->metres * w->place.scale), 0.0f }, turn[4], at[3], carrier[4];
+    float up[3] = { 0.0f, share * LIFT_M / shared->metres, 0.0f }, turn[4], at[3], carrier[4];
     if (shared->parts.chest == NOH_NONE || share == 0.0f) return;
     const uint32_t chest = shared->fit.joints[shared->parts.chest];
     uint32_t on = w->skeleton->parents[chest];

@@ -361,8 +361,8 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
-    const noh_result result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, b->bodies[0], motions,
-                                                      error);
+    const noh_result result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, a->place.scale, b->bodies[0],
+                                                      motions, error);
     if (result == NOH_OK) take_offset(k, b, &a->place);
     return result;
 }
@@ -373,8 +373,9 @@ noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage
     uint32_t doll;
     noh_result result;
     if (b->doll) return NOH_OK;
-    if (a->parent || a->place.scale != 1.0f) {
-        return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not 1", 0, 0);
+    if (a->parent || !(a->place.scale >= NOH_RAGDOLL_SIZE_MIN && a->place.scale <= NOH_RAGDOLL_SIZE_MAX)) {
+        return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not in 0.01..100",
+                        0, 0);
     }
     doll = free_doll(k);
     if (!doll) {

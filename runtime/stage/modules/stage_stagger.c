@@ -63,9 +63,9 @@ static void add2(float v[2], float share, const float by[2])
     v[1] += share * by[1];
 }
 
-static float leg_of(const noh_stage_ragdoll_kind *shared)
+static float leg_of(const noh_stage_ragdoll_kind *shared, const noh_place *place)
 {
-    return shared->legs.length * shared->metres;
+    return shared->legs.length * shared->metres * place->scale;
 }
 
 static walk begin_walk(const noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b)
@@ -74,7 +74,7 @@ static walk begin_walk(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     noh_stage_stagger *s = &b->of.stagger;
-    walk w = { shared, b, s, leg_of(shared), 0.0f, { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f } };
+    walk w = { shared, b, s, leg_of(shared, &a->place), 0.0f, { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f } };
     float turned[3];
     w.omega = noh_sqrt(NOH_GRAVITY / (CENTRE * w.leg));
     noh_quat_rotate(a->place.rotation, left, turned);
@@ -389,7 +389,8 @@ static int take_stance(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
         joint_of(shared, b, shared->parts.feet[i], f->stance, f->rotation);
         noh_quat_mul(back, f->rotation, f->rotation);
         noh_sub3(f->stance, frame.position, f->stance);
-        if (b->bodies[0][0].position[1] - frame.position[1] - f->stance[1] < 0.75f * leg_of(shared)) return 0;
+        if (b->bodies[0][0].position[1] - frame.position[1] - f->stance[1] < 0.75f * leg_of(shared, &a->place))
+            return 0;
     }
     joint_of(shared, b, 0, at, turned);
     for (int i = 0; i < 2; i++) s->pelvis[i] = at[2 * i] - frame.position[2 * i];
@@ -408,19 +409,18 @@ static int is_upright(const noh_stage_actor *a)
 int noh_stage_begin_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_body *b, const noh_stage_push *push)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
-    const float natural = STAGGER_SPEED * noh_sqrt(NOH_GRAVITY * leg_of(shared));
-    const float most = shared->stagger_speed != 0.0f ? shared->stagger_speed : natural;
-    const float by[2] = { push->impulse[0] / shared->mass, push->impulse[2] / shared->mass };
+    const float size = a->place.scale, mass = shared->mass * size * size * size, leg = leg_of(shared, &a->place);
+    const float natural = STAGGER_SPEED * noh_sqrt(NOH_GRAVITY * leg);
+    const float most = shared->stagger_speed != 0.0f ? shared->stagger_speed * noh_sqrt(size) : natural;
+    const float by[2] = { push->impulse[0] / mass, push->impulse[2] / mass };
     noh_stage_stagger s = b->of.stagger;
     if (!shared->parts.has_legs || b->state != NOH_BODY_STANDS || b->dead || !b->poses || a->parent) return 0;
-    if (a->place.scale != 1.0f || !is_upright(a) || b->moves == NOH_MOVES_UP_BEGINS || b->moves == NOH_MOVES_UP)
-        return 0;
+    if (!is_upright(a) || b->moves == NOH_MOVES_UP_BEGINS || b->moves == NOH_MOVES_UP) return 0;
     if (b->moves != NOH_MOVES_STAGGERING && !take_stance(k, a, b, &s)) return 0;
     add2(s.speed, 1.0f, by);
     if (!(length2(s.speed) <= most)) return 0;
-    const float height = push->point[1] - b->origin[1] - b->bodies[0][0].position[1],
-                high = 2.0f * height / leg_of(shared);
-    add2(s.lean_speed, (high > 1.0f ? 1.0f : high < -1.0f ? -1.0f : high) * 2.0f / leg_of(shared), by);
+    const float height = push->point[1] - b->origin[1] - b->bodies[0][0].position[1], high = 2.0f * height / leg;
+    add2(s.lean_speed, (high > 1.0f ? 1.0f : high < -1.0f ? -1.0f : high) * 2.0f / leg, by);
     s.steps = s.foot ? 1u : 0u;
     s.weight = 1.0f;
     s.ends = 0;
@@ -464,7 +464,7 @@ static void want_foot(const noh_stage_ragdoll_kind *shared, const noh_stage_stag
     const noh_stage_foothold *f = &s->feet[i];
     const float part = s->foot == i + 1u ? (float)s->step_ticks / (float)s->step_lasts : 0.0f;
     float back[4], want[3] = { f->stance[0] + f->off[0], f->stance[1] + f->height, f->stance[2] + f->off[1] };
-    want[1] += 4.0f * part * (1.0f - part) * LIFT * leg_of(shared);
+    want[1] += 4.0f * part * (1.0f - part) * LIFT * leg_of(shared, &w->place);
     noh_quat_nlerp(leg->foot, f->rotation, ease(s->weight), leg->foot);
     noh_quat_conjugate(w->place.rotation, back);
     noh_quat_rotate(back, want, want);

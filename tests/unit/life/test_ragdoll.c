@@ -519,7 +519,7 @@ static void bits_are_those_of_every_processor(void **state)
 
 #if defined(__x86_64__)
 typedef void (*step_dolls)(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                           uint32_t count, float *scratch);
+                           uint32_t count, float *scratch, float size);
 
 /* On all kinds of obstacles, bouncing, some of it inside of them and each from an origin of its own. */
 static uint32_t hash_by(step_dolls step, const noh_ragdoll_rig *rig)
@@ -536,7 +536,7 @@ static uint32_t hash_by(step_dolls step, const noh_ragdoll_rig *rig)
         dolls[d]->origin[0] += 0.125f * (float)d;
         dolls[d]->origin[1] -= 0.0625f * (float)d;
     }
-    for (int i = 0; i < 600; i++) step(&set->shape, &world, dolls, 8, noh_ragdoll_scratch(set));
+    for (int i = 0; i < 600; i++) step(&set->shape, &world, dolls, 8, noh_ragdoll_scratch(set), 1.0f);
     const uint32_t hash = hash_of(set, 8, rig->body_count);
     free(set);
     return hash;
@@ -652,7 +652,7 @@ static uint32_t fall_at(const float base[3], uint32_t substeps)
     room_at(&r, base);
     seed = 11;
     thrown(&rig, poses, motions);
-    noh_ragdoll_place_about(set, 0, base, poses, motions, NULL);
+    noh_ragdoll_place_about(set, 0, base, 1.0f, poses, motions, NULL);
     for (int i = 0; i < 240; i++) {
         float origin[3];
         noh_ragdolls_step(set, &r.world, FRAME);

@@ -230,7 +230,7 @@ static void rays_meet_the_same_ground(void **state)
 
 #if defined(__x86_64__)
 typedef void (*step_dolls)(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                           uint32_t count, float *scratch);
+                           uint32_t count, float *scratch, float size);
 
 /* Of what is asked, and of the dolls after it. */
 static void hash_by(step_dolls step, uint32_t hashes[2])
@@ -242,7 +242,7 @@ static void hash_by(step_dolls step, uint32_t hashes[2])
     noh_ragdoll_doll *dolls[DOLLS];
     const uint8_t *bytes = (const uint8_t *)noh_ragdoll_dolls(set);
     for (uint32_t d = 0; d < DOLLS; d++) dolls[d] = &noh_ragdoll_dolls(set)[d];
-    for (int i = 0; i < 120; i++) step(&set->shape, &world, dolls, DOLLS, noh_ragdoll_scratch(set));
+    for (int i = 0; i < 120; i++) step(&set->shape, &world, dolls, DOLLS, noh_ragdoll_scratch(set), 1.0f);
     hashes[0] = game.hash;
     hashes[1] = 2166136261u;
     for (size_t i = 0; i < DOLLS * sizeof **dolls; i++) hashes[1] = (hashes[1] ^ bytes[i]) * 16777619u;

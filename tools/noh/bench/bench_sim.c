@@ -14,17 +14,17 @@
 #define SAMPLE_NS 5e6
 
 typedef void (*sim_step)(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                         uint32_t count, float *scratch);
+                         uint32_t count, float *scratch, float size);
 
 /* ragdoll_lanes.c built again (Makefile, KERNELS) */
 #if defined(__x86_64__)
 void noh_ragdoll_step_dolls_sse2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
+                                 uint32_t count, float *scratch, float size);
 void noh_ragdoll_step_dolls_avx2(const noh_ragdoll_shape *shape, const noh_world *world, noh_ragdoll_doll *const *dolls,
-                                 uint32_t count, float *scratch);
+                                 uint32_t count, float *scratch, float size);
 #endif
 void noh_ragdoll_step_dolls_scalar(const noh_ragdoll_shape *shape, const noh_world *world,
-                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch);
+                                   noh_ragdoll_doll *const *dolls, uint32_t count, float *scratch, float size);
 
 typedef struct sim_work {
     const char *name;
@@ -41,7 +41,7 @@ static void fall(void *self, uint32_t frame)
     memcpy(dolls, w->start, DOLLS * sizeof *dolls);
     for (uint32_t i = 0; i < DOLLS; i++) all[i] = &dolls[i];
     for (uint32_t i = 0; i < STEPS; i++) {
-        w->step(&w->scene->set->shape, &w->scene->world, all, DOLLS, noh_ragdoll_scratch(w->scene->set));
+        w->step(&w->scene->set->shape, &w->scene->world, all, DOLLS, noh_ragdoll_scratch(w->scene->set), 1.0f);
     }
 }
 
