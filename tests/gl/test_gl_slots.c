@@ -298,6 +298,53 @@ static void each_frame_keeps_the_bound(void **state)
     }
 }
 
+static void GL_APIENTRY count_contents(GLenum target, GLsizeiptr bytes, const void *data, GLenum usage)
+{
+    counted.bytes += data ? (uint64_t)bytes : 0;
+    counted.real.BufferData(target, bytes, data, usage);
+}
+
+static uint64_t bytes_of_restore(act *a)
+{
+    counted.bytes = 0;
+    assert_int_equal(noh_stage_restore(a->c.stage, NULL), NOH_OK);
+    return counted.bytes;
+}
+
+/* A kind that is there is sent once more; one that is on its way begins again, and keeps the bound. */
+static void a_new_context_gets_each_byte_once(void **state)
+{
+    static gpu g;
+    static act a;
+    (void)state;
+    for (uint32_t w = 0; w < TEST_COUNT(counted_ways); w++) {
+        const noh_stage_stats *stats;
+        uint64_t sum, without, with, later, left = 0;
+        counted_open(&g);
+        g.gl.BufferData = count_contents;
+        open_act(&a, &g, counted_ways[w]);
+        with_slots(&a, 2);
+        a.c.desc.load_bytes = 65536;
+        assert_true(make_act(&a));
+        stats = noh_stage_stats_of(a.c.stage);
+        without = bytes_of_restore(&a);
+        sum = upload_alone(&a, 65536);
+        with = bytes_of_restore(&a) - without;
+        assert_true(with >= sum && with < sum + sum / 4u);
+        put(&a, MASKS, NULL);
+        put(&a, MASKS, &a.others[MASKS]);
+        assert_int_equal(noh_stage_frame(a.c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+        later = bytes_of_restore(&a) - without;
+        while (assert_int_equal(noh_stage_frame(a.c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK), stats->coming) {
+            assert_true(stats->load_bytes <= 65536);
+            left += stats->load_bytes;
+        }
+        assert_true(later < sum / 4u && left == sum);
+        close_act(&a);
+        gpu_close(&g);
+    }
+}
+
 /* ---- any order, with a driver that fails ---- */
 
 static const char *const functions[] = {
@@ -318,7 +365,7 @@ static void act_at_random(act *a, uint32_t slot, fate *at, const gpu *g, test_ra
     const uint32_t what = test_random_below(r, 6);
     if (!at->holds) {
         const uint32_t kind = test_random_below(r, CAST_KINDS);
-        const uint64_t before = noh_gl_ledger_bytes(&a->ledger);
+        const uint64_t before = noh_gl_ledger_bytes(&a->ledger), hash = noh_stage_hash(a->c.stage);
         const int fails = test_random_below(r, 4) != 0;
         noh_result result;
         noh_null_report was, is;
@@ -332,7 +379,7 @@ static void act_at_random(act *a, uint32_t slot, fate *at, const gpu *g, test_ra
             at->refused++;
             noh_null_report_of(g->context, &is);
             assert_memory_equal(was.live, is.live, sizeof was.live);
-            assert_true(noh_gl_ledger_bytes(&a->ledger) == before);
+            assert_true(noh_gl_ledger_bytes(&a->ledger) == before && noh_stage_hash(a->c.stage) == hash);
         } else {
             if (result) fail_msg("%s", said.what);
             noh_null_report_of(g->context, &is);
@@ -548,6 +595,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(pictures_are_those_of_kinds_that_were_there),
         cmocka_unit_test(each_frame_keeps_the_bound),
+        cmocka_unit_test(a_new_context_gets_each_byte_once),
         cmocka_unit_test(any_order_with_a_driver_that_fails),
         cmocka_unit_test(the_plan_has_every_byte),
         cmocka_unit_test(what_the_plan_does_not_have_is_refused),

@@ -549,6 +549,17 @@ static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *err
     return result;
 }
 
+/* Slots' models and pictures are made empty and filled again, all of those that are shown. */
+static int is_of_slot(const noh_stage *stage, uint32_t model)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    int is = 0;
+    for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
+        is |= gl->kinds[i].slot && model - gl->kinds[i].first_model < stage->plan->kinds[i].room.mesh_count;
+    }
+    return is;
+}
+
 static noh_result restore_all(noh_stage *stage, noh_error *error)
 {
     noh_stage_gl *gl = stage->gpu;
@@ -556,7 +567,7 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
     if (stage->slots) result = noh_gl_slots_recompile(gl, &stage->desc, stage->plan->morph_path, error);
     for (uint32_t i = 0; i < gl->model_count && result == NOH_OK; i++) {
         noh_gl_model *model = &gl->models[i];
-        if (model->mesh.mesh.header) result = noh_gl_model_restore(stage, model, error);
+        if (model->mesh.mesh.header) result = noh_gl_model_restore(stage, model, is_of_slot(stage, i), error);
     }
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         result = restore_kind(stage, i, error);

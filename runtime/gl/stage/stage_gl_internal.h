@@ -249,7 +249,7 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
                              noh_error *error);
 
 /* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
-noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, noh_error *error);
+noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, int slot, noh_error *error);
 int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
 void noh_gl_use(noh_stage *stage, uint32_t load_kind, int loaded);
 

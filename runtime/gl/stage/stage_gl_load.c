@@ -121,13 +121,15 @@ void noh_gl_use(noh_stage *s, uint32_t load_kind, int loaded)
 
 /* ---- a new context ---- */
 
-static noh_result restore_mesh(const noh_gl_device *d, noh_gl_model *model, noh_error *error)
+static noh_result restore_mesh(const noh_gl_device *d, noh_gl_model *model, int slot, noh_error *error)
 {
-    if (model->load_kind == NOH_NONE) {
+    const noh_mesh mesh = model->mesh.mesh;
+    if (model->load_kind == NOH_NONE && !slot) {
         return noh_gl_mesh_restore(d->api, d->ledger, &model->mesh, error);
     }
     noh_gl_mesh_delete(noh_gl_lost_api(), d->ledger, &model->mesh);
-    return noh_gl_model_make_mesh(d, model, error);
+    return slot ? noh_gl_mesh_create_empty(d->api, d->ledger, &mesh, &mesh, &model->mesh, error)
+                : noh_gl_model_make_mesh(d, model, error);
 }
 
 noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
@@ -139,10 +141,10 @@ noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
     return result;
 }
 
-noh_result noh_gl_model_restore(const noh_stage *s, noh_gl_model *model, noh_error *error)
+noh_result noh_gl_model_restore(const noh_stage *s, noh_gl_model *model, int slot, noh_error *error)
 {
     const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
-    noh_result result = restore_mesh(d, model, error);
+    noh_result result = restore_mesh(d, model, slot, error);
     if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
     if (result == NOH_OK && model->morph) result = noh_gl_model_set_mesh(model, error);
     model->mesh_at = 0;

@@ -118,9 +118,10 @@ static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_g
         to = at(kinds, desc, where);
         if (!owns(desc, where, &texture)) {
             *to = *at(kinds, desc, owner_of(desc, where));
-        } else if (how == RESTORE) {
+        } else if (how == RESTORE && !kinds[where.kind].slot) {
             result = noh_gl_picture_restore(d->api, d->ledger, &texture, to, error);
-        } else if (how == CREATE_EMPTY) {
+        } else if (how != CREATE) {
+            if (how == RESTORE) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, to);
             result = noh_gl_picture_create_empty(d->api, d->ledger, &texture, to, error);
         } else {
             result = noh_gl_picture_create(d->api, d->ledger, &texture, to, error);

@@ -192,10 +192,7 @@ static noh_result open_slot(noh_stage *s, uint32_t kind, noh_error *error)
     if (result == NOH_OK) result = noh_stage_open_pools(s, kind, blocks.pools, error);
     if (result == NOH_OK)
         result = noh_stage_open_views(s, kind, s->slots->of[kind].views, s->slots->views_bytes, error);
-    if (result == NOH_OK) {
-        noh_stage_open_actors(s, kind);
-        noh_stage_open_worn(s, kind);
-    }
+    if (result == NOH_OK) noh_stage_open_worn(s, kind);
     return result;
 }
 
@@ -232,7 +229,11 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
     if (result == NOH_OK && s->gpu) result = s->desc.gpu->open(s, kind, error);
     s->kinds[kind].finer.hidden = s->gpu != NULL;
     d->finer = NULL;
-    if (result != NOH_OK) empty(s, kind);
+    if (result == NOH_OK) {
+        noh_stage_open_actors(s, kind); /* last: it begins generations, which stay */
+    } else {
+        empty(s, kind);
+    }
     return result;
 }
 
