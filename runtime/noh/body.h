@@ -100,8 +100,8 @@ typedef struct noh_touches {
  * each sole, springs once for each frame and actor: in batches, always in the same order. The same question must get
  * the same answer while a step or a frame runs: then results are equal for any number of jobs.
  * An answer with a number that is not finite, or a normal that is not unit, counts as none; `along` is clamped.
- * Threads: unless `threads` is set, noh never asks from two threads at once: a stage with several jobs then refuses feet
- * and springs on it, which jobs would ask at once. Two stages that run at once must not share such a physics. */
+ * Threads: unless `threads` is set, noh never asks from two threads at once: a stage with several jobs refuses feet and
+ * springs on it, which jobs would ask at once. Two stages that run at once must not share such a physics. */
 typedef struct noh_world_physics {
     void (*rays)(void *user, const noh_world_ray *rays, uint32_t count, noh_world_hit *hits);
     void (*touches)(void *user, const noh_world_body *bodies, uint32_t count, noh_touches *touches);

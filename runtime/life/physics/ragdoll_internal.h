@@ -98,8 +98,8 @@ typedef struct noh_ragdoll_doll {
     uint32_t bent;   /* steps for which joints placed beyond their limits are brought back slowly */
 } noh_ragdoll_doll;
 
-/* The size of a doll, as a multiple of its rig's; 0 in its bytes is 1. Its positions, origin and velocities are in
- * multiples of it, not in metres: to a large doll the world is small and gravity weak. Functions take and give metres. */
+/* The size of a doll, as a multiple of its rig's; 0 in its bytes is 1. Its positions, origin and velocities count in
+ * multiples of it, not in metres: for a large doll the world is small, gravity weak. Functions take and give metres. */
 float noh_ragdoll_size(const noh_ragdoll_doll *doll);
 
 /* Shared data of a body and of the joint to its parent, in the bodies' own spaces. */
