@@ -49,10 +49,11 @@ static int bad_param(const noh_graph *g, uint16_t param)
 static const char *bad_clip(const noh_graph *g, const noh_clip_set *set, const noh_graph_node *n)
 {
     noh_track unused;
+    noh_error why = { NOH_OK, NULL, 0, 0 };
     memset(&unused, 0, sizeof unused);
     if (n->index >= g->clip_count) return "clip index must be below clip_count";
-    return noh_track_start(&unused, set, &g->clips[n->index], NULL) == NOH_OK ? NULL
-                                                                              : "clip desc: noh_track_start rejects it";
+    (void)noh_track_start(&unused, set, &g->clips[n->index], &why);
+    return why.what;
 }
 
 static const char *bad_space_1d(const noh_graph *g, const noh_graph_node *n)

@@ -263,7 +263,9 @@ static void node_fields_broken_in_turn(void **state)
     r.nodes[0].index = 1;
     bad_graph(&r, NOH_ERR_DATA, "clip index");
     r.clips[4].clip = 99;
-    bad_graph(&r, NOH_ERR_DATA, "clip desc");
+    bad_graph(&r, NOH_ERR_DATA, "clip is not a clip");
+    r.clips[4].speed = NOH_SPEED_MAX + 1; /* the track's own words */
+    bad_graph(&r, NOH_ERR_DATA, "speed is above NOH_SPEED_MAX");
     r.nodes[mask].mask = 0;
     bad_graph(&r, NOH_ERR_DATA, "mask");
     r.nodes[mask].mask = MASKS + 1u;
