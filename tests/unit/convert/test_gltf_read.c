@@ -1292,13 +1292,16 @@ static void vrm_expressions_are_recipes(void **state)
 {
     (void)state;
     model *m = load(vrm_scene(
-        "\"VRMC_vrm\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{\"node\":1},\"head\":{\"node\":9}}},"
+        "\"VRMC_vrm\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{\"node\":1},\"head\":{\"node\":9},"
+        "\"spine\":{\"node\":0},\"neck\":{\"node\":-1},\"Armature\":{\"node\":2}}},"
         "\"expressions\":{\"preset\":{\"happy\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,\"weight\":0.5},"
         "{\"node\":2,\"index\":7,\"weight\":1}],\"materialColorBinds\":[{\"material\":0}]},\"blinkLeft\":{\"morphTargetBinds\":[{"
         "\"node\":2,\"index\":1,\"weight\":1}]},\"blinkRight\":{\"morphTargetBinds\":[{\"node\":2,\"index\":1,\"weight\":0.25}]},\"blink\":{\"morphTargetBinds\":[{\"node\":2,"
         "\"index\":1,\"weight\":1}]},\"relaxed\":{\"morphTargetBinds\":[{\"node\":2,\"index\":1,\"weight\":1}]}}}}"));
     assert_string_equal(m->nodes[1].name, "hips");
-    assert_string_equal(m->nodes[0].name, "Armature");
+    assert_string_equal(m->nodes[0].name, "spine");
+    assert_true(has_warning(m, "VRM bone 'head': its node does not exist"));
+    assert_true(has_warning(m, "VRM bone 'Armature': its node 'face' keeps its name: another node has the bone's"));
     assert_string_equal(m->meshes[0].recipe,
                         "blink-left \"lids\" 1\nblink-right \"lids\" 0.25\njoy-upper \"Fcl Joy\" 0.5\n"
                         "expression \"relaxed\" \"lids\" 1\n");
@@ -1373,7 +1376,8 @@ static void old_vrm_turns_round(void **state)
         "\"weight\":100}]},{\"presetName\":\"blink\",\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]},"
         "{\"presetName\":\"unknown\",\"binds\":[{\"mesh\":0,\"index\":1,\"weight\":50}]}]}}"));
     const model_node *face = &m->nodes[2], *root = &m->nodes[0];
-    assert_string_equal(m->nodes[1].name, "spine");
+    assert_string_equal(m->nodes[1].name, "hips");
+    assert_true(has_warning(m, "VRM bone 'spine': its node is another bone, too"));
     assert_string_equal(m->meshes[0].recipe, "joy-upper \"Fcl Joy\" 1\nblink \"lids\" 0.5\n");
     assert_true(face->world[12] == -1.0 && face->world[13] == 3.0 && face->world[14] == -3.5 && face->world[0] == -1.0);
     assert_true(root->rotation[1] == 1.0f && root->rotation[3] == 0.0f && root->translation[0] == -1.0f);
@@ -1395,6 +1399,7 @@ static void damaged_vrm_is_ignored(void **state)
         model *m = load(vrm_scene(all[i]));
         assert_null(m->meshes[0].recipe);
         assert_string_equal(m->nodes[1].name, "J_Bip_C_Hips");
+        if (i == 4) assert_true(has_warning(m, "left out of it: its weight is 0, or beyond 4"));
         model_free(m);
     }
 }

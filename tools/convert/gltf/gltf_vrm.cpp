@@ -67,29 +67,42 @@ static std::set<std::string> names_taken(const file &f)
     return taken;
 }
 
-/* A node keeps its own name if another node already has the bone's name. */
-static void name_bone(file &f, const std::string &bone, size_t node, std::set<std::string> &taken)
+/* A node keeps its own name if another node already has the bone's name. 0.0 gives bones that are not there -1. */
+static void name_bone(file &f, const std::string &bone, const value &from, std::set<std::string> &taken,
+                      std::set<uint32_t> &bones)
 {
-    if (bone.empty() || node >= f.node_of.size() || f.node_of[node] == MODEL_NONE) return;
+    const value *given = member(from, "node");
+    const size_t node = index_member(from, "node", f.node_of.size());
+    const std::string where = "VRM bone '" + printable(bone) + "'";
+    if (bone.empty() || (given && given->IsInt() && given->Get<int>() < 0)) return;
+    if (node >= f.node_of.size() || f.node_of[node] == MODEL_NONE) {
+        leave_out(f, where, ": its node does not exist");
+        return;
+    }
     model_node &out = f.out->nodes[f.node_of[node]];
-    if (out.name == bone || !taken.insert(bone).second) return;
-    char *name = copy_string(bone);
-    free(out.name);
-    out.name = name;
+    if (!bones.insert(f.node_of[node]).second)
+        leave_out(f, where, ": its node is another bone, too");
+    else if (out.name != bone && !taken.insert(bone).second)
+        leave_out(f, where, ": its node '" + printable(out.name) + "' keeps its name: another node has the bone's");
+    else if (out.name != bone) {
+        char *name = copy_string(bone);
+        free(out.name);
+        out.name = name;
+    }
 }
 
 static void name_bones(file &f, const value &vrm)
 {
-    const value *humanoid = member(vrm, "humanoid"), *bones = humanoid ? member(*humanoid, "humanBones") : nullptr;
+    const value *humanoid = member(vrm, "humanoid"), *list = humanoid ? member(*humanoid, "humanBones") : nullptr;
     std::set<std::string> taken = names_taken(f);
-    if (!bones) return;
-    for (size_t i = 0; bones->IsArray() && i < bones->ArrayLen(); ++i) { /* 0.0 */
-        const value &bone = bones->Get(static_cast<int>(i));
-        name_bone(f, text_member(bone, "bone"), index_member(bone, "node", f.node_of.size()), taken);
+    std::set<uint32_t> bones;
+    if (!list) return;
+    for (size_t i = 0; list->IsArray() && i < list->ArrayLen(); ++i) { /* 0.0 */
+        const value &bone = list->Get(static_cast<int>(i));
+        name_bone(f, text_member(bone, "bone"), bone, taken, bones);
     }
-    if (!bones->IsObject()) return;
-    for (const std::string &bone : bones->Keys())
-        name_bone(f, bone, index_member(bones->Get(bone), "node", f.node_of.size()), taken);
+    if (!list->IsObject()) return;
+    for (const std::string &bone : list->Keys()) name_bone(f, bone, list->Get(bone), taken, bones);
 }
 
 /* --- expressions --- */
@@ -129,7 +142,9 @@ static void add_line(file &f, expression &e, uint32_t mesh, size_t target, doubl
 {
     const std::string name = f.out->meshes[mesh].targets[target].name;
     if (!is_word(name) || weight == 0.0 || !(weight >= -4.0 && weight <= 4.0)) {
-        leave_out(f, "target '" + printable(name) + "'", ": it was left out of a VRM expression");
+        leave_out(f, e.where,
+                  ": target '" + printable(name) + "' was left out of it: " +
+                      (is_word(name) ? "its weight is 0, or beyond 4" : "a recipe cannot hold its name"));
         return;
     }
     if (r.lines.size() >= LINES_MAX) {
