@@ -102,6 +102,13 @@ fi
 noh speak 'Papa bought me five boats.' --face "$build/mask.noh" -o "$work/line.noh" --wav "$work/line.wav"
 expect 0 'a clip for the mask'
 check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test "$(wc -c <"$1")" -gt 40000' - "$work/line.wav"
+{ # 44 bytes of its head, then half a second of nothing
+    head -c 44 "$work/line.wav"
+    head -c 44100 /dev/zero
+} >"$work/silent.wav"
+noh speak "$work/silent.wav" --face "$build/mask.noh" -o "$work/silent.noh"
+expect 0 'a silent recording'
+check 'stresses nothing' grep -q '^face: 0 stresses' "$work/out"
 noh info "$work/line.noh"
 check 'one clip, a key for each word' grep -q "clip 'speech': .* 63 floats, .* 5 callback keys" "$work/out"
 

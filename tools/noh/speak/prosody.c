@@ -15,6 +15,7 @@
 #define LAG_MIN 20  /* 400 Hz */
 #define LAG_MAX 114 /* 70 Hz */
 #define VOICED 0.5  /* correlation of a voice with itself a period later */
+#define VOICE_DB -55.0f /* a voice is louder */
 #define RANGE_DB 35.0
 #define SMOOTH 6 /* frames to each side */
 #define APART 30 /* least frames between two stresses */
@@ -89,11 +90,11 @@ static void measure(const sound *s, prosody *p, voice_frame *v, float *sorted)
         double energy = 0.0, lag;
         for (int i = 0; i < WINDOW; i++) energy += (double)x[i] * (double)x[i];
         v[f].db = (float)(10.0 * log10(energy / WINDOW + 1e-10));
-        lag = v[f].db > -55.0f ? period_of(x) : 0.0;
+        lag = v[f].db > VOICE_DB ? period_of(x) : 0.0;
         v[f].pitch = lag > 0.0 ? (float)(12.0 * log2(RATE / lag)) : 0.0f;
     }
     for (uint32_t f = 0; f < p->count; f++) sorted[f] = v[f].db;
-    loudest = percentile(sorted, p->count, 0.95);
+    loudest = fmaxf(percentile(sorted, p->count, 0.95), VOICE_DB);
     for (uint32_t f = 0; f < p->count; f++) {
         p->frames[f].loud = (float)fmax(0.0, fmin(1.0, 1.0 + ((double)v[f].db - (double)loudest) / RANGE_DB * 1.4));
         if (v[f].pitch > 0.0f) sorted[voiced++] = v[f].pitch;
