@@ -179,12 +179,35 @@ static int read_model_file(const char *path, const source_options *options, sour
     return 0;
 }
 
+/* Games, graphs, ragdolls and clips of other files find joints by name. */
+static int warn_of_joint_names(source *s, const raw_skeleton *k)
+{
+    const char *first = NULL;
+    uint32_t count = 0;
+    for (uint32_t j = 1; j < k->joint_count; j++) {
+        const char *name = k->joints[j].name;
+        uint32_t before = 0;
+        while (before < j && name && (!k->joints[before].name || strcmp(k->joints[before].name, name) != 0)) before++;
+        if (!name || !*name || before == j) continue;
+        if (!count++) first = name;
+    }
+    return count && model_warn(s->m,
+                               "two joints are named '%.80s' (%u in all): a name finds only one of them; give each its "
+                               "own name",
+                               first, count);
+}
+
 int source_read(const char *path, const source_options *options, source *s, model_error *error)
 {
     const file_kind *kind = file_kind_of(path);
     memset(s, 0, sizeof *s);
-    return kind && kind->reader >= READER_BVH ? read_clip_file(path, kind->reader, options, s, error)
-                                              : read_model_file(path, options, s, error);
+    if (kind && kind->reader >= READER_BVH ? read_clip_file(path, kind->reader, options, s, error)
+                                           : read_model_file(path, options, s, error))
+        return 1;
+    for (uint32_t i = 0; i < s->set_count; i++) {
+        if (warn_of_joint_names(s, &s->sets[i]->skeleton)) return out_of_memory(error);
+    }
+    return 0;
 }
 
 void source_free(source *s)

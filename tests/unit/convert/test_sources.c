@@ -212,6 +212,16 @@ static void name_joint(source *s, uint32_t joint, const char *name)
     strcpy(*at, name);
 }
 
+static void joints_of_one_name_are_told(void **state)
+{
+    source same = source_of(clip_bvh("walk", "aba", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES));
+    (void)state;
+    assert_true(has_warning(same.m, "two joints are named 'a' (1 in all)"));
+    assert_false(has_warning(other.m, "two joints"));
+    source_free(&same);
+    source_free(&other);
+}
+
 static void namespaces_are_no_part_of_a_name(void **state)
 {
     source base = source_of(clip_bvh("walk", "abc", FRAMES)), other = source_of(clip_bvh("run", "abc", FRAMES)),
@@ -433,6 +443,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_of_unknown_nodes_are_left_out),
     cmocka_unit_test(weights_come_to_a_model_without_clip),
     cmocka_unit_test(what_adds_nothing_is_refused),
+    cmocka_unit_test(joints_of_one_name_are_told),
     cmocka_unit_test(namespaces_are_no_part_of_a_name),
     cmocka_unit_test(bones_of_other_names_are_matched_where_they_rest_alike),
     cmocka_unit_test(names_are_read_from_a_file),
