@@ -63,8 +63,8 @@ warns "VRM expression 'angry': its animation was left out: its node does not exi
 shows mood 1 '0.50 1.00 0.00'
 shows mood 0.5 '0.25 0.50 0.00'
 
-# Seconds, other separators, a face that has no such targets.
-printf 'time;jaw_open;mouthSmileLeft\r\n0.50;0;0\r\n0.54;0.5;0\r\n0.58;1;0\r\n' >"$work/seconds.csv"
+# Seconds, other separators and a decimal comma, a face that has no such targets.
+printf 'time;jaw_open;mouthSmileLeft\r\n0.50;0;0\r\n0,54;0,5;0\r\n0.58;1;0\r\n' >"$work/seconds.csv"
 model jaw '"jawOpen","a","b"'
 build jaw seconds
 shows seconds 0.04 '0.50 0.00 0.00'

@@ -332,7 +332,11 @@ int face_csv_read(const char *path, raw_set **out, model_error *error)
     if (!f) return model_fail(error, "", "out of memory");
     if (!failed) {
         text_start(&f->text, bytes, size, error);
-        failed = read_columns(f) || read_rows(f) || put_in_time(f);
+        failed = read_columns(f);
+        for (size_t i = 0; f->separator == ';' && i < size; i++) { /* such files write 0,5 */
+            if (bytes[i] == ',') bytes[i] = '.';
+        }
+        failed = failed || read_rows(f) || put_in_time(f);
         if (!failed && !(*out = raw_set_new(0, 1))) failed = out_of_memory(f);
         failed = failed || make_clip(f, path, *out) || (set_warning(f, *out) && out_of_memory(f));
     }

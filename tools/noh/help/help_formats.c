@@ -18,7 +18,8 @@ const char *const help_formats_text[] = {
     ".fbx: FBX 2011 and later, and version 6, binary and ASCII: meshes, skins, blend shapes, materials; a clip for each take, with pivots, "
     "inherit types, layers and tangents, sampled at the file's frames. Constraints, NURBS and caches are left out with a warning.",
     ".bvh: motion capture. Channels may be in any order; end sites do not become joints. --unit-cm is the length of a unit.",
-    ".csv: facial capture of ARKit's shapes, a row for each frame. The first line names the columns, separated by commas or semicolons: "
+    ".csv: facial capture of ARKit's shapes, a row for each frame. The first line names the columns, separated by commas, "
+    "or by semicolons, where numbers may be written 0,5: "
     "Timecode (HOURS:MINUTES:SECONDS:FRAME) or Time (seconds), and shapes (EyeBlinkLeft, jaw_open). Rows may be missing. Given with a "
     "model, the clip moves its targets of these names, in any spelling that noh knows (--names adds yours); a target without a side takes "
     "the mean of left and right. Rotations of head and eyes are left out.",
