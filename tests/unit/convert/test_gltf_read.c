@@ -1801,6 +1801,24 @@ static void mtoon_has_textures(void **state)
     model_free(m);
 }
 
+/* The spec bounds them; below 0 or above 1 a surface would make light, or take more than there is. */
+static void factors_stay_within_0_and_1(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"material\":0");
+    APPEND(s->rest, ",\"materials\":[{\"name\":\"neon\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[9,-1,0.5,1.00001],"
+                    "\"metallicFactor\":-4,\"roughnessFactor\":5}}]");
+    model *m = load(s);
+    const model_material *a = &m->materials[0];
+    const float color[4] = { 1.0f, 0.0f, 0.5f, 1.0f };
+    assert_floats(a->base_color, color, 4);
+    assert_true(a->metallic == 0.0f && a->roughness == 1.0f);
+    assert_true(has_warning(m, "material 'neon': its baseColorFactor of 9 became 1"));
+    assert_true(has_warning(m, "material 'neon': its metallicFactor of -4 became 0"));
+    assert_true(has_warning(m, "material 'neon': its roughnessFactor of 5 became 1"));
+    model_free(m);
+}
+
 /* Diffuse becomes base colour, specular what reflects straight on, by texel, glossiness the roughness in its alpha. */
 static void specular_and_glossiness(void **state)
 {
@@ -2790,6 +2808,7 @@ int main(void)
         cmocka_unit_test(vrm_animations_are_for_any_body),
         cmocka_unit_test(old_vrm_turns_round),
         cmocka_unit_test(damaged_vrm_is_ignored),
+        cmocka_unit_test(factors_stay_within_0_and_1),
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(large_images_are_counted_first),

@@ -1,6 +1,7 @@
 /* gltf_material.cpp: materials, and the textures and images that they use. */
 #include "gltf_internal.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -499,11 +500,19 @@ static void read_gloss_map(file &f, int index, int occlusion, double gloss, mode
     out.surface_texture = surface_texture(f, occlusion, -1, -1, where);
 }
 
-static void read_gloss(const tinygltf::Value &e, model_material &out, const std::string &where)
+/* A factor of 0 to 1: others, which light would be more than there is, become the nearer end. */
+static float share_of(file &f, double value, const std::string &where, const char *name)
+{
+    const float given = to_float(value, where + " " + name), share = std::min(std::max(given, 0.0f), 1.0f);
+    if (std::fabs(given - share) > 1e-4f) leave_out(f, where, text(": its %s of %g became %g", name, value, share));
+    return share;
+}
+
+static void read_gloss(file &f, const tinygltf::Value &e, model_material &out, const std::string &where)
 {
     const double gloss = number_in(&e, "glossinessFactor", 1.0);
     for (size_t i = 0; i < 4; ++i)
-        out.base_color[i] = to_float(factor_in(e, "diffuseFactor", i), where + " diffuseFactor");
+        out.base_color[i] = share_of(f, factor_in(e, "diffuseFactor", i), where, "diffuseFactor");
     for (size_t i = 0; i < 3; ++i) {
         const double f0 = factor_in(e, "specularFactor", i);
         out.f0[i] = to_float(f0 < 0.0 ? 0.0 : f0 > 1.0 ? 1.0 : f0, where + " specularFactor");
@@ -516,7 +525,7 @@ static void read_emissive(const tinygltf::Material &m, model_material &out, cons
 {
     const double strength = number_in(extension_of(m, "KHR_materials_emissive_strength"), "emissiveStrength", 1.0);
     for (size_t i = 0; i < 3; ++i)
-        out.emissive[i] = to_float(m.emissiveFactor[i] * strength, where + " emissiveFactor");
+        out.emissive[i] = to_float(std::max(m.emissiveFactor[i] * strength, 0.0), where + " emissiveFactor");
 }
 
 /* --- materials --- */
@@ -644,18 +653,18 @@ static void read_material(file &f, size_t index, model_material &out)
     std::string where = where_of(f, index);
     out = model_material_default();
     out.name = copy_string(name_or(m.name, "material", index));
-    for (size_t i = 0; i < 4; ++i) out.base_color[i] = to_float(pbr.baseColorFactor[i], where + " baseColorFactor");
-    out.metallic = to_float(pbr.metallicFactor, where + " metallicFactor");
-    out.roughness = to_float(pbr.roughnessFactor, where + " roughnessFactor");
+    for (size_t i = 0; i < 4; ++i) out.base_color[i] = share_of(f, pbr.baseColorFactor[i], where, "baseColorFactor");
+    out.metallic = share_of(f, pbr.metallicFactor, where, "metallicFactor");
+    out.roughness = share_of(f, pbr.roughnessFactor, where, "roughnessFactor");
     out.alpha = alpha_of(f, m.alphaMode, where);
     out.alpha_cutoff = to_float(m.alphaCutoff, where + " alphaCutoff");
     out.normal_scale = to_float(m.normalTexture.scale, where + " normalTexture scale");
-    out.occlusion_strength = to_float(m.occlusionTexture.strength, where + " occlusionTexture strength");
+    out.occlusion_strength = share_of(f, m.occlusionTexture.strength, where, "occlusionTexture strength");
     out.double_sided = m.doubleSided;
     out.unlit = m.extensions.count("KHR_materials_unlit") != 0;
     read_emissive(m, out, where);
     read_f0(m, out, where);
-    if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(*gloss, out, where);
+    if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(f, *gloss, out, where);
     const toon_maps toon = read_surface(f, index, out, where);
     read_tint(f, m, out, where);
     read_priority(f, m, out, where);
