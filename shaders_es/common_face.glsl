@@ -11,20 +11,24 @@ out vec3 noh_v_gaze;
 out vec3 noh_v_up;
 out vec3 noh_v_out;
 
-/* Compute the eye's gaze, up direction, and direction away from the nose. They turn with the normal, by targets, and
- * then with the ball, by joints. rest, model: position before and after targets; before, after: normal, unit; x, y, z:
- * rows to the world */
-void noh_face_vertex(vec3 rest, vec3 model, vec3 before, vec3 after, vec4 x, vec4 y, vec4 z)
+/* The eye's gaze and up direction, skinned, in the mesh's own space. They turn with the normal, by targets, and with the
+ * joints. model: before skinning; before, after: the normal before and after targets */
+void noh_gaze_vertex(vec3 model, vec3 before, vec3 after, out vec3 gaze, out vec4 up)
 {
-    vec3 turn = cross(before, after), gaze = noh_surface_values.xyz, up = vec3(0.0, 1.0, 0.0);
-    float radius = length(gaze);
-    gaze = radius > 0.0 ? gaze / radius : vec3(0.0, 0.0, 1.0);
+    vec3 turn = cross(before, after), upwards = vec3(0.0, 1.0, 0.0);
+    float radius = length(noh_surface_values.xyz);
+    gaze = radius > 0.0 ? noh_surface_values.xyz / radius : vec3(0.0, 0.0, 1.0);
     gaze = normalize(gaze + cross(turn, gaze));
-    vec4 upwards = vec4(up + cross(turn, up), 1.0);
-    noh_skin_vertex(model, gaze, upwards);
-    radius *= length(vec3(x.x, y.x, z.x));
+    up = vec4(upwards + cross(turn, upwards), 1.0);
+    noh_skin_vertex(model, gaze, up);
+}
+
+/* Both and the direction away from the nose, in the world. x, y, z: rows of the world matrix */
+void noh_face_vertex(vec3 rest, vec3 gaze, vec3 up, vec4 x, vec4 y, vec4 z)
+{
+    float radius = length(noh_surface_values.xyz) * length(vec3(x.x, y.x, z.x));
     noh_v_gaze = max(radius, 1e-6) * normalize(vec3(dot(x.xyz, gaze), dot(y.xyz, gaze), dot(z.xyz, gaze)));
-    noh_v_up = vec3(dot(x.xyz, upwards.xyz), dot(y.xyz, upwards.xyz), dot(z.xyz, upwards.xyz));
+    noh_v_up = vec3(dot(x.xyz, up), dot(y.xyz, up), dot(z.xyz, up));
     noh_v_out = cross(noh_v_up, noh_v_gaze) * (rest.x < 0.0 ? -1.0 : 1.0);
 }
 #endif

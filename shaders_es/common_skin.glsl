@@ -145,7 +145,7 @@ void noh_stored_weights(out float w[NOH_INFLUENCES])
     }
 }
 
-/* The weights of the joints used. The first is again 1 minus the others. */
+/* The weights of the joints used, but for the first, which is again 1 minus the others. */
 void noh_drawn_weights(out float drawn[NOH_DRAWN])
 {
     float stored[NOH_INFLUENCES], sum = 4194304.0;
@@ -156,11 +156,15 @@ void noh_drawn_weights(out float drawn[NOH_DRAWN])
         sum += stored[i];
     }
 #endif
-    drawn[0] = 1.0;
     for (int i = 1; i < NOH_DRAWN; i++) {
         drawn[i] = stored[i] / sum;
-        drawn[0] -= drawn[i];
     }
+}
+
+/* 1 with a number's sign. As a choice, products of it would be chosen from both signs, which are then both kept. */
+float noh_side(float x)
+{
+    return uintBitsToFloat((floatBitsToUint(x) & 0x80000000u) | 0x3f800000u);
 }
 
 vec3 noh_unit_or(vec3 v, vec3 otherwise)
@@ -170,6 +174,8 @@ vec3 noh_unit_or(vec3 v, vec3 otherwise)
 }
 
 /* ---- the two ways to blend ---- */
+
+/* Both add the first joint last: its weight is known then, and the others need not be kept. */
 
 #ifdef NOH_DUAL_QUATERNION
 vec3 noh_rotate(vec4 q, vec3 v)
@@ -186,24 +192,26 @@ void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[NOH_DRAWN];
     int row = noh_joint_row(0);
-    vec4 pivot = NOH_PALETTE_ROW(row), rotation, dual, h, more;
+    vec4 pivot = NOH_PALETTE_ROW(row), rotation = vec4(0.0), dual = rotation, h = rotation, more = rotation;
     vec3 x, y, z, cx, cy, cz;
-    float size, side;
+    float size, side, first = 1.0;
     noh_drawn_weights(w);
-    rotation = pivot * w[0];
-    dual = NOH_PALETTE_ROW(row + 1) * w[0];
-    h = NOH_PALETTE_ROW(row + 2) * w[0];
-    more = NOH_PALETTE_ROW(row + 3) * w[0];
     for (int i = 1; i < NOH_DRAWN; i++) {
         vec4 q;
         row = noh_joint_row(i);
         q = NOH_PALETTE_ROW(row);
-        side = dot(pivot, q) < 0.0 ? -w[i] : w[i];
-        rotation += q * side;
-        dual += NOH_PALETTE_ROW(row + 1) * side;
+        side = noh_side(dot(pivot, q));
+        rotation += q * (side * w[i]);
+        dual += NOH_PALETTE_ROW(row + 1) * (side * w[i]);
         h += NOH_PALETTE_ROW(row + 2) * w[i];
         more += NOH_PALETTE_ROW(row + 3) * w[i];
+        first -= w[i];
     }
+    row = noh_joint_row(0);
+    rotation += pivot * first;
+    dual += NOH_PALETTE_ROW(row + 1) * first;
+    h += NOH_PALETTE_ROW(row + 2) * first;
+    more += NOH_PALETTE_ROW(row + 3) * first;
     size = 1.0 / sqrt(dot(rotation, rotation));
     rotation *= size;
     dual *= size;
@@ -213,7 +221,7 @@ void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
     cx = cross(y, z);
     cy = cross(z, x);
     cz = cross(x, y);
-    side = dot(x, cx) < 0.0 ? -1.0 : 1.0;
+    side = noh_side(dot(x, cx));
     position = noh_rotate(rotation, vec3(dot(x, position), dot(y, position), dot(z, position))) +
                2.0 * (rotation.w * dual.xyz - dual.w * rotation.xyz + cross(rotation.xyz, dual.xyz));
 #ifndef NOH_DEPTH_ONLY
@@ -229,24 +237,26 @@ void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
     float w[NOH_DRAWN];
-    int row = noh_joint_row(0);
-    vec4 x, y, z, p = vec4(position, 1.0);
+    int row;
+    vec4 x = vec4(0.0), y = x, z = x, p = vec4(position, 1.0);
     vec3 cx, cy, cz;
-    float side;
+    float side, first = 1.0;
     noh_drawn_weights(w);
-    x = NOH_PALETTE_ROW(row) * w[0];
-    y = NOH_PALETTE_ROW(row + 1) * w[0];
-    z = NOH_PALETTE_ROW(row + 2) * w[0];
     for (int i = 1; i < NOH_DRAWN; i++) {
         row = noh_joint_row(i);
         x += NOH_PALETTE_ROW(row) * w[i];
         y += NOH_PALETTE_ROW(row + 1) * w[i];
         z += NOH_PALETTE_ROW(row + 2) * w[i];
+        first -= w[i];
     }
+    row = noh_joint_row(0);
+    x += NOH_PALETTE_ROW(row) * first;
+    y += NOH_PALETTE_ROW(row + 1) * first;
+    z += NOH_PALETTE_ROW(row + 2) * first;
     cx = cross(y.xyz, z.xyz);
     cy = cross(z.xyz, x.xyz);
     cz = cross(x.xyz, y.xyz);
-    side = dot(x.xyz, cx) < 0.0 ? -1.0 : 1.0;
+    side = noh_side(dot(x.xyz, cx));
     position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY
     normal = noh_unit_or(vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side, normal);

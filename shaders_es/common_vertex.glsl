@@ -208,6 +208,9 @@ vec2 noh_uv_of(ivec4 tile)
 }
 #endif
 
+/* In an order that needs few registers: the joints' matrix is used up before the rows of the world are fetched, these
+ * before the loops of transfer, and what needs neither comes last. Otherwise a Mali spills, and the vertices of a crowd
+ * cost up to five times as much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
@@ -219,27 +222,17 @@ noh_vertex noh_fetch()
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
-#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
-    v.uv = noh_uv_of(tile);
-#endif
-#if defined(NOH_WRINKLES) && !defined(NOH_DEPTH_ONLY)
-    noh_v_rest = noh_a_rest - noh_center;
-    noh_v_moved = v.model - noh_a_rest;
-    noh_wrinkle_vertex(v.uv);
+#if NOH_TRANSFER > 0
+    float occlusion = noh_fetch_occlusion(tile, noh_morph_vertex());
 #endif
 #ifndef NOH_DEPTH_ONLY
-#ifdef NOH_COMPLEXION
-    noh_complexion_vertex(noh_blends >> 2);
-#ifdef NOH_SKIN
-    noh_freckles_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
-#endif
-#endif
-#if defined(NOH_COLORS) && defined(NOH_CROWD)
-    noh_v_colors = noh_crowd_row(5);
+#ifdef NOH_WRINKLES
+    noh_v_moved = v.model - noh_a_rest;
 #endif
 #ifdef NOH_EYE
-    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, noh_world_row(0), noh_world_row(1),
-                    noh_world_row(2));
+    vec3 gaze;
+    vec4 up;
+    noh_gaze_vertex(v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, gaze, up);
 #endif
 #ifdef NOH_TEETH
     noh_face_vertex(noh_a_rest, v.model);
@@ -249,25 +242,48 @@ noh_vertex noh_fetch()
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
-    /* here: fetched earlier, the rows of a crowd spill twice as many registers of a Mali G52 */
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
     noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
-    lobe.occlusion = clamp(lobe.occlusion + noh_fetch_occlusion(tile, noh_morph_vertex()), 0.0, 1.0);
-    noh_v_transfer = noh_lobe_shade(lobe, normalize(noh_world_normal(x, y, z, lobe.axis)));
+    vec3 axis = normalize(noh_world_normal(x, y, z, lobe.axis));
+    lobe.occlusion = clamp(lobe.occlusion + occlusion, 0.0, 1.0);
 #endif
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY
     v.normal = noh_world_normal(x, y, z, v.normal);
     v.tangent.xyz = vec3(dot(x.xyz, v.tangent.xyz), dot(y.xyz, v.tangent.xyz), dot(z.xyz, v.tangent.xyz));
     v.tangent.w *= dot(cross(x.xyz, y.xyz), z.xyz) < 0.0 ? -1.0 : 1.0; /* a mirror inverts the frame */
+#ifdef NOH_EYE
+    noh_face_vertex(noh_a_rest, gaze, up.xyz, x, y, z);
+#endif
+#endif
+#if NOH_TRANSFER > 0
+    noh_v_transfer = noh_lobe_shade(lobe, axis);
+#endif
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+    v.uv = noh_uv_of(tile);
+#endif
+#ifndef NOH_DEPTH_ONLY
+#ifdef NOH_WRINKLES
+    noh_v_rest = noh_a_rest - noh_center;
+    noh_wrinkle_vertex(v.uv);
+#endif
+#ifdef NOH_COMPLEXION
+    noh_complexion_vertex(noh_blends >> 2);
+#ifdef NOH_SKIN
+    noh_freckles_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
+#endif
+#endif
+#if defined(NOH_COLORS) && defined(NOH_CROWD)
+    noh_v_colors = noh_crowd_row(5);
+#endif
 #endif
 #if defined(NOH_PHONE) && defined(NOH_LIT) && !defined(NOH_DEPTH_ONLY)
     noh_v_ambient = noh_ambient(normalize(v.normal));
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
-    v.tint = noh_tint_of(row); /* last: a Mali G52 spills registers that hold it from the beginning */
+    v.tint = noh_tint_of(row);
 #endif
 #ifdef NOH_OUTLINE
     v.position += noh_outline_step(v, length(x.xyz));

@@ -177,6 +177,30 @@ static void put_corners(void)
     }
 }
 
+/* Figures of a crowd as most are: four joints, folds, and light by transfer. */
+static void put_crowds(void)
+{
+    static const struct {
+        const char *name;
+        uint16_t surface;
+        uint8_t layers_uint;
+    } rows[] = { { "crowd-skin", NOH_FEATURE_SKIN, 0 },
+                 { "crowd-skin-direct", NOH_FEATURE_SKIN, NOH_LAYERS_DIRECT },
+                 { "crowd-eye", NOH_FEATURE_EYE, 0 } };
+    for (size_t i = 0; i < COUNT(rows); i++) {
+        const noh_gl_variant_key key = { .influences = 4,
+                                         .drawn = 4,
+                                         .texture = 1,
+                                         .crowd = 1,
+                                         .texels = 1,
+                                         .layers_uint = rows[i].layers_uint,
+                                         .lit = 1,
+                                         .transfer = 4,
+                                         .features = (uint32_t)rows[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_WRINKLES };
+        put_mesh(rows[i].name, key);
+    }
+}
+
 /* ---- the others ---- */
 
 static void put_drawables(void)
@@ -244,6 +268,7 @@ int main(int argc, char **argv)
     put_surfaces();
     put_vertices();
     put_corners();
+    put_crowds();
     put_drawables();
     put_passes();
     return fflush(stdout) ? 1 : 0;
