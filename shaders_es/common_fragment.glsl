@@ -12,7 +12,7 @@ uniform vec3 noh_key;                                /* unit, towards the light,
 uniform vec3 noh_lod;                                /* pixels from and to, level */
 uniform vec4 noh_base_color;
 uniform vec4 noh_material;                           /* roughness, metallic, alpha cutoff (plus 2 where alpha becomes
-                                                      * coverage, plus 4 where edges are dithered) or -1, 1: unlit, -1: strands; plus 0.25 if the
+                                                      * coverage, plus 6 where edges are dithered) or -1, 1: unlit, -1: strands; plus 0.25 if the
                                                       * texture's colours are premultiplied */
 uniform mediump sampler2D noh_base_color_texture;
 
@@ -78,12 +78,15 @@ float noh_cut(float alpha)
     float written = 1.0;
 #ifdef NOH_ALPHA_CUT
     float least = noh_material.z;
+#ifndef NOH_DEPTH_ONLY
     if (least > 1.5) {
-        float way = floor(0.5 * least);
-        alpha = clamp((alpha - least + 2.0 * way) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
-        least = way > 1.5 ? max(noh_fade_noise(gl_FragCoord.xy), 1e-3) : 1e-3;
-        written = way > 1.5 ? 1.0 : alpha;
-    } else if (least < 0.0) {
+        float dither = clamp(least - 4.0, 0.0, 1.0);
+        alpha = clamp((alpha - least + 2.0 + 4.0 * dither) / max(fwidth(alpha), 1e-4) + 0.5, 0.0, 1.0);
+        least = max(dither * fract(dot(gl_FragCoord.xy, vec2(0.7548777, 0.5698403))), 1e-3);
+        written = max(alpha, dither);
+    } else
+#endif
+    if (least < 0.0) {
         written = alpha;
     }
     if (alpha < least) {

@@ -42,7 +42,12 @@ vec3 noh_bounced(vec3 albedo, float open)
 #else
     float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open;
     float black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
-    return max(max(vec3(open), min(albedo, vec3(0.6, 0.3, 0.28)) * white + black), vec3(0.24, 0.08, 0.07));
+    vec3 bounced = max(vec3(open), min(albedo, vec3(0.6, 0.3, 0.28)) * white + black);
+#ifdef NOH_LIT
+    return bounced;
+#else
+    return max(bounced, vec3(0.24, 0.08, 0.07));
+#endif
 #endif
 }
 #endif
@@ -277,7 +282,9 @@ vec3 noh_light(noh_surface s)
 #if NOH_TRANSFER == 0
     color *= noh_bounced(s.albedo, open);
 #endif
+#ifndef NOH_PHONE
     color += noh_lighting[0].rgb * ((1.0 - open) * vec3(0.045, 0.022, 0.019)); /* by the walls, whatever is painted dark */
+#endif
 #endif
     color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {

@@ -140,7 +140,7 @@ void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *r)
 
 int noh_gl_is_covering(const noh_gl_raster *r)
 {
-    return !(r->enabled & BIT_COVERAGE) ? 0 : r->enabled & BIT_ONE_SAMPLE ? 2 : 1;
+    return !(r->enabled & BIT_COVERAGE) ? 0 : r->enabled & BIT_ONE_SAMPLE ? 3 : 1;
 }
 
 /* Alpha is no share of the pixel where it blends, and nothing where only depth is drawn. */

@@ -25,7 +25,7 @@ void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *raster);
 /* Enable the depth test with the caller's function, adjusted as in gl_device.h. Saves only NOH_KEEP_TESTS and
  * NOH_KEEP_COVERAGE. */
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *raster);
-/* 1: the caller has alpha to coverage on, 2: in a target of one sample; other passes than opaque ones turn it off. */
+/* 1: the caller has alpha to coverage on, 3: in a target of one sample; other passes than opaque ones turn it off. */
 int noh_gl_is_covering(const noh_gl_raster *raster);
 /* 1: the caller's depth decreases with distance. */
 int noh_gl_is_reversed(const noh_gl_raster *raster);

@@ -388,7 +388,7 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage; twice: a dither. */
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage; three times: a dither. */
 #define SOFT 2.0f
 static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_part part)
 {
