@@ -163,8 +163,8 @@ static void any_bits_come_back(void **state)
 }
 
 /* Smooth pictures take less than half of what their bytes do; pictures of two colours in each block, which need the
- * modes whose free bits are guessed, less than three eighths: if one mode's blocks were sent as they are, they would take
- * more. */
+ * modes whose free bits are guessed, less than three eighths: if blocks of one mode were sent as they are, they would
+ * take more. */
 static void pictures_take_few_bytes(void **state)
 {
     (void)state;

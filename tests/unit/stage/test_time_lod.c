@@ -561,7 +561,8 @@ static void a_difference_is_measured_by_its_largest_singular_value(void **state)
     test_random r = test_random_from(27);
     (void)state;
     for (uint32_t round = 0; round < 2000; round++) {
-        float difference[12], left[12], right[12], values[3], largest = 0.0f, radius = test_random_float(&r, 0.0f, 2.0f);
+        const float radius = test_random_float(&r, 0.0f, 2.0f);
+        float difference[12], left[12], right[12], values[3], largest = 0.0f;
         noh_transform turn = { .scale = { 1.0f, 1.0f, 1.0f } };
         for (int side = 0; side < 2; side++) {
             for (int i = 0; i < 4; i++) turn.rotation[i] = test_random_float(&r, -1.0f, 1.0f);
