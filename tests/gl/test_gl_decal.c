@@ -209,12 +209,17 @@ static void sixty_four_are_one_draw_and_come_back(void **state)
 {
     uint8_t *before, *after;
     uint64_t bytes;
+    int row_length = 0;
     shot s;
     (void)state;
     open_shot(&s, MASKS);
     bytes = noh_gl_ledger_bytes(&s.g->ledger);
     assert_int_equal(strike(&s, 14, 0.03f, 64), 64);
+    s.g->gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 70); /* whatever a game has set, while rows are sent */
     before = picture(&s, 1);
+    s.g->gl.GetIntegerv(GL_UNPACK_ROW_LENGTH, &row_length);
+    assert_int_equal(row_length, 70);
+    s.g->gl.PixelStorei(GL_UNPACK_ROW_LENGTH, 0);
     assert_int_equal(s.decals.draws, 1);
     assert_int_equal(noh_gl_ledger_bytes(&s.g->ledger), bytes);
     noh_stage_decals_delete(&s.decals);
