@@ -55,8 +55,8 @@ play() { # FOLDER LIBRARY NAME SECONDS LOG
         sed '/^not ok [0-9]* - /q' "$scratch/said" >"$log" &
         reader=$!
         limited "$seconds" "$@" "$binary" >"$scratch/said" 2>&1 </dev/null
-        wait $reader
-        return $status
+        wait "$reader"
+        return "$status"
         ;;
     esac
 }

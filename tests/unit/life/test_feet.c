@@ -258,8 +258,8 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(the_nearest_obstacle_is_the_ground),  cmocka_unit_test(legs_are_found_in_real_characters),
         cmocka_unit_test(a_pose_stands_on_what_the_game_says), cmocka_unit_test(each_foot_has_its_own_ground),
-        cmocka_unit_test(a_turned_box_is_stood_on_its_side),
-        cmocka_unit_test(the_same_instant_is_the_same_pose),   cmocka_unit_test(what_has_no_feet_is_refused),
+        cmocka_unit_test(a_turned_box_is_stood_on_its_side),   cmocka_unit_test(the_same_instant_is_the_same_pose),
+        cmocka_unit_test(what_has_no_feet_is_refused),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
