@@ -209,7 +209,7 @@ $(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
 $(BUILD)/embed: tools/embed/embed.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(HOSTCC) -std=c99 -O2 $(WARN) $(SANFLAGS) $< -o $@
+	$(Q)$(HOSTCC) -std=c99 -O2 -g1 $(WARN) $(SANFLAGS) $< -o $@
 
 include tools/mk/tools.mk
 include tools/mk/checks.mk
