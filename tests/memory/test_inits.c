@@ -316,7 +316,7 @@ INIT(springs_init)
     static const noh_spring_row row = { 1, 1.0f, 0.4f, 0.1f, { 0.0f, -0.5f, 0.0f } };
     static const noh_spring_chain chain = { 0, 1, 1, { 0.0f, 1.0f, 0.0f } };
     static const noh_spring_capsule capsule = { 0, { 0.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f }, 0.1f };
-    const noh_springs_desc desc = { s.skeleton, 1.0f, &row, 1, 1, &chain, &capsule, 1, 0.0f };
+    const noh_springs_desc desc = { s.skeleton, 1.0f, &row, 1, 1, &chain, &capsule, 1, 0.0f, NULL };
     noh_springs *springs;
     return noh_springs_init(memory, bytes, &desc, &springs, error);
 }
