@@ -161,10 +161,11 @@ void noh_drawn_weights(out float drawn[NOH_DRAWN])
     }
 }
 
-/* 1 with a number's sign. As a choice, products of it would be chosen from both signs, which are then both kept. */
+/* 1 with a number's sign, and 1 for both zeros. Not a choice between -1 and 1: compilers would turn a product with it
+ * into a choice between the two products, and keep both. */
 float noh_side(float x)
 {
-    return uintBitsToFloat((floatBitsToUint(x) & 0x80000000u) | 0x3f800000u);
+    return uintBitsToFloat((floatBitsToUint(x + 1e-30) & 0x80000000u) | 0x3f800000u);
 }
 
 vec3 noh_unit_or(vec3 v, vec3 otherwise)

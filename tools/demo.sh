@@ -5,7 +5,7 @@ build=$1
 noh=$build/noh
 
 echo
-"$noh" build "$build/demo/nell.glb" -o "$build/demo/nell.noh"
+"$noh" build "$build/demo/nell.glb" -o "$build/demo/nell.noh" --plain --wrinkles face
 "$noh" render "$build/demo/nell.noh" -o "$build/nell.png"
 "$noh" sheet "$build/demo/nell.noh" -o "$build/nell_greet.png" --clip greet --tiles 8 --columns 4 --tile 256
 "$noh" sheet "$build/demo/nell.noh" -o "$build/nell_faces.png" --target smile --target surprise --target blink \

@@ -4,7 +4,7 @@
 . "$(dirname "$0")/lib.sh"
 
 # A sheet of skin with two balls in front of it: of HEIGHT times their width, with both lids and the jaw moved.
-head() { # HEIGHT LEFT RIGHT JAW
+sheet() { # HEIGHT LEFT RIGHT JAW
     awk -v height="$1" -v left="$2" -v right="$3" -v jaw="$4" 'BEGIN {
         print "mtllib face.mtl\nusemtl skin"
         for (y = 0; y < 9; y++) for (x = 0; x < 9; x++) {
@@ -28,10 +28,10 @@ head() { # HEIGHT LEFT RIGHT JAW
 }
 targets() { # HEIGHT: the head and a folder of its targets
     rm -rf "$work/shapes" && mkdir "$work/shapes"
-    head "$1" 0 0 0 >"$work/head.obj"
-    head "$1" 0.004 0 0 >"$work/shapes/eyeBlinkLeft.obj"
-    head "$1" 0 0.004 0 >"$work/shapes/eyeBlinkRight.obj"
-    head "$1" 0 0 0.01 >"$work/shapes/jawOpen.obj"
+    sheet "$1" 0 0 0 >"$work/head.obj"
+    sheet "$1" 0.004 0 0 >"$work/shapes/eyeBlinkLeft.obj"
+    sheet "$1" 0 0.004 0 >"$work/shapes/eyeBlinkRight.obj"
+    sheet "$1" 0 0 0.01 >"$work/shapes/jawOpen.obj"
 }
 face() { noh build "$work/head.obj" --targets "$work/shapes" -o "$work/face.noh" "$@"; }
 joints() { grep -q "skin 'face': 3 joints" "$work/told"; }
@@ -83,7 +83,7 @@ cp "$work/face.noh" "$work/flat.noh"
 face --plain
 check 'and is what --plain makes' cmp "$work/flat.noh" "$work/face.noh"
 for side in Left Right; do
-    for way in Out In; do head 0.4 0.001 0 0 >"$work/shapes/eyeLook$way$side.obj"; done
+    for way in Out In; do sheet 0.4 0.001 0 0 >"$work/shapes/eyeLook$way$side.obj"; done
 done
 face
 check 'targets may turn them' grep -q '^eyes: targets turn them' "$work/out"
@@ -91,7 +91,7 @@ check 'then there is no warning' sh -c '! grep "^warning" "$1"' - "$work/out"
 face --eyes
 expect 1 'asked for, eyes have to be found'
 
-head 0.4 0 0 0.002 >"$work/shapes/viseme_FF.obj"
+sheet 0.4 0 0 0.002 >"$work/shapes/viseme_FF.obj"
 face
 check 'a shape for f that the artist made stays' grep -q "^lips: a target of the model's own shows f and v" "$work/out"
 

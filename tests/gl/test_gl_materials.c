@@ -301,16 +301,14 @@ static void dark_strands_are_as_they_were_painted(void **state)
     fixture_expect_no_errors();
 }
 
-/* A ramp of alpha at a slant over the quad, cut in its middle or blended. */
-static uint8_t *draw_ramp(model_alpha alpha, int covers)
+static uint8_t *draw_cut(const float *colors, model_alpha alpha, float cutoff, int covers)
 {
-    static const float ramp[16] = { 1, 1, 1, 0.1f, 1, 1, 1, 0.8f, 1, 1, 1, 0.3f, 1, 1, 1, 1 };
     const noh_gl_api *gl = &fixture_gpu()->gl;
     lit_quad q = lit_quad_of();
     uint8_t *rgba;
-    q.color = ramp;
+    q.color = colors;
     q.alpha = alpha;
-    q.cutoff = 0.5f;
+    q.cutoff = cutoff;
     q.unlit = 1;
     if (covers) gl->Enable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     rgba = lit_quad_draw(fixture_gpu(), &q, alpha == MODEL_ALPHA_BLEND ? NOH_DRAW_BLENDED : NOH_DRAW_OPAQUE);
@@ -318,6 +316,13 @@ static uint8_t *draw_ramp(model_alpha alpha, int covers)
     gl->Disable(GL_SAMPLE_ALPHA_TO_COVERAGE);
     fixture_expect_no_errors();
     return rgba;
+}
+
+/* A ramp of alpha at a slant over the quad, cut in its middle or blended. */
+static uint8_t *draw_ramp(model_alpha alpha, int covers)
+{
+    static const float ramp[16] = { 1, 1, 1, 0.1f, 1, 1, 1, 0.8f, 1, 1, 1, 0.3f, 1, 1, 1, 1 };
+    return draw_cut(ramp, alpha, 0.5f, covers);
 }
 
 /* How many pixels of a row are neither like its first nor like its last. */
@@ -375,6 +380,24 @@ static void cut_edges_take_the_samples_of_the_target(void **state)
     free(sharp);
     free(blended);
     free(again);
+}
+
+/* Where all of a surface has the alpha of the cutoff, all of it is drawn, with whatever samples. */
+static void alpha_equal_to_the_cutoff_is_drawn(void **state)
+{
+    const uint32_t samples = fixture_gpu()->caps.samples_max;
+    (void)state;
+    for (int i = 0; i < 4; i++) {
+        const float alpha = i & 1 ? 1.0f : 0.0f;
+        const float colors[16] = { 1, 1, 1, alpha, 1, 1, 1, alpha, 1, 1, 1, alpha, 1, 1, 1, alpha };
+        uint8_t *sharp = draw_cut(colors, MODEL_ALPHA_MASK, alpha, 0), *soft;
+        fixture_gpu()->caps.samples_max = i & 2 ? 1u : samples;
+        soft = draw_cut(colors, MODEL_ALPHA_MASK, alpha, 1);
+        fixture_gpu()->caps.samples_max = samples;
+        assert_memory_equal(sharp, soft, 4u * LIT_QUAD_SIDE * LIT_QUAD_SIDE);
+        free(sharp);
+        free(soft);
+    }
 }
 
 static void programs_have_what_materials_have(void **state)
@@ -453,6 +476,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(specular_maps_count),
     cmocka_unit_test(dark_strands_are_as_they_were_painted),
     cmocka_unit_test(cut_edges_take_the_samples_of_the_target),
+    cmocka_unit_test(alpha_equal_to_the_cutoff_is_drawn),
     cmocka_unit_test(programs_have_what_materials_have),
     cmocka_unit_test(features_follow_material_and_mesh),
 };

@@ -388,7 +388,8 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage; three times: a dither. */
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage, or
+ * with three times SOFT a dither. */
 #define SOFT 2.0f
 static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_part part)
 {
@@ -398,7 +399,10 @@ static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_par
     }
     if (!(m->flags & NOH_MATERIAL_MASK)) return -1.0f;
     const float cutoff = m->alpha_cutoff < 1.5f ? m->alpha_cutoff : 1.5f; /* above 1 nothing is drawn */
-    return cutoff + SOFT * (float)soft;
+    if (!soft || !(cutoff > 0.0f)) return cutoff;
+    /* The line of the cutoff is half a step of 8 bits below it: pixels that have it are inside. */
+    const float line = cutoff - 0.5f / 255.0f;
+    return (line > 1.0f / 512.0f ? line : 1.0f / 512.0f) + SOFT * (float)soft;
 }
 
 static int is_in_depth(draw_part part)
