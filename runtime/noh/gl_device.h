@@ -502,9 +502,10 @@ const char *noh_gl_shader_text(const char *name);
  *     after NOH_PASS_DEPTH, which has the same depths to the bit, and NOH_PASS_BLENDED with another function.
  * (3) If GL_BLEND is on, its functions and equations are yours, for each draw buffer. If it is off, blended passes
  *     blend straight alpha, and restore the state of draw buffer 0 for all.
- * (4) With GL_SAMPLE_ALPHA_TO_COVERAGE on, edges of alpha-cut materials are as smooth as the target's samples, and dithered
- *     in a target of one sample; all but opaque passes turn it off. The alpha of smooth edges is written, too: where a
- *     page is seen through the target's alpha, turn off alpha's colour mask, or leave this off.
+ * (4) With GL_SAMPLE_ALPHA_TO_COVERAGE on, edges of alpha-cut materials are as smooth as the target's samples, and
+ *     dithered in a target of one sample; all but opaque passes turn it off. The alpha of smooth edges is written, too:
+ *     where a page is seen through the target's alpha, turn off alpha's colour mask, or leave this off. Leave it off
+ *     after NOH_PASS_DEPTH: the depth of such an edge is there already, and the background would show through it.
  *
  * No transform feedback may be active. On desktop GL, polygons must be filled (glPolygonMode).
  *
