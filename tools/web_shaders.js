@@ -1,6 +1,7 @@
 // web_shaders.js IN OUT FILE...: writes OUT, the shaders of IN (build/gen/shaders.gen.c) as a page loads them: without
-// spaces, empty lines and #line, and with short names in place of those that no string of the C FILEs has. Names after a
-// point are fields or swizzles, and structs stay as they are. Geometry shaders, which WebGL lacks, become empty.
+// spaces, empty lines and #line, without functions that nothing calls, and with short names in place of those that no
+// string of the C FILEs has. Names after a point are fields or swizzles, and structs stay as they are. Geometry shaders,
+// which WebGL lacks, become empty.
 'use strict';
 const fs = require('fs');
 const PIECE = 4000; // characters: C99 promises strings of 4,095
@@ -41,6 +42,18 @@ function units(text) {
     return depth ? [text] : [...out, text.slice(start)];
 }
 
+// The texts without functions that neither they nor a string of C name: a page has no shaders of its own, which might.
+function called(texts, strings) {
+    const count = new Map(), head = /(^|[;}\n])((?:void|bool|float|u?int|[ui]?vec[234]|noh_\w+) +(\w+)\([^;{}]*\)\s*)\{[^]*\}$/;
+    for (const [word] of texts.join('\n').matchAll(words)) count.set(word, (count.get(word) || 0) + 1);
+    const kept = texts.map((text) => units(text).map((unit) => {
+        const found = unit.match(head);
+        const goes = found && found[3] !== 'main' && count.get(found[3]) === 1 && !strings.has(found[3]);
+        return goes ? unit.slice(0, found.index + found[1].length) : unit;
+    }).join(''));
+    return kept.join('') === texts.join('') ? texts : called(kept, strings);
+}
+
 // Short names for what the texts declare by a type and a name, unless it is C's, or a function of GLSL has the same.
 // Locals that never meet in a function share a short name; globals, and what a directive names, have their own.
 function renames(texts, strings) {
@@ -77,8 +90,10 @@ const [, , from, to, ...files] = process.argv;
 const strings = new Set(files.flatMap((file) => Array.from(fs.readFileSync(file, 'utf8').matchAll(/"(?:[^"\\\n]|\\.)*"/g))
     .flatMap(([text]) => text.match(/^"\w+[^\s"]*"$/.test(text) ? /\w+/g : /\bnoh_\w+/g) || [])));
 const parts = fs.readFileSync(from, 'utf8').split(/^((?:static const char \*const \w+_pieces|const char \w+)\[\] = \{\n[^]*?\n\};\n)/m);
-const texts = parts.map((part, i) => (i % 2 ? (part.startsWith('static') ? unquoted : decoded)(part.slice(part.indexOf('\n') + 1, part.indexOf('\n};'))) : null));
-const short = renames(texts.filter((text) => text !== null), strings);
+const all = parts.map((part, i) => (i % 2 ? (part.startsWith('static') ? unquoted : decoded)(part.slice(part.indexOf('\n') + 1, part.indexOf('\n};'))) : null));
+const small = called(all.filter((text) => text !== null), strings);
+const texts = all.map((text, i) => (text === null ? null : small[(i - 1) / 2]));
+const short = renames(small, strings);
 for (let i = 1; i < parts.length; i += 2) {
     const renamed = parts[i].includes('_geom_pieces') ? '' : texts[i].replace(/\\\n/g, ' ').replace(both, (word) => short.get(word) || word), text = squeezed(renamed) || '\n', pieces = [], line = parts[i].indexOf('\n') + 1;
     for (let at = 0; at < text.length; at += PIECE) pieces.push(quoted(text.slice(at, at + PIECE)));

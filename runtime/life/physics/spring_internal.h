@@ -8,6 +8,11 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* 0: springs meet no world, whatever a desc says, and what asks it is not linked: for the page, which has none. */
+#ifndef NOH_SPRINGS_MEET
+#define NOH_SPRINGS_MEET 1
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
