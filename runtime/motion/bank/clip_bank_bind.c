@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "core/base/name_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"
@@ -167,19 +168,38 @@ int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *firs
     return 0;
 }
 
-/* Nodes may share names: use the node of the clip's index if it has the name, else the first node with that name. */
+/* Whether the build added the last target of a node's mesh, so that clips of other builds do not have it. */
+static int has_added_target(const noh_bank_binding *b, uint32_t node)
+{
+    noh_mesh mesh;
+    (void)noh_pack_mesh_at(b->mesh, b->mesh->nodes[node].mesh, &mesh, NULL);
+    return noh_names_equal(noh_pack_string(b->mesh, mesh.targets[mesh.header->target_count - 1u].name),
+                           NOH_BANK_ADDED_TARGET);
+}
+
+/* How well a node fits; 0: not. Nodes may share names. */
+static int fit_of(const noh_bank_binding *b, const noh_clip_group *node, const noh_clip_group *wanted)
+{
+    const int is_same = noh_bank_same_group(node, wanted);
+    if (!is_same && (node->name_hash != wanted->name_hash || node->width != wanted->width + 1u ||
+                     !has_added_target(b, node->node)))
+        return 0;
+    return 1 + 2 * is_same + (node->node == wanted->node);
+}
+
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found)
 {
     noh_clip_group group;
     uint32_t node = 0, first = 0;
-    int any = 0;
+    int best = 0;
     while (noh_bank_next_node(b, &node, &first, &group)) {
-        if (noh_bank_same_group(&group, wanted) && (!any || group.node == wanted->node)) {
+        const int fit = fit_of(b, &group, wanted);
+        if (fit > best) {
             *found = group;
-            any = 1;
+            best = fit;
         }
     }
-    return any;
+    return best > 0;
 }
 
 /* ---- named floats ---- */

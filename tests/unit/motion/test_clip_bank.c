@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "motion/anim/sync_internal.h"
+#include "convert/model/lip_target.h"
 #include "convert/model/model_build.h"
 #include "convert/clips/raw_set.h"
 #include "support/clip_bank_fixture.h"
@@ -697,6 +698,48 @@ static void weights_are_bound_by_name(void **state)
     model_free(other);
 }
 
+/* A target that the build added to the mesh keeps its default; the file's own move as the clip has them. */
+static void clips_fit_a_mesh_with_an_added_target(void **state)
+{
+    model *clips = clip_model(4), *mesh = clip_model(5);
+    size_t counts[2];
+    uint8_t *made[2];
+    noh_pack packs[2];
+    noh_clip_bank *apart, *own;
+    noh_clip_bank_desc desc;
+    clip_player a, b;
+    (void)state;
+    free(mesh->meshes[0].targets[4].name);
+    mesh->meshes[0].targets[4].name = model_string(LIP_TARGET);
+    made[0] = test_pack_of(clips, &counts[0], NULL);
+    made[1] = test_pack_of(mesh, &counts[1], NULL);
+    for (int i = 0; i < 2; i++) packs[i] = test_open(made[i], counts[i]);
+    own = set_of(&packs[0]);
+    desc = desc_of(&packs[0]);
+    desc.mesh = &packs[1];
+    apart = test_clip_bank(&desc);
+    assert_int_equal(apart->unknown_count, 0);
+    assert_int_equal(apart->clips.float_count, 5);
+    clip_player_open(&a, own);
+    clip_player_open(&b, apart);
+    clip_start(&a, 0, NOH_LOOP_REPEAT, 0, 0);
+    clip_start(&b, 0, NOH_LOOP_REPEAT, 0, 0);
+    for (int i = 0; i < 30; i++) {
+        clip_frame(&a, STEP, 4800, 1000);
+        clip_frame(&b, STEP, 4800, 1000);
+        assert_memory_equal(a.floats, b.floats, 4 * sizeof *a.floats);
+        assert_true(b.floats[4] == apart->clips.float_defaults[4]);
+    }
+    assert_memory_not_equal(b.floats, apart->clips.float_defaults, 4 * sizeof *b.floats);
+    clip_player_close(&a);
+    clip_player_close(&b);
+    free(own);
+    free(apart);
+    for (int i = 0; i < 2; i++) free(made[i]);
+    model_free(clips);
+    model_free(mesh);
+}
+
 /* A pack of two clips without joints: "one" has the floats "glow" 1 and "heat" 2, "two" has "glow" 3 and "cold" 4. */
 static uint8_t *named_floats_pack(size_t *count)
 {
@@ -941,6 +984,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(mesh_and_clips_apart),
     cmocka_unit_test(another_skeleton_or_unit_is_refused),
     cmocka_unit_test(weights_are_bound_by_name),
+    cmocka_unit_test(clips_fit_a_mesh_with_an_added_target),
     cmocka_unit_test(named_floats_are_shared),
     cmocka_unit_test(many_named_floats_are_counted),
     cmocka_unit_test(a_controller_moves_what_its_tracks_show),

@@ -399,9 +399,11 @@ static int set_options(const build_args *a, convert_options *o)
     o->spring_lines = a->spring_lines.items;
     o->spring_line_count = (uint32_t)a->spring_lines.count;
     o->source.lips = a->face.lips;
-    /* Another joint or target would part the model from clips of other files. */
+    /* Other joints would part the model from clips of other files. Clips fit with or without a target more if they are
+     * built without it. */
     if (!a->plain && a->input_count == 1) {
-        o->source.choices = (a->face.eyes ? 0u : CHOICE_EYES) | (a->face.lips ? 0u : CHOICE_LIPS);
+        const unsigned lips = a->face.lips || o->only == CONVERT_CLIPS ? 0u : CHOICE_LIPS;
+        o->source.choices = (a->face.eyes ? 0u : CHOICE_EYES) | lips;
     }
     o->choose_levels = !a->plain && !a->lod.levels;
     o->no_correctives = a->face.no_correctives;
