@@ -264,6 +264,8 @@ static int add_skin(model *m, model_mesh *mesh, uint32_t node)
     memset(&grown[m->skin_count], 0, sizeof *grown);
     m->skin_count++;
     face = add_node(m, "Face", m->nodes[node].parent);
+    free(mesh->joints); /* a file may have them without a skin */
+    free(mesh->joint_weights);
     mesh->joints = model_zeros(slots, sizeof *mesh->joints);
     mesh->joint_weights = model_zeros(slots, sizeof *mesh->joint_weights);
     grown[m->skin_count - 1].name = model_string("face");
