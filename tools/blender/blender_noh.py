@@ -103,7 +103,7 @@ class ExportNoh(bpy.types.Operator, ExportHelper):
             glb = os.path.join(folder, "scene.glb")
             bpy.ops.export_scene.gltf(filepath=glb, export_format="GLB", use_selection=self.selected,
                                       export_extras=True, export_all_influences=True)
-            more = ["--lod", str(self.levels)] if self.levels > 1 else []
+            more = ["--lod", str(self.levels)]
             code, _, lines = run(program, "build", glb, "-o", self.filepath, "--warnings", *more)
         for line in lines:
             self.tell(context, line.replace(glb + ": ", ""), code != 0 and not line.startswith("warning: "))
