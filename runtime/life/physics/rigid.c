@@ -20,6 +20,7 @@
 #define BOUNCE_STEPS 4.0f /* an approach speed up to what gravity adds in this many substeps does not bounce */
 #define STILL_SPEED 0.08f
 #define STILL_STEPS 300u /* half a second */
+#define TURN_MAX 1e18f    /* of a momentum or a torque: its square stays finite */
 NOH_STATIC_ASSERT(sizeof(noh_rigid) == 144, rigid);
 
 /* ---- making a body ---- */
@@ -103,12 +104,20 @@ static void add(float sum[3], float factor, const float more[3])
     for (int i = 0; i < 3; i++) sum[i] = capped(sum[i] + factor * more[i], NOH_NUMBER_MAX);
 }
 
-/* The same for a momentum or a torque: the spin, too, has to stay a number. */
+/* The same for a momentum or a torque: the spin, too, has to stay a number, about each of the body's axes. */
 static void add_turn(const noh_rigid *b, float sum[3], float factor, const float more[3])
 {
-    float least = 1.0f;
-    for (int i = 0; i < 3; i++) least = b->inertia[i] < least ? b->inertia[i] : least;
-    for (int i = 0; i < 3; i++) sum[i] = capped(sum[i] + factor * more[i], least * NOH_NUMBER_MAX);
+    float back[4], own[3], most[3];
+    int is_cut = 0;
+    for (int i = 0; i < 3; i++) sum[i] = capped(sum[i] + factor * more[i], TURN_MAX);
+    noh_quat_conjugate(b->rotation, back);
+    noh_quat_rotate(back, sum, own);
+    for (int i = 0; i < 3; i++) {
+        most[i] = capped(b->inertia[i] * NOH_NUMBER_MAX, TURN_MAX);
+        is_cut |= !(noh_abs(own[i]) <= most[i]);
+        own[i] = capped(own[i], most[i]);
+    }
+    if (is_cut) noh_quat_rotate(b->rotation, own, sum);
 }
 
 noh_result noh_rigid_set_motion(noh_rigid *body, const float velocity[3], const float spin[3], noh_error *error)

@@ -376,6 +376,36 @@ static void bad_bodies_are_refused(void **state)
     assert_memory_equal(&body, &before, sizeof body);
 }
 
+/* A heavy body keeps the spin that it gets; what is cut is cut about the body's own axes. */
+static void large_inertias_keep_their_spin(void **state)
+{
+    static const float half[4] = { 0.0f, 0.3826834f, 0.0f, 0.9238795f }, slow[3] = { 0.3f, 1.0f, -0.2f };
+    static const float fast[3] = { 0.0f, 9e11f, 0.0f }, huge[3] = { 1e20f, 0.0f, 0.0f };
+    noh_rigid_desc d = { .half = { 100.0f, 50.0f, 100.0f }, .mass = 1e9f };
+    float spin[3];
+    noh_rigid body;
+    (void)state;
+    memcpy(d.rotation, half, sizeof half);
+    assert_int_equal(noh_rigid_init(&body, &d, NULL), NOH_OK);
+    assert_int_equal(noh_rigid_set_motion(&body, zero, slow, NULL), NOH_OK);
+    noh_rigid_motion(&body, NULL, spin, NULL);
+    for (int k = 0; k < 3; k++) assert_true(fabsf(spin[k] - slow[k]) < 1e-5f);
+    for (int i = 0; i < 2; i++) { /* of very different inertias, about the axis of the least */
+        d = (noh_rigid_desc){ .half = { 0.1f, 0.1f, 0.1f }, .mass = 1.0f, .inertia = { 1e-4f, 1e-6f, 1e-4f } };
+        assert_int_equal(noh_rigid_init(&body, &d, NULL), NOH_OK);
+        assert_int_equal(noh_rigid_set_motion(&body, zero, i ? fast : slow, NULL), NOH_OK);
+        noh_rigid_motion(&body, NULL, spin, NULL);
+        for (int k = 0; k < 3; k++) {
+            const float meant = i ? fast[k] : slow[k];
+            assert_true(fabsf(spin[k] - meant) <= 1e-5f * fabsf(meant));
+        }
+    }
+    noh_rigid_torque(&body, huge);
+    noh_rigid_step(&body, NULL, NULL, 4800);
+    noh_rigid_motion(&body, NULL, spin, NULL);
+    for (int k = 0; k < 3; k++) assert_true(fabsf(spin[k]) <= 2.0f * NOH_NUMBER_MAX);
+}
+
 static void extreme_pushes_keep_numbers(void **state)
 {
     static const float sizes[] = { 1.0f, 1e12f, 1e20f, 3e38f };
@@ -525,7 +555,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(pieces_and_places_do_not_matter),
     cmocka_unit_test(bad_bodies_are_refused),
     cmocka_unit_test(a_corner_touches_a_side),
-    cmocka_unit_test(extreme_pushes_keep_numbers),
+    cmocka_unit_test(large_inertias_keep_their_spin),
+        cmocka_unit_test(extreme_pushes_keep_numbers),
     cmocka_unit_test(points_bounce_and_slide),
     cmocka_unit_test(ends_of_rods_bounce),
     cmocka_unit_test(points_at_rest_do_not_bounce),
