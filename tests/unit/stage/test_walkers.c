@@ -963,6 +963,13 @@ static void who_is_dead_lies(void **state)
     close_street(&s);
     open_street_of(&s, 1, 0, 1, 1);
     const noh_actor actor = enter(&s, 0, at, goal, 0.7f);
+    for (int i = 0; i < 15; i++) { /* a push that is no number moves nobody */
+        static const float wrong[3] = { NAN, INFINITY, -INFINITY };
+        float from[5] = { 0.0f, 1.2f, 0.0f, 9.0f, 90.0f };
+        from[i / 3] = wrong[i % 3];
+        assert_int_equal(noh_walkers_push(s.walkers, s.cast.stage, from, from[3], from[4]), 0);
+        assert_int_equal(noh_actor_body(s.cast.stage, actor), NOH_BODY_STANDS);
+    }
     noh_error said = { NOH_OK, "", 0, 0 };
     assert_int_equal(noh_walkers_tend(s.walkers, s.crowd, s.cast.stage, 0, CAST_STEP, &said), 0);
     assert_int_equal(said.result, NOH_ERR_ARG); /* the walkers' own layer */
