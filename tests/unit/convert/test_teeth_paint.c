@@ -93,11 +93,53 @@ static void other_mouths_stay(void **state)
     }
 }
 
+/* A gum and teeth of one jaw, as islands of their own, are not two jaws: of other heights, or one inside the other. */
+static void one_jaw_stays(void **state)
+{
+    static const float ivory[3] = { 0.76f, 0.72f, 0.60f };
+    static const float rows[3][4] = { { 0.0f, 0.010f, 0.005f, 0.023f }, /* teeth; gum: from, to */
+                                      { 0.0f, 0.010f, 0.008f, 0.020f },
+                                      { 0.0f, 0.010f, 0.010f, 0.030f } }; /* they only touch */
+    (void)state;
+    for (uint32_t kind = 0; kind < 8; kind++) {
+        model *m = mouth_of(ivory, 0.002f, 0.9f);
+        model_mesh *mesh = &m->meshes[0];
+        float before[8u * STRIP];
+        for (uint32_t v = 0; v < 2u * STRIP; v++) {
+            const float share = (float)(v % STRIP / COLUMNS) / (ROWS - 1u),
+                        *way = rows[kind % 4u % 3u] + 2u * (v / STRIP);
+            if (kind % 4u == 3u) {
+                mesh->position[3u * v] *= v / STRIP ? 1.0f : 0.5f; /* a few teeth */
+            } else {
+                mesh->position[3u * v + 1u] = way[0] + share * (way[1] - way[0]);
+            }
+            if (kind >= 4u) mesh->position[3u * v + 1u] *= -1.0f; /* the lower jaw */
+        }
+        memcpy(before, mesh->color, sizeof before);
+        assert_int_equal(teeth_paint(m), 0);
+        assert_memory_equal(before, mesh->color, sizeof before);
+        model_free(m);
+    }
+}
+
+/* An overbite stays a pair of jaws. */
+static void an_overbite_is_painted(void **state)
+{
+    static const float ivory[3] = { 0.76f, 0.72f, 0.60f };
+    model *m = mouth_of(ivory, -0.002f, 0.9f);
+    (void)state;
+    assert_int_equal(teeth_paint(m), 0);
+    assert_true(redness(m, 0, ROWS - 1u) > 2.5f && redness(m, 1, ROWS - 1u) > 2.5f);
+    model_free(m);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(plain_teeth_get_gums),
         cmocka_unit_test(other_mouths_stay),
+        cmocka_unit_test(one_jaw_stays),
+        cmocka_unit_test(an_overbite_is_painted),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -7,11 +7,13 @@
 #include "convert/model/model_build.h"
 #include "noh/format.h"
 
-#define CROWN 0.16f   /* the height of a crown, in widths of the jaw */
-#define SOFT 0.35f    /* the share of it over which enamel turns to gum */
-#define ENAMEL 0.50f  /* the largest channel of the brightest place */
-#define HUES 0.02f    /* shares of red in one colour differ by less */
-#define PALE_MIN 0.4f /* of blue to red: less is a tongue or a gum */
+#define CROWN 0.16f  /* the height of a crown, in widths of the jaw */
+#define SOFT 0.35f   /* the share of it over which enamel turns to gum */
+#define ENAMEL 0.50f /* the largest channel of the brightest place */
+#define HUES 0.02f   /* shares of red in one colour differ by less */
+#define ALIKE 1.6f
+#define OVERBITE 0.15f /* at most, of the lower of two jaws' heights */
+#define PALE_MIN 0.4f  /* of blue to red: less is a tongue or a gum */
 
 static const float gum[3] = { 0.42f, 0.15f, 0.13f }, neck[3] = { 1.0f, 0.87f, 0.76f };
 
@@ -62,11 +64,24 @@ static void find_middles(const jaws *j, const uint32_t *island, float *room, flo
     for (uint32_t v = first; v < end; v++) middle[v] = 0.5f * (room[v] + middle[v]);
 }
 
+/* Two jaws have one height and one width, by a factor of ALIKE, and lie over one another but for an overbite; teeth
+ * and a gum of one jaw, as islands of their own, do not.
+ * box  of the lower islands, of the upper: least and greatest x, least and greatest y */
+static int are_jaws(float box[2][4])
+{
+    for (int axis = 0; axis < 4; axis += 2) {
+        const float lower = box[0][axis + 1] - box[0][axis], upper = box[1][axis + 1] - box[1][axis];
+        if (!(lower > 0.0f && upper > 0.0f && lower < ALIKE * upper && upper < ALIKE * lower)) return 0;
+    }
+    return box[0][3] - box[1][2] < OVERBITE * fminf(box[0][3] - box[0][2], box[1][3] - box[1][2]);
+}
+
 /* Whether there are two jaws. */
 static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
 {
     const uint32_t first = j->part->first_vertex, end = first + j->part->vertex_count;
     float low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY;
+    float box[2][4] = { { INFINITY, -INFINITY, INFINITY, -INFINITY }, { INFINITY, -INFINITY, INFINITY, -INFINITY } };
     for (uint32_t v = first; v < end; v++) {
         if (island[v] < first) return 0; /* joined to something else */
         low = fminf(low, middle[island[v]]);
@@ -76,16 +91,16 @@ static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
     }
     j->middle = 0.5f * (low + high);
     j->width = right - left;
-    j->edge[0] = -INFINITY;
-    j->edge[1] = INFINITY;
     for (uint32_t v = first; v < end; v++) {
-        const float y = place_of(j, v)[1];
-        if (middle[island[v]] > j->middle)
-            j->edge[1] = fminf(j->edge[1], y);
-        else
-            j->edge[0] = fmaxf(j->edge[0], y);
+        float *of = box[middle[island[v]] > j->middle];
+        for (int axis = 0; axis < 2; axis++) {
+            of[2 * axis] = fminf(of[2 * axis], place_of(j, v)[axis]);
+            of[2 * axis + 1] = fmaxf(of[2 * axis + 1], place_of(j, v)[axis]);
+        }
     }
-    return j->width > 0.0f && high - low > 0.1f * j->width;
+    j->edge[0] = box[0][3];
+    j->edge[1] = box[1][2];
+    return j->width > 0.0f && high - low > 0.1f * j->width && are_jaws(box);
 }
 
 static float smooth_step(float from, float to, float x)
