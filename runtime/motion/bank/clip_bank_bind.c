@@ -181,8 +181,8 @@ static int has_added_target(const noh_bank_binding *b, uint32_t node)
 static int fit_of(const noh_bank_binding *b, const noh_clip_group *node, const noh_clip_group *wanted)
 {
     const int is_same = noh_bank_same_group(node, wanted);
-    if (!is_same && (node->name_hash != wanted->name_hash || node->width != wanted->width + 1u ||
-                     !has_added_target(b, node->node)))
+    if (!is_same &&
+        (node->name_hash != wanted->name_hash || node->width != wanted->width + 1u || !has_added_target(b, node->node)))
         return 0;
     return 1 + 2 * is_same + (node->node == wanted->node);
 }
