@@ -281,8 +281,9 @@ uint32_t noh_face_channel_find(const char *name);
 /* Get the recipe in a pack, used in place. It has no rows if the pack has none. */
 noh_face_recipe noh_face_recipe_in_pack(const noh_pack *pack);
 
-/* Read the rules in a pack's recipe (rows `override` and `binary`, or VRM's); those over the mouth become 0. Fear without
- * rows has surprise's rules, and disgust anger's, as they have their targets. */
+/* Read the rules in a pack's recipe (rows `override` and `binary`, or VRM's); rules over the mouth become 0. Where fear
+ * shows surprise's targets and the pack has no rule for fear, a stage applies surprise's rules, too; the same holds for
+ * disgust and anger. */
 void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules);
 
 typedef struct noh_face_link {

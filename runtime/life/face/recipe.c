@@ -235,7 +235,7 @@ uint32_t noh_emotion_like(uint32_t emotion)
                                             : NOH_EMOTION_COUNT;
 }
 
-/* The channel from which one takes its targets that a mesh has none for. */
+/* The channel whose targets are used for a channel without targets of its own; NOH_NONE: none. */
 static uint32_t like(const binding *b, uint32_t channel)
 {
     const uint32_t emotion = channel - NOH_CHANNEL_UPPER, to = noh_emotion_like(emotion);
@@ -285,6 +285,19 @@ uint32_t noh_face_recipe_bind_by(const noh_face_recipe *const *recipes, uint32_t
     b.link_max = link_max;
     for (uint32_t channel = 0; channel < NOH_CHANNEL_COUNT; channel++) bind_channel(&b, channel);
     return b.count;
+}
+
+uint32_t noh_face_taken(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
+                        const void *user)
+{
+    const binding b = binding_of(recipes, recipe_count, find, user);
+    uint32_t taken = 0;
+    for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
+        noh_face_source source;
+        find_source(&b, NOH_CHANNEL_UPPER + e, &source);
+        if (source.recipe && source.channel != NOH_CHANNEL_UPPER + e) taken |= 1u << e;
+    }
+    return taken;
 }
 
 typedef struct name_list {

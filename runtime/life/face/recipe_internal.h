@@ -28,6 +28,16 @@ uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, n
  * NOH_EMOTION_COUNT: none does. */
 uint32_t noh_emotion_like(uint32_t emotion);
 
+/* Find the emotions that show the targets of noh_emotion_like, since the recipes bind none of their own: bit e for
+ * emotion e. Arguments as for noh_face_recipe_bind_by. */
+uint32_t noh_face_taken(const noh_face_recipe *const *recipes, uint32_t recipe_count, noh_face_find_fn find,
+                        const void *user);
+
+/* Give the taken emotions the rules of those whose targets they show, except those for which the pack has a rule.
+ * taken  bit e for emotion e; noh_face_taken
+ * rules  as noh_face_rules_of_pack read them from the pack */
+void noh_face_share_rules(const noh_pack *pack, uint32_t taken, noh_face_rules *rules);
+
 /* As noh_weight_rules_bind, but of expressions alone. */
 uint32_t noh_expressions_bind(const noh_mesh *mesh, noh_weight_rule *rules, uint32_t rule_max);
 

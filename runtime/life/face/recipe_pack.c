@@ -89,22 +89,27 @@ uint32_t noh_recipe_overrides(const noh_pack *pack, const noh_recipe_row *row, n
     return NOH_NONE;
 }
 
-static int has_rows(const noh_pack *pack, uint32_t emotion)
+/* The emotion that a row is a rule of, if it is one: past the last, it is not. */
+static uint32_t ruled_by(const noh_pack *pack, const noh_recipe_row *row, uint32_t *user, noh_override *how)
 {
-    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
-        const char *channel = noh_pack_string(pack, pack->recipe_rows[i].channel);
-        if (noh_names_equal(channel, names[NOH_CHANNEL_UPPER + emotion])) return 1;
-        if (noh_names_equal(channel, names[NOH_CHANNEL_MOUTH + emotion])) return 1;
-    }
-    return 0;
+    const uint32_t emotion = noh_face_channel_find(noh_pack_string(pack, row->target)) - NOH_CHANNEL_UPPER;
+    if (emotion >= NOH_EMOTION_COUNT) return NOH_NONE;
+    *user = noh_recipe_overrides(pack, row, how);
+    return *user != NOH_NONE || noh_names_equal(noh_pack_string(pack, row->channel), "binary") ? emotion : NOH_NONE;
 }
 
-/* An emotion that shows another's targets has the other's rules. */
-static void share_rules(const noh_pack *pack, noh_face_rules *rules)
+void noh_face_share_rules(const noh_pack *pack, uint32_t taken, noh_face_rules *rules)
 {
+    NOH_ASSERT(pack && rules);
+    for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
+        noh_override how;
+        uint32_t user;
+        const uint32_t emotion = ruled_by(pack, &pack->recipe_rows[i], &user, &how);
+        if (emotion != NOH_NONE) taken &= ~(1u << emotion); /* it has rules of its own */
+    }
     for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
         const uint32_t other = noh_emotion_like(e);
-        if (other == NOH_EMOTION_COUNT || has_rows(pack, e) || !has_rows(pack, other)) continue;
+        if (other == NOH_EMOTION_COUNT || !(taken >> e & 1u)) continue;
         rules->lids[e] = rules->lids[other];
         rules->eyes[e] = rules->eyes[other];
         rules->speech[e] = rules->speech[other];
@@ -122,14 +127,14 @@ void noh_face_rules_of_pack(const noh_pack *pack, noh_face_rules *rules)
     memset(rules, 0, sizeof *rules);
     for (uint32_t i = 0; i < pack->recipe_row_count; i++) {
         const noh_recipe_row *row = &pack->recipe_rows[i];
-        const uint32_t emotion = noh_face_channel_find(noh_pack_string(pack, row->target)) - NOH_CHANNEL_UPPER;
         noh_override how;
         uint32_t user;
-        if (emotion < NOH_EMOTION_COUNT && noh_names_equal(noh_pack_string(pack, row->channel), "binary")) {
+        const uint32_t emotion = ruled_by(pack, row, &user, &how);
+        if (emotion == NOH_NONE) continue;
+        if (user == NOH_NONE) {
             rules->binary = (uint8_t)(rules->binary | 1u << emotion);
+        } else {
+            to[user][emotion] = (uint8_t)how;
         }
-        user = emotion < NOH_EMOTION_COUNT ? noh_recipe_overrides(pack, row, &how) : NOH_NONE;
-        if (user != NOH_NONE) to[user][emotion] = (uint8_t)how;
     }
-    share_rules(pack, rules);
 }

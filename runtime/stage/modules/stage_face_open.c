@@ -246,16 +246,33 @@ static uint32_t find_in_pack(const void *user, const char *name, uint32_t nth)
     return NOH_NONE;
 }
 
+typedef struct recipe_list {
+    noh_face_recipe own;
+    const noh_face_recipe *usual[4];
+    const noh_face_recipe *const *all; /* [count] */
+    uint32_t count;
+} recipe_list;
+
+/* The recipes of a kind: the game's, else the pack's own and the built-in ones. */
+static void list_recipes(const noh_kind_desc *d, recipe_list *list)
+{
+    const noh_kind_face *face = d->face.desc;
+    const int given = face && face->recipes;
+    list->own = noh_face_recipe_in_pack(d->mesh);
+    list->usual[0] = &list->own;
+    list->usual[1] = &noh_face_recipe_arkit;
+    list->usual[2] = &noh_face_recipe_vrm;
+    list->usual[3] = &noh_face_recipe_units;
+    list->all = given ? face->recipes : list->usual;
+    list->count = given ? face->recipe_count : 4u;
+}
+
 uint32_t noh_stage_face_bind(const noh_kind_desc *d, noh_face_find_fn find, const void *user, noh_face_link *links,
                              uint32_t link_max)
 {
-    const noh_face_recipe own = noh_face_recipe_in_pack(d->mesh);
-    const noh_face_recipe *const usual[4] = { &own, &noh_face_recipe_arkit, &noh_face_recipe_vrm,
-                                              &noh_face_recipe_units };
-    const noh_kind_face *face = d->face.desc;
-    const int given = face && face->recipes;
-    return noh_face_recipe_bind_by(given ? face->recipes : usual, given ? face->recipe_count : 4u, find, user, links,
-                                   link_max);
+    recipe_list list;
+    list_recipes(d, &list);
+    return noh_face_recipe_bind_by(list.all, list.count, find, user, links, link_max);
 }
 
 /* An upper bound. */
@@ -394,6 +411,15 @@ static const char *const shutting[2] = { "blink", "eyesClosed" };
 /* In the order of noh_face_speech. */
 static const char *const speaks[4] = { "speech-brows", "speech-nod", "speech-blink", "speech-away" };
 
+/* Rules of the pack, unlike a game's, are also those of emotions that show another's targets. */
+static void share_rules(const noh_stage_kind *k, const noh_kind_face *from, noh_stage_face_kind *f)
+{
+    recipe_list list;
+    if (has_overrides(&from->rules)) return;
+    list_recipes(k->desc, &list);
+    noh_face_share_rules(k->desc->mesh, noh_face_taken(list.all, list.count, find_in_kind, k), &f->rules);
+}
+
 static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
 {
     noh_stage_face_kind *f = k->modules[NOH_SLOT_FACE].shared;
@@ -404,6 +430,7 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     f->links = carve(&arena, most + bind_overrides(k->desc->mesh, NULL, NULL));
     what = open_shared(k->desc, desc, &k->skeleton, f);
     if (what) return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    share_rules(k, desc, f);
     f->link_count = noh_stage_face_bind(k->desc, find_in_kind, k, f->links, most);
     f->link_count = f->link_count < most ? f->link_count : most;
     f->override_count = (uint16_t)bind_overrides(k->desc->mesh, k, f->links + f->link_count);

@@ -298,30 +298,52 @@ static void emotions_take_speech_by_rule(void **state)
     check_override(offsetof(noh_face_rules, speech), NOH_CHANNEL_VISEMES + NOH_VISEME_AA);
 }
 
-/* Fear shows surprise's targets where a face has none of its own, and then by surprise's rules; else by its own. */
+static uint32_t find_in_list(const void *user, const char *name, uint32_t nth)
+{
+    const char *const *list = user;
+    for (uint32_t i = 0; list[i] && !nth; i++) {
+        if (strcmp(list[i], name) == 0) return i;
+    }
+    return NOH_NONE;
+}
+
+/* Fear shows surprise's targets where no recipe has its own, and then by surprise's rules, unless it has one. */
 static void an_emotion_with_anothers_targets_has_its_rules(void **state)
 {
-    static const char strings[] = "surprise-upper\0Surprised\0override-lids\0override-speech\0binary\0fear-mouth";
-    enum { SURPRISE = 0, TARGET = 15, LIDS = 25, SPEECH = 39, BINARY = 55, FEAR = 62 };
+    static const char strings[] =
+        "surprise-upper\0Surprised\0override-lids\0override-speech\0binary\0fear-mouth\0fear-upper\0override-eyes";
+    enum { SURPRISE = 0, TARGET = 15, LIDS = 25, SPEECH = 39, BINARY = 55, FEAR_MOUTH = 62, FEAR = 73, EYES = 84 };
+    static const char *const plain[] = { "Surprised", NULL };
+    static const char *const arkit[] = { "Surprised",        "browInnerUp",       "eyeWideLeft",     "eyeWideRight",
+                                         "mouthStretchLeft", "mouthStretchRight", "browOuterUpLeft", "browOuterUpRight",
+                                         "browDownLeft",     "browDownRight",     "jawOpen",         NULL };
     noh_recipe_row rows[] = { { .channel = SURPRISE, .target = TARGET, .weight = 1.0f },
                               { .channel = LIDS, .target = SURPRISE, .weight = 1.0f },
                               { .channel = SPEECH, .target = SURPRISE, .weight = 2.0f },
                               { .channel = BINARY, .target = SURPRISE, .weight = 1.0f },
-                              { .channel = FEAR, .target = TARGET, .weight = 0.5f } };
+                              { .channel = FEAR_MOUTH, .target = TARGET, .weight = 0.5f } };
+    const uint32_t fear = 1u << NOH_EMOTION_FEAR, surprise = 1u << NOH_EMOTION_SURPRISE;
     noh_pack pack = { .strings = strings, .string_bytes = sizeof strings, .recipe_rows = rows, .recipe_row_count = 4 };
-    noh_face_rules rules;
     (void)state;
-    assert_string_equal(strings + FEAR, "fear-mouth");
-    noh_face_rules_of_pack(&pack, &rules);
-    assert_int_equal(rules.lids[NOH_EMOTION_FEAR], NOH_OVERRIDE_BLOCK);
-    assert_int_equal(rules.speech[NOH_EMOTION_FEAR], NOH_OVERRIDE_BLEND);
-    assert_int_equal(rules.eyes[NOH_EMOTION_FEAR], NOH_OVERRIDE_NONE);
-    assert_int_equal(rules.binary, 1u << NOH_EMOTION_SURPRISE | 1u << NOH_EMOTION_FEAR);
-    assert_int_equal(rules.lids[NOH_EMOTION_DISGUST], NOH_OVERRIDE_NONE);
-    pack.recipe_row_count = 5;
-    noh_face_rules_of_pack(&pack, &rules);
-    assert_int_equal(rules.lids[NOH_EMOTION_FEAR] + rules.speech[NOH_EMOTION_FEAR], 0);
-    assert_int_equal(rules.binary, 1u << NOH_EMOTION_SURPRISE);
+    assert_string_equal(strings + EYES, "override-eyes");
+    for (int kind = 0; kind < 5; kind++) { /* 0: shares; targets of 1: the pack's, 2: a built-in recipe; rules: 3, 4 */
+        noh_face_rules rules;
+        pack.recipe_row_count = kind == 0 || kind == 2 ? 4 : 5;
+        if (kind == 3) rows[4] = (noh_recipe_row){ .channel = EYES, .target = FEAR, .weight = 1.0f };
+        if (kind == 4) rows[4] = (noh_recipe_row){ .channel = BINARY, .target = FEAR, .weight = 1.0f };
+        const noh_face_recipe own = noh_face_recipe_in_pack(&pack);
+        const noh_face_recipe *const recipes[] = { &own, &noh_face_recipe_arkit };
+        const uint32_t taken = noh_face_taken(recipes, 2, find_in_list, kind == 2 ? arkit : plain);
+        noh_face_rules_of_pack(&pack, &rules);
+        assert_int_equal(rules.lids[NOH_EMOTION_FEAR], NOH_OVERRIDE_NONE);
+        noh_face_share_rules(&pack, taken, &rules);
+        assert_int_equal(taken & fear, kind == 1 || kind == 2 ? 0 : fear);
+        assert_int_equal(rules.lids[NOH_EMOTION_FEAR], kind ? NOH_OVERRIDE_NONE : NOH_OVERRIDE_BLOCK);
+        assert_int_equal(rules.speech[NOH_EMOTION_FEAR], kind ? NOH_OVERRIDE_NONE : NOH_OVERRIDE_BLEND);
+        assert_int_equal(rules.eyes[NOH_EMOTION_FEAR], kind == 3 ? NOH_OVERRIDE_BLOCK : NOH_OVERRIDE_NONE);
+        assert_int_equal(rules.binary, surprise | (kind == 0 || kind == 4 ? fear : 0u));
+        assert_int_equal(rules.lids[NOH_EMOTION_DISGUST], NOH_OVERRIDE_NONE);
+    }
 }
 
 /* No rule and no emotion opens lips that p, b, m, f or v shut. */

@@ -14,6 +14,7 @@
 #include "noh/low_life.h"
 #include "noh/pack.h"
 #include "file/pack_file.h"
+#include "life/face/recipe_internal.h"
 
 #define LINKS_MAX 4096u
 
@@ -164,18 +165,30 @@ static void print_rules(const face_report *r)
 
 static const char *const users[3] = { "lids", "eyes", "speech" }, *const hows[] = { "", "block", "blend" };
 
+/* The rules that a stage applies: the pack's, which emotions with another's targets share. */
+static void read_rules(const face_report *r, noh_face_rules *rules)
+{
+    uint32_t taken = 0;
+    for (uint32_t e = 0; e < NOH_EMOTION_COUNT; e++) {
+        const uint32_t channel = NOH_CHANNEL_UPPER + e;
+        if (coverage_of(&r->sources[channel], channel) == FALLS_BACK) taken |= 1u << e;
+    }
+    noh_face_rules_of_pack(r->mesh.pack, rules);
+    noh_face_share_rules(r->mesh.pack, taken, rules);
+}
+
 /* How an emotion affects a user of the face. */
 static uint8_t override_of(const face_report *r, int emotion, int user)
 {
     noh_face_rules rules;
-    noh_face_rules_of_pack(r->mesh.pack, &rules);
+    read_rules(r, &rules);
     return user == 0 ? rules.lids[emotion] : user == 1 ? rules.eyes[emotion] : rules.speech[emotion];
 }
 
 static int is_binary(const face_report *r, int emotion)
 {
     noh_face_rules rules;
-    noh_face_rules_of_pack(r->mesh.pack, &rules);
+    read_rules(r, &rules);
     return rules.binary >> emotion & 1;
 }
 
