@@ -389,10 +389,10 @@ int noh_fall_lasts(const noh_fall *fall, const noh_stage *stage, noh_actor actor
 
 /* For noh_kind_desc.springs: use the springs that the mesh's pack has for the kind's skeleton. Costs nothing if the
  * pack has none.
- * world  metres; ends of joints stay out of it, without friction, after their own colliders. Frames ask it for every
- *        chain that swings, up to eight chains of an actor at a time; must outlive the stage. It costs each job 1,664
- *        bytes for each joint of the longest chain. Plans and init refuse a world whose physics answers one thread in a
- *        stage with several jobs. NULL: none */
+ * world  metres; ends of joints stay out of it, without friction, after their own colliders, except on frames with
+ *        `cut` and while a chain fades. Frames ask it for every chain that swings, up to eight chains of an actor at a
+ *        time; must outlive the stage. It costs each job 1,664 bytes for each joint of the longest chain. Plans and
+ *        init refuse a world whose physics answers one thread in a stage with several jobs. NULL: none */
 noh_module noh_springs_module(const noh_world *world);
 
 /* ======== motion matching ========

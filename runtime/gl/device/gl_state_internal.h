@@ -25,7 +25,8 @@ void noh_gl_raster_put_back(const noh_gl_api *gl, const noh_gl_raster *raster);
 /* Enable the depth test with the caller's function, adjusted as in gl_device.h. Saves only NOH_KEEP_TESTS and
  * NOH_KEEP_COVERAGE. */
 void noh_gl_tests_begin(const noh_gl_api *gl, noh_gl_raster *raster);
-/* 1: the caller has alpha to coverage on, 3: in a target of one sample; other passes than opaque ones turn it off. */
+/* 0: alpha to coverage is off; 1: the caller has it on; 3: it is on in a target of one sample, where a dither replaces
+ * it. Only opaque passes use it. */
 int noh_gl_is_covering(const noh_gl_raster *raster);
 /* 1: the caller's depth decreases with distance. */
 int noh_gl_is_reversed(const noh_gl_raster *raster);

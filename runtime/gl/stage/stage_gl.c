@@ -549,7 +549,7 @@ static noh_result restore_kind(const noh_stage *s, uint32_t kind, noh_error *err
     return result;
 }
 
-/* Slots' models and pictures are made empty and filled again, all of those that are shown. */
+/* Whether a model belongs to a slot: its models and pictures are made empty, and filled again if they are shown. */
 static int is_of_slot(const noh_stage *stage, uint32_t model)
 {
     const noh_stage_gl *gl = stage->gpu;

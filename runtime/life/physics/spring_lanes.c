@@ -238,7 +238,7 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
 }
 
 /* Turn bones so that their ends are in front of a plane: the part of a bone along the normal is at least `least`, its
- * length stays. A bone that points straight into the plane turns aside across x or z, whichever is more along it. */
+ * length stays. A bone that points straight into the plane turns towards x, or towards z where the normal is nearly along x. */
 NOH_ALWAYS_INLINE lane3 turn_up(lane3 normal, lanes least, lane3 head, lanes length, lane3 tail)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), tiny = lanes_mul(lanes_set(1e-8f), length);
@@ -247,10 +247,10 @@ NOH_ALWAYS_INLINE lane3 turn_up(lane3 normal, lanes least, lane3 head, lanes len
     if (!lanes_any(hit)) return tail;
     const lanes flat = lanes_less(lanes_mul(normal.x, normal.x), lanes_set(0.5f));
     const lane3 other = { lanes_choose(flat, one, zero), zero, lanes_choose(flat, zero, one) };
-    const lane3 beside = lane3_madd(other, lanes_negate(lane3_dot(other, normal)), normal);
+    const lane3 in_plane = lane3_madd(other, lanes_negate(lane3_dot(other, normal)), normal);
     lane3 side = lane3_madd(bone, lanes_negate(along), normal);
     const lanes leans = lanes_less(lanes_mul(tiny, length), lane3_dot(side, side));
-    side = lane3_choose(leans, side, beside);
+    side = lane3_choose(leans, side, in_plane);
     const lanes up = lanes_min(least, length), rest = lanes_sub(lanes_mul(length, length), lanes_mul(up, up));
     const lanes across = lanes_div(lanes_sqrt(lanes_max(zero, rest)), lanes_sqrt(lane3_dot(side, side)));
     const lane3 turned = lane3_madd(lane3_madd(head, up, normal), across, side);

@@ -1,4 +1,4 @@
-/* springs_world.c: what chains of springs touch of a world, asked before a step. */
+/* springs_world.c: finds what the chains of springs touch in a world, before a step. */
 #include "core/base/assert_internal.h"
 #include "life/physics/contact_internal.h"
 #include "life/physics/spring_internal.h"
@@ -42,9 +42,9 @@ static float swept(const float a[4], const float b[4])
     return 2.0f * noh_sqrt(rest > 0.0f ? rest : 0.0f);
 }
 
-/* Ask from where the ends are, as far as they can get: an end moves by inertia and pulls, once more as far as it is put
- * back to its distance from the joint, which moves too, and is shown turned with its carrier; but it gets no farther
- * than to the other side of its chain. */
+/* Describe a ball at each end whose reach covers all places that the end can get to. The reach is the sum of the way by
+ * inertia and pulls, as much again for the correction of the bone's length, and the way of the carrier; it is at most
+ * twice the chain's length plus the carrier's way. */
 static void describe(const noh_spring_move *move, const space *s, uint32_t ticks, noh_world_body *balls)
 {
     const noh_spring *spring = move->spring;

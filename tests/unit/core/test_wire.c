@@ -152,7 +152,6 @@ static void packs_come_back_to_the_byte(void **state)
     }
 }
 
-/* The coarse pack is there long before the end, and stays as it is while the rest comes. */
 /* Later versions read the same bytes, so whatever the coder guesses by is part of the form: if that is meant to change,
  * raise NOH_WIRE_VERSION. */
 static void the_form_stays(void **state)
@@ -170,6 +169,7 @@ static void the_form_stays(void **state)
     free(bytes);
 }
 
+/* The coarse pack is there long before the end, and stays as it is while the rest comes. */
 static void coarse_levels_come_first(void **state)
 {
     const noh_pack both[2] = { coarse_face.pack, face.pack };
