@@ -110,13 +110,19 @@ static int has_eye_joints(const model *m)
 static int choose_eyes(model *m, FILE *report, model_error *error)
 {
     const char *turn = find_moves(m).looks ? "targets turn them" : "nothing turns them";
+    static const char asked[] = "--eyes: "; /* the program's user did not ask */
     model_error own = { "", "" };
+    const char *what = own.what;
     if (has_eye_joints(m)) {
         say(report, "eyes: joints turn them");
         return 0;
     }
     if (m->skin_count) {
-        if (report) fprintf(report, "eyes: %s (--eyes: joints, which packs of its clips then need, too)\n", turn);
+        if (report) {
+            fprintf(report,
+                    "eyes: %s (--eyes adds joints: then only clips of builds with --eyes fit, without --only anim)\n",
+                    turn);
+        }
         return 0;
     }
     if (!eyes_split(m, report, &own)) {
@@ -126,7 +132,10 @@ static int choose_eyes(model *m, FILE *report, model_error *error)
     if (strcmp(own.what, "out of memory") == 0) return model_fail(error, own.where, "%s", own.what);
     if (report) fprintf(report, "eyes: %s\n", turn);
     if (turn[0] == 't') return 0;
-    return model_warn(m, "eyes get no joints, and %s: %s", turn, own.what) ? model_fail(error, "", "out of memory") : 0;
+    if (strncmp(own.what, asked, sizeof asked - 1u) == 0) what += sizeof asked - 1u;
+    return model_warn(m, "eyes get no joints, and %s: %s%s%s", turn, own.where, own.where[0] ? ": " : "", what)
+               ? model_fail(error, "", "out of memory")
+               : 0;
 }
 
 static int choose_lips(model *m, FILE *report, model_error *error)

@@ -63,7 +63,7 @@ static int apply_events(const convert_options *options, source *s, model_error *
     }
     failed = events_read(options->events, &list, error) || events_apply(list, s->sets, s->set_count, error);
     events_free(list);
-    return failed ? input_fail_beside(options->events, error) : 0;
+    return failed ? input_fail_at(options->events, error) : 0;
 }
 
 /* ---- encoding ---- */

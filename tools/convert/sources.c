@@ -192,8 +192,8 @@ static int warn_of_joint_names(source *s, const raw_skeleton *k)
         if (!count++) first = name;
     }
     return count && model_warn(s->m,
-                               "two joints are named '%.80s' (%u in all): a name finds only one of them; give each its "
-                               "own name",
+                               "joint name '%.80s' is used more than once (%u joints repeat a name): a name finds only "
+                               "one of them; give each its own name",
                                first, count);
 }
 

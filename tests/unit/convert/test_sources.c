@@ -216,7 +216,7 @@ static void joints_of_one_name_are_told(void **state)
 {
     source same = source_of(clip_bvh("walk", "aba", FRAMES)), other = source_of(clip_bvh("walk", "abc", FRAMES));
     (void)state;
-    assert_true(has_warning(same.m, "two joints are named 'a' (1 in all)"));
+    assert_true(has_warning(same.m, "joint name 'a' is used more than once (1 joints repeat a name)"));
     assert_false(has_warning(other.m, "two joints"));
     source_free(&same);
     source_free(&other);

@@ -165,7 +165,7 @@ char *input_read_text(const char *path, size_t *bytes, model_error *error)
     return text;
 }
 
-int input_fail_beside(const char *path, model_error *error)
+int input_fail_at(const char *path, model_error *error)
 {
     char place[sizeof error->where];
     memcpy(place, error->where, sizeof place);

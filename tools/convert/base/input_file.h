@@ -16,8 +16,8 @@ char *input_read(const char *path, size_t *bytes, model_error *error);
 
 /* The same for a text: lines end with LF or CRLF, and UTF-16 is an error. */
 char *input_read_text(const char *path, size_t *bytes, model_error *error);
-/* Put a file that an option names in front of the error's place: its message begins with the model. Returns 1. */
-int input_fail_beside(const char *path, model_error *error);
+/* Name an input file in an error: the message begins with the input's name. Returns 1. */
+int input_fail_at(const char *path, model_error *error);
 
 /* A file that the caller of noh_convert.h has in memory. */
 typedef struct input_held {

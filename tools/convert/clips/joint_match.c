@@ -84,13 +84,13 @@ static int pair_by_file(matcher *m, const char *path, model_error *error)
     text_scan scan;
     text_word word;
     int failed = 0;
-    if (!text) return input_fail_beside(path, error);
+    if (!text) return input_fail_at(path, error);
     text_start(&scan, text, bytes, error);
     do {
         failed = text_take_on_line(&scan, &word) || (word.size && pair_line(m, &scan, word));
     } while (!failed && text_next_line(&scan));
     free(text);
-    return failed ? input_fail_beside(path, error) : 0;
+    return failed ? input_fail_at(path, error) : 0;
 }
 
 static void pair_by_name(matcher *m)

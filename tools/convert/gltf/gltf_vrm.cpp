@@ -142,9 +142,9 @@ static void add_line(file &f, expression &e, uint32_t mesh, size_t target, doubl
 {
     const std::string name = f.out->meshes[mesh].targets[target].name;
     if (!is_word(name) || weight == 0.0 || !(weight >= -4.0 && weight <= 4.0)) {
-        leave_out(f, e.where,
-                  ": target '" + printable(name) + "' was left out of it: " +
-                      (is_word(name) ? "its weight is 0, or beyond 4" : "a recipe cannot hold its name"));
+        leave_out(f, e.where + ", target '" + printable(name) + "'",
+                  is_word(name) ? ": left out of it: its weight is 0, or beyond 4"
+                                : ": left out of it: a recipe cannot hold its name");
         return;
     }
     if (r.lines.size() >= LINES_MAX) {

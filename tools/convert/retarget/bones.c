@@ -134,11 +134,11 @@ int bones_read(const char *path, const raw_skeleton *theirs, const raw_skeleton 
     text_scan scan;
     text_word word;
     int failed;
-    if (!text) return input_fail_beside(path, error);
+    if (!text) return input_fail_at(path, error);
     text_start(&scan, text, bytes, error);
     do {
         failed = text_take_on_line(&scan, &word) || (word.size && read_line(&scan, word, skeletons, bones, frame));
     } while (!failed && text_next_line(&scan));
     free(text);
-    return failed ? input_fail_beside(path, error) : 0;
+    return failed ? input_fail_at(path, error) : 0;
 }

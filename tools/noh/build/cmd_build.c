@@ -477,7 +477,7 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, plain),
       .what =
-          "choose nothing for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins" },
+          "choose none of the following for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins. Teeth of one colour get gums with --plain, too" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--warnings",
       .kind = OPTION_FLAG,
@@ -513,7 +513,7 @@ static const option options[] = {
       .at = offsetof(build_args, lod.levels),
       .value = "auto|N",
       .what =
-          "number of LOD levels including the full mesh, 1 to 8; auto: up to five, by error; default: the full mesh only, and what --plain says of faces",
+          "number of LOD levels including the full mesh, 1 to 8; auto: up to five, by error; default: 1; for faces see --plain",
       .example = "4",
       .excludes = "--only=anim" },
     { .name = "--lod-from",
