@@ -111,4 +111,13 @@ told
 check 'joints for its eyes' joints
 check 'the target of its lips' grep -q '^    lipToTeeth ' "$work/told"
 check 'folds' grep -q '^wrinkle\|wrinkles' "$work/told"
+
+# Clips of a build of their own fit it, with the target of its lips or without.
+printf 'Timecode,BlendshapeCount,JawOpen\n00:00:00:00,1,0\n00:00:00:30,1,1\n00:00:01:00,1,1\n' >"$work/take.csv"
+noh build "$build/mask.glb" "$work/take.csv" -o "$work/take.noh" --only anim
+expect 0 'clips apart'
+noh render "$work/face.noh" -o "$work/rest.png" --size 64x64 --anim "$work/take.noh" --clip take --time 0
+noh render "$work/face.noh" -o "$work/open.png" --size 64x64 --anim "$work/take.noh" --clip take --time 1
+expect 0 'play on it'
+check 'and move it' sh -c '! cmp -s "$1" "$2"' - "$work/rest.png" "$work/open.png"
 finish
