@@ -411,7 +411,7 @@ static const char *const shutting[2] = { "blink", "eyesClosed" };
 /* In the order of noh_face_speech. */
 static const char *const speaks[4] = { "speech-brows", "speech-nod", "speech-blink", "speech-away" };
 
-/* Rules of the pack, unlike a game's, are also those of emotions that show another's targets. */
+/* Emotions that show another's targets share its rules, if the rules are the pack's and not the game's. */
 static void share_rules(const noh_stage_kind *k, const noh_kind_face *from, noh_stage_face_kind *f)
 {
     recipe_list list;
