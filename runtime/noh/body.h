@@ -97,7 +97,7 @@ typedef struct noh_touches {
 } noh_touches;
 
 /* Functions of the game. Ragdolls ask once for each 1/60 s and doll, rigid bodies once for each 1/600 s, feet once for
- * each sole, springs once in each frame for up to eight chains of an actor, earlier if a chain is attached to another: in
+ * each sole, springs once in each frame for up to eight chains of an actor, earlier if one is attached to another: in
  * batches, always in the same order. The same question must get the same answer while a step or a frame runs: then
  * results are equal for any number of jobs.
  * An answer with a number that is not finite, or a normal that is not unit, counts as none; `along` is clamped.
