@@ -11,6 +11,8 @@
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/shape_internal.h"
 
+/* Steps and speeds of a doll of size 1. Times grow by the square root of the size, as falls do: in the unit of a doll
+ * speeds shrink by it. */
 #define STILL_STEPS 30u  /* half a second */
 #define STILL_PART 0.02f /* of its size: 35 mm for 1.75 m */
 #define SLOW_PART 0.15f  /* of its size per second: 0.26 m/s for 1.75 m */
@@ -699,17 +701,26 @@ static void push_body(const noh_ragdoll_constants *c, noh_ragdoll_state *s, cons
     noh_madd3(s->spin, 1.0f, spin, s->spin);
 }
 
+/* Scale a vector so that none of its numbers is larger than `most`. */
+static void shorten3(float v[3], float most)
+{
+    float largest = 0.0f;
+    for (int k = 0; k < 3; k++) largest = larger(largest, v[k] < 0.0f ? -v[k] : v[k]);
+    for (int k = 0; k < 3 && largest > most; k++) v[k] *= most / largest;
+}
+
 void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], const float impulse[3])
 {
     NOH_ASSERT(doll < set->count);
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     const float unit = noh_ragdoll_size(d);
     float from[3], own[3], rest[3], sized_impulse[3];
-    divide3(impulse, unit * unit * unit * unit, sized_impulse); /* its mass, and its metres */
-    impulse = sized_impulse;
     for (int k = 0; k < 3; k++) {
         if (!noh_is_number(point[k]) || !noh_is_number(impulse[k])) return;
     }
+    divide3(impulse, unit * unit * unit * unit, sized_impulse); /* its mass, and its metres */
+    shorten3(sized_impulse, NOH_NUMBER_MAX);
+    impulse = sized_impulse;
     enter(d, point, world_origin, from);
     const uint32_t i = nearest_body(&set->shape, d, from);
     const float alone = PUSH_PART * set->size * set->shape.bodies[i].mass, size = noh_length3(impulse);
@@ -746,17 +757,25 @@ static int is_fast(const noh_ragdoll_constants *c, const noh_ragdoll_state *s, f
     return !(square < most * most);
 }
 
+static uint32_t sized_steps(uint32_t steps, float time)
+{
+    const uint32_t own = (uint32_t)((float)steps * time + 0.5f);
+    return own ? own : 1u;
+}
+
 /* A position-based solver makes a resting doll creep for seconds. So the velocities of a doll that has been slow for a
  * while are reduced, until each step begins from zero. Without ground below it nothing stays slow. */
 static void brake(const noh_ragdolls *set, noh_ragdoll_doll *d)
 {
+    const float time = noh_sqrt(noh_ragdoll_size(d));
+    const uint32_t slow = sized_steps(SLOW_STEPS, time), braked = sized_steps(BRAKE_STEPS, time);
     int fast = d->held != 0;
     for (uint32_t i = 0; i < set->shape.body_count && !fast; i++) {
-        fast = is_fast(&set->shape.bodies[i], &d->bodies[i], SLOW_PART * set->size);
+        fast = is_fast(&set->shape.bodies[i], &d->bodies[i], SLOW_PART * set->size / time);
     }
-    d->slow = fast ? 0 : (uint16_t)(d->slow < SLOW_STEPS + BRAKE_STEPS ? d->slow + 1u : d->slow);
-    if (d->slow <= SLOW_STEPS) return;
-    const float part = d->slow < SLOW_STEPS + BRAKE_STEPS ? (float)(d->slow - SLOW_STEPS) / (float)BRAKE_STEPS : 1.0f;
+    d->slow = fast ? 0 : (uint16_t)(d->slow < slow + braked ? d->slow + 1u : d->slow);
+    if (d->slow <= slow) return;
+    const float part = d->slow < slow + braked ? (float)(d->slow - slow) / (float)braked : 1.0f;
     for (uint32_t i = 0; i < set->shape.body_count; i++) {
         noh_ragdoll_state *s = &d->bodies[i];
         noh_madd3(s->velocity, -part, s->velocity, s->velocity);
@@ -767,7 +786,7 @@ static void brake(const noh_ragdolls *set, noh_ragdoll_doll *d)
 static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
 {
     const float reach = STILL_PART * set->size;
-    int moves = d->still == 0 || d->held || 0;
+    int moves = d->still == 0 || d->held;
     for (uint32_t i = 0; i < set->shape.body_count && !moves; i++) {
         moves = !(strayed(&set->shape.bodies[i], &d->bodies[i], d->lain[i]) < reach * reach);
     }
@@ -777,7 +796,7 @@ static void rest_or_go_on(const noh_ragdolls *set, noh_ragdoll_doll *d)
         }
     }
     d->still = (uint16_t)(moves ? 1u : d->still + 1u);
-    if (d->still > STILL_STEPS) {
+    if (d->still > sized_steps(STILL_STEPS, noh_sqrt(noh_ragdoll_size(d)))) {
         d->asleep = 1;
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             memset(d->bodies[i].velocity, 0, sizeof d->bodies[i].velocity + sizeof d->bodies[i].spin);

@@ -367,13 +367,18 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
     return result;
 }
 
+int noh_stage_can_fall(const noh_stage_actor *a)
+{
+    return !a->parent && a->place.scale >= NOH_RAGDOLL_SIZE_MIN && a->place.scale <= NOH_RAGDOLL_SIZE_MAX;
+}
+
 noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     uint32_t doll;
     noh_result result;
     if (b->doll) return NOH_OK;
-    if (a->parent || !(a->place.scale >= NOH_RAGDOLL_SIZE_MIN && a->place.scale <= NOH_RAGDOLL_SIZE_MAX)) {
+    if (!noh_stage_can_fall(a)) {
         return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not in 0.01..100",
                         0, 0);
     }

@@ -111,6 +111,8 @@ typedef struct noh_stage_push {
     const float *point, *impulse; /* [3] in the world, metres; newton seconds */
 } noh_stage_push;
 
+/* Whether an actor is free, and has a scale that ragdolls have. */
+int noh_stage_can_fall(const noh_stage_actor *a);
 noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error);
 /* Which bodies of the kind are which. */
 void noh_stage_find_parts(noh_stage_ragdoll_kind *shared, const noh_ragdoll_source *source);

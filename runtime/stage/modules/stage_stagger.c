@@ -361,20 +361,20 @@ void noh_stage_step_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
     }
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
     if (s->weight <= 0.0f) b->moves = NOH_MOVES_BY_CLIPS;
-    if (!stands) (void)noh_stage_brace_fall(k, a, b, NULL, NULL);
+    if (!stands && noh_stage_brace_fall(k, a, b, NULL, NULL) != NOH_OK) b->moves = NOH_MOVES_BY_CLIPS;
 }
 
 /* ---- a push ---- */
 
-/* The joint that a body lies on: in metres from the origin, and its rotation. */
-static void joint_of(const noh_stage_ragdoll_kind *shared, const noh_stage_body *b, uint32_t body, float at[3],
-                     float rotation[4])
+/* The joint that a body of an actor of a scale lies on: in metres from the origin, and its rotation. */
+static void joint_of(const noh_stage_ragdoll_kind *shared, const noh_stage_body *b, float scale, uint32_t body,
+                     float at[3], float rotation[4])
 {
     float back[4], offset[3];
     noh_quat_conjugate(shared->fit.bodies[body].rotation, back);
     noh_quat_mul(b->bodies[0][body].rotation, back, rotation);
     noh_quat_rotate(rotation, shared->fit.bodies[body].position, offset);
-    noh_sub3(b->bodies[0][body].position, offset, at);
+    noh_madd3(b->bodies[0][body].position, -scale, offset, at);
 }
 
 static int take_stance(const noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_stage_stagger *s)
@@ -386,13 +386,13 @@ static int take_stance(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
     noh_quat_conjugate(frame.rotation, back);
     for (uint32_t i = 0; i < 2; i++) {
         noh_stage_foothold *f = &s->feet[i];
-        joint_of(shared, b, shared->parts.feet[i], f->stance, f->rotation);
+        joint_of(shared, b, a->place.scale, shared->parts.feet[i], f->stance, f->rotation);
         noh_quat_mul(back, f->rotation, f->rotation);
         noh_sub3(f->stance, frame.position, f->stance);
         if (b->bodies[0][0].position[1] - frame.position[1] - f->stance[1] < 0.75f * leg_of(shared, &a->place))
             return 0;
     }
-    joint_of(shared, b, 0, at, turned);
+    joint_of(shared, b, a->place.scale, 0, at, turned);
     for (int i = 0; i < 2; i++) s->pelvis[i] = at[2 * i] - frame.position[2 * i];
     s->weight = 1.0f;
     return 1;
@@ -414,8 +414,9 @@ int noh_stage_begin_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
     const float most = shared->stagger_speed != 0.0f ? shared->stagger_speed * noh_sqrt(size) : natural;
     const float by[2] = { push->impulse[0] / mass, push->impulse[2] / mass };
     noh_stage_stagger s = b->of.stagger;
-    if (!shared->parts.has_legs || b->state != NOH_BODY_STANDS || b->dead || !b->poses || a->parent) return 0;
-    if (!is_upright(a) || b->moves == NOH_MOVES_UP_BEGINS || b->moves == NOH_MOVES_UP) return 0;
+    if (!shared->parts.has_legs || b->state != NOH_BODY_STANDS || b->dead || !b->poses) return 0;
+    if (!noh_stage_can_fall(a) || !is_upright(a) || b->moves == NOH_MOVES_UP_BEGINS || b->moves == NOH_MOVES_UP)
+        return 0;
     if (b->moves != NOH_MOVES_STAGGERING && !take_stance(k, a, b, &s)) return 0;
     add2(s.speed, 1.0f, by);
     if (!(length2(s.speed) <= most)) return 0;

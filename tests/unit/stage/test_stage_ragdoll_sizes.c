@@ -123,6 +123,40 @@ static void a_size_is_a_rig_of_that_size(void **state)
     noh_file_unmap(&c.files[0]);
 }
 
+/* The smallest dolls take any finite push, up to their greatest speed. */
+static void a_hard_push_moves_the_smallest(void **state)
+{
+    static const float origin[3] = { 0.0f, 0.0f, 0.0f };
+    cast c;
+    (void)state;
+    memset(&c, 0, sizeof c);
+    cast_map(&c, PUPPETS, "demo/puppet_falls.noh");
+    const noh_ragdoll_rig one = rig_of(&c.packs[0], 1.0f), full = rig_of(&c.packs[0], 0.01f);
+    const noh_ragdolls_desc desc = { &one, 1, 10, 0 };
+    const size_t bytes = noh_ragdolls_size(&desc);
+    noh_ragdolls *set = NULL;
+    void *memory = malloc(bytes);
+    assert_int_equal(noh_ragdolls_init(memory, bytes, &desc, &set, NULL), NOH_OK);
+    for (uint32_t n = 0; n < 3; n++) {
+        static const float impulses[3] = { 0.01f, 2e4f, 1e12f };
+        const float impulse[3] = { 0.0f, 0.0f, impulses[n] };
+        noh_ragdoll_pose poses[NOH_RAGDOLL_BODIES_MAX];
+        for (uint32_t i = 0; i < one.body_count; i++) {
+            memcpy(poses[i].position, full.bodies[i].position, sizeof poses[i].position);
+            memcpy(poses[i].rotation, full.bodies[i].rotation, sizeof poses[i].rotation);
+        }
+        assert_int_equal(noh_ragdoll_place_about(set, 0, origin, 0.01f, poses, NULL, NULL), NOH_OK);
+        noh_ragdoll_push(set, 0, full.bodies[0].position, impulse);
+        noh_ragdolls_step(set, NULL, NOH_RAGDOLL_STEP_TICKS);
+        noh_ragdoll_bodies(set, 0, poses);
+        const float way = poses[0].position[2] - full.bodies[0].position[2];
+        print_message("# %.2g Ns: %.2g m\n", (double)impulse[2], (double)way);
+        assert_true(way > 0.001f && way < 0.01f);
+    }
+    free(memory);
+    noh_file_unmap(&c.files[0]);
+}
+
 /* ---- actors ---- */
 
 typedef struct scene {
@@ -131,13 +165,12 @@ typedef struct scene {
     noh_actor actors[SIZES];
 } scene;
 
-static void open_scene(scene *s, const noh_world *world, uint32_t jobs)
+static void open_scene_with(scene *s, const noh_kind_ragdoll *ragdoll, uint32_t jobs)
 {
     cast *c = &s->cast;
     memset(s, 0, sizeof *s);
     cast_map(c, PUPPETS, "demo/puppet_falls.noh");
-    s->ragdoll.count = SIZES;
-    s->ragdoll.world = world;
+    s->ragdoll = *ragdoll;
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = SIZES;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
@@ -155,6 +188,26 @@ static void open_scene(scene *s, const noh_world *world, uint32_t jobs)
         assert_int_equal(noh_actor_play(c->stage, s->actors[i], 0, "idle", NULL, NULL), NOH_OK);
         assert_int_equal(noh_actor_set_appearance(c->stage, s->actors[i], &posed, NULL), NOH_OK);
     }
+}
+
+static void open_scene(scene *s, const noh_world *world, uint32_t jobs)
+{
+    open_scene_with(s, &(noh_kind_ragdoll){ .count = SIZES, .world = world }, jobs);
+}
+
+static float scale_of(const scene *s, uint32_t actor)
+{
+    noh_place place;
+    assert_int_equal(noh_actor_place(s->cast.stage, s->actors[actor], &place, NULL), NOH_OK);
+    return place.scale;
+}
+
+static void rescale(const scene *s, uint32_t actor, float scale)
+{
+    noh_place place;
+    assert_int_equal(noh_actor_place(s->cast.stage, s->actors[actor], &place, NULL), NOH_OK);
+    place.scale = scale;
+    assert_int_equal(noh_actor_set_place(s->cast.stage, s->actors[actor], &place, NULL), NOH_OK);
 }
 
 static void close_scene(scene *s)
@@ -182,7 +235,7 @@ static void joint_at(const scene *s, uint32_t actor, const char *name, float out
 static void push(const scene *s, uint32_t actor, float speed)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(&s->cast.stage->kinds[0]);
-    const float size = sizes[actor], impulse[3] = { 0.0f, 0.0f, speed * shared->mass * size * size * size };
+    const float size = scale_of(s, actor), impulse[3] = { 0.0f, 0.0f, speed * shared->mass * size * size * size };
     float point[3];
     joint_at(s, actor, "hips", point);
     assert_int_equal(noh_actor_hit(s->cast.stage, s->actors[actor], point, impulse, NULL), NOH_OK);
@@ -233,24 +286,32 @@ static void every_size_falls_lies_and_gets_up(void **state)
     close_scene(&s);
 }
 
-/* Without a world all fall alike, by half of g t squared. */
+/* Without a world all fall alike from rest, by half of g t squared, up to the greatest speed of their size. */
 static void gravity_is_the_same_for_all(void **state)
 {
-    float from[SIZES][3], to[3];
-    scene s;
+    static const float all[2 * SIZES] = { 0.5f, 1.0f, 2.5f, 0.02f, 10.0f, 100.0f };
     (void)state;
-    open_scene(&s, NULL, 1);
-    run(&s, 10);
-    for (uint32_t i = 0; i < SIZES; i++) assert_int_equal(noh_actor_fall(s.cast.stage, s.actors[i], NULL), NOH_OK);
-    run(&s, 1);
-    for (uint32_t i = 0; i < SIZES; i++) joint_at(&s, i, "hips", from[i]);
-    run(&s, 30);
-    for (uint32_t i = 0; i < SIZES; i++) {
-        joint_at(&s, i, "hips", to);
-        print_message("# size %.1f: %.3f m\n", (double)sizes[i], (double)(from[i][1] - to[1]));
-        assert_true(fabsf(from[i][1] - to[1] - 1.31f) < 0.05f);
+    for (uint32_t round = 0; round < 2; round++) {
+        float from[SIZES][3], to[3];
+        scene s;
+        open_scene(&s, NULL, 1);
+        for (uint32_t i = 0; i < SIZES; i++) rescale(&s, i, all[SIZES * round + i]);
+        for (uint32_t i = 0; i < SIZES; i++) assert_int_equal(noh_actor_fall(s.cast.stage, s.actors[i], NULL), NOH_OK);
+        run(&s, 1);
+        for (uint32_t i = 0; i < SIZES; i++) joint_at(&s, i, "hips", from[i]);
+        for (uint32_t f = 2; f <= 80; f++) {
+            const float expected = NOH_GRAVITY * (float)(f * f - 1u) / 7200.0f;
+            run(&s, 1);
+            for (uint32_t i = 0; i < SIZES; i++) {
+                const float size = all[SIZES * round + i];
+                joint_at(&s, i, "hips", to);
+                if (NOH_GRAVITY * (float)f / 60.0f > 35.0f * size) continue;
+                if (!(fabsf(from[i][1] - to[1] - expected) < 0.04f * expected + 0.001f))
+                    fail_msg("frame %u, size %.2f: %.3f m", f, (double)size, (double)(from[i][1] - to[1]));
+            }
+        }
+        close_scene(&s);
     }
-    close_scene(&s);
 }
 
 /* A push that figures of a size take on their feet is, for another size, one that is faster by the square root. */
@@ -279,6 +340,70 @@ static void staggers_follow_the_size(void **state)
         push(&s, i, 3.0f * sqrtf(sizes[i]));
         assert_int_equal(noh_actor_body(s.cast.stage, s.actors[i]), NOH_BODY_FALLS);
     }
+    close_scene(&s);
+}
+
+/* A push that hardly moves an actor leaves its feet where they stand. */
+static void a_small_push_moves_no_foot(void **state)
+{
+    static const float tested[SIZES] = { 0.2f, 1.0f, 5.0f };
+    static const char *const feet[2] = { "foot.L", "foot.R" };
+    float before[SIZES][2][3], now[3];
+    scene s;
+    (void)state;
+    open_scene(&s, &ground, 1);
+    for (uint32_t i = 0; i < SIZES; i++) rescale(&s, i, tested[i]);
+    run(&s, 10);
+    for (uint32_t i = 0; i < SIZES; i++) {
+        for (uint32_t n = 0; n < 2; n++) joint_at(&s, i, feet[n], before[i][n]);
+        push(&s, i, 0.01f * sqrtf(tested[i]));
+        assert_int_equal(noh_actor_body(s.cast.stage, s.actors[i]), NOH_BODY_STAGGERS);
+    }
+    run(&s, 2);
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(&s.cast.stage->kinds[0]);
+    for (uint32_t i = 0; i < SIZES; i++) {
+        for (uint32_t n = 0; n < 2; n++) {
+            const float leg = shared->legs.length * shared->metres * tested[i];
+            joint_at(&s, i, feet[n], now);
+            print_message("# size %.1f: %s moves by %.4f of a leg\n", (double)tested[i], feet[n],
+                          (double)(distance(before[i][n], now) / leg));
+            assert_true(distance(before[i][n], now) < 0.01f * leg);
+        }
+    }
+    close_scene(&s);
+}
+
+static void is_put_back(const scene *s)
+{
+    size_t bytes;
+    void *saved = test_aligned(noh_stage_state(s->cast.stage, &bytes), (size_t)s->cast.plan.state_bytes);
+    assert_int_equal(noh_stage_set_state(s->cast.stage, saved, bytes, NULL), NOH_OK);
+    free(saved);
+}
+
+/* An actor that cannot fall takes no push on its feet; one that has begun to, and finds no ragdoll, stands again. */
+static void who_cannot_fall_stands(void **state)
+{
+    const noh_kind_ragdoll one = { .count = 1, .world = &ground, .stagger_speed = 100.0f };
+    const float point[3] = { 0.0f, 100.0f, 0.0f }, impulse[3] = { 0.0f, 0.0f, 5.6e9f };
+    scene s;
+    (void)state;
+    open_scene_with(&s, &one, 1);
+    rescale(&s, 0, 200.0f);
+    run(&s, 10);
+    assert_int_equal(noh_actor_hit(s.cast.stage, s.actors[0], point, impulse, NULL), NOH_ERR_ARG);
+    assert_int_equal(noh_actor_body(s.cast.stage, s.actors[0]), NOH_BODY_STANDS);
+    assert_int_equal(noh_actor_fall(s.cast.stage, s.actors[1], NULL), NOH_OK);
+    push(&s, 2, 20.0f);
+    assert_int_equal(noh_actor_body(s.cast.stage, s.actors[2]), NOH_BODY_STAGGERS);
+    for (uint32_t f = 0; f < 60; f++) {
+        noh_place place;
+        run(&s, 1);
+        is_put_back(&s);
+        assert_int_equal(noh_actor_place(s.cast.stage, s.actors[2], &place, NULL), NOH_OK);
+        assert_true(fabsf(place.position[2]) < 2.0f);
+    }
+    assert_int_equal(noh_actor_body(s.cast.stage, s.actors[2]), NOH_BODY_STANDS);
     close_scene(&s);
 }
 
@@ -351,9 +476,15 @@ static void a_scale_may_change_in_a_fall(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_size_is_a_rig_of_that_size), cmocka_unit_test(every_size_falls_lies_and_gets_up),
-    cmocka_unit_test(gravity_is_the_same_for_all),  cmocka_unit_test(staggers_follow_the_size),
-    cmocka_unit_test(falls_are_put_back),           cmocka_unit_test(a_scale_may_change_in_a_fall),
+    cmocka_unit_test(a_size_is_a_rig_of_that_size),
+    cmocka_unit_test(every_size_falls_lies_and_gets_up),
+    cmocka_unit_test(gravity_is_the_same_for_all),
+    cmocka_unit_test(staggers_follow_the_size),
+    cmocka_unit_test(falls_are_put_back),
+    cmocka_unit_test(a_scale_may_change_in_a_fall),
+    cmocka_unit_test(a_hard_push_moves_the_smallest),
+    cmocka_unit_test(a_small_push_moves_no_foot),
+    cmocka_unit_test(who_cannot_fall_stands),
 };
 
 TEST_MAIN(tests, NULL, NULL)
