@@ -235,8 +235,9 @@ noh_modifier noh_stand_modifier(const noh_kind_stand *stand);
  * Precision does not depend on the distance from the origin: bodies are stored relative to a nearby origin. Bodies
  * inside an obstacle at the start of a fall leave it at NOH_PUSH_OUT_SPEED (body.h), without an impulse.
  *
- * An actor of another scale falls as a ragdoll of that size: masses go by the cube of it, and heights take as long as
- * gravity has it. What is given as mass or speed is for scale 1; speeds go by the square root.
+ * An actor of another scale falls as a ragdoll of that size, under the same gravity. A `mass` is for scale 1 and grows
+ * by the cube of the scale. A `stagger_speed` grows by its square root, and so do the times that staggers and falls
+ * take. The greatest speed of a ragdoll grows by the scale itself: 40 m/s for 1.75 m, 4 m/s for a tenth of it.
  *
  * For one limp limb, hold all bodies except the limb's, then let the actor fall. For a fall with strength, set
  * noh_body_hold.hertz: joints then turn towards the angles of the clips.
@@ -268,11 +269,11 @@ noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll);
 noh_result noh_actor_fall(noh_stage *stage, noh_actor actor, noh_error *error);
 
 /* Push an actor. The impulse over the actor's mass decides what a standing one with two legs does: it sways on its
- * feet, steps to keep them (NOH_BODY_STAGGERS; its place then moves, also over the ground of `world`), or falls as a whole
- * over its feet with arms reaching for the ground and joints going limp once it has landed. One without such legs, or
- * one that gets up, falls; one that has fallen is pushed.
+ * feet, steps to keep them (NOH_BODY_STAGGERS; its place then moves, also over the ground of `world`), or falls as a
+ * whole over its feet with arms reaching for the ground and joints going limp once it has landed. One without such
+ * legs, or one that gets up, falls; one that has fallen is pushed.
  * shapes  point[3] in the world, metres: the body nearest to it is pushed; impulse[3] newton seconds, spread
- *         over the bodies and limited to about 40 m/s (noh_ragdoll_push)
+ *         over the bodies and limited to 23 sizes a second (noh_ragdoll_push)
  * errors  as noh_actor_fall; also ARG a number beyond NOH_NUMBER_MAX */
 noh_result noh_actor_hit(noh_stage *stage, noh_actor actor, const float point[3], const float impulse[3],
                          noh_error *error);

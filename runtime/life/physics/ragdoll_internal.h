@@ -90,7 +90,7 @@ typedef struct noh_ragdoll_doll {
     float hertz[NOH_RAGDOLL_BODIES_MAX];
     uint32_t held;
     uint32_t asleep;
-    uint16_t still; /* steps since then */
+    uint16_t still; /* steps since `lain` was stored; 0: it has just been woken */
     uint16_t size_low;
     uint16_t slow; /* steps since any body was fast */
     uint16_t size_high;
@@ -98,8 +98,9 @@ typedef struct noh_ragdoll_doll {
     uint32_t bent;   /* steps for which joints placed beyond their limits are brought back slowly */
 } noh_ragdoll_doll;
 
-/* The size of a doll, as a multiple of its rig's; 0 in its bytes is 1. Its positions, origin and velocities count in
- * multiples of it, not in metres: for a large doll the world is small, gravity weak. Functions take and give metres. */
+/* Get the size of a doll, as a multiple of its rig's. Bytes that are all 0 stand for size 1. Its positions, origin and
+ * velocities count in multiples of it, not in metres: for a large doll the world is small, gravity weak. Functions take
+ * and give metres. */
 float noh_ragdoll_size(const noh_ragdoll_doll *doll);
 
 /* Shared data of a body and of the joint to its parent, in the bodies' own spaces. */

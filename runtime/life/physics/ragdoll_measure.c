@@ -163,6 +163,12 @@ void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, con
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
     noh_world_body asked[NOH_RAGDOLL_BODIES_MAX];
     const float size = noh_ragdoll_size(doll);
+    float origin[3], rest[3] = { 0.0f, 0.0f, 0.0f };
+    for (int k = 0; k < 3; k++) origin[k] = size * doll->origin[k];
+    if (size != 1.0f) { /* floats far away do not hold it */
+        noh_ragdoll_origin_near(origin, origin);
+        for (int k = 0; k < 3; k++) rest[k] = (float)((double)size * (double)doll->origin[k] - (double)origin[k]);
+    }
     for (uint32_t i = 0; i < shape->body_count; i++) {
         const noh_ragdoll_constants *c = &shape->bodies[i];
         const noh_ragdoll_state *s = &doll->bodies[i];
@@ -172,16 +178,19 @@ void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, con
         noh_madd3(s->position, -c->half, axis, a->capsule.from);
         noh_madd3(s->position, c->half, axis, a->capsule.to);
         for (int k = 0; k < 3; k++) {
-            a->origin[k] = size * doll->origin[k];
-            a->capsule.from[k] *= size;
-            a->capsule.to[k] *= size;
+            a->origin[k] = origin[k];
+            a->capsule.from[k] = size * a->capsule.from[k] + rest[k];
+            a->capsule.to[k] = size * a->capsule.to[k] + rest[k];
         }
         a->capsule.radius = size * c->radius;
         a->reach = size * ((noh_length3(s->velocity) + c->half * noh_length3(s->spin)) / 30.0f) + REACH_LEAST;
     }
     noh_world_ask_touches(world, asked, shape->body_count, touches);
     for (uint32_t i = 0; i < shape->body_count; i++) {
-        for (uint32_t k = 0; k < touches[i].count; k++) touches[i].at[k].plane.distance /= size;
+        for (uint32_t k = 0; k < touches[i].count; k++) {
+            noh_plane *plane = &touches[i].at[k].plane;
+            plane->distance = (plane->distance - noh_dot3(plane->normal, rest)) / size;
+        }
     }
 }
 

@@ -15,6 +15,7 @@
 #include "noh/noh.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
+/* Times, rates and hertz are of an actor of scale 1: times grow by the square root of the scale, as falls do. */
 #define SPIN_MAX 0.7f /* of the rate at which a pendulum as high as the centre of mass falls over */
 #define ARM_HERTZ 6.0f
 #define HEAD_HERTZ 5.0f
@@ -30,8 +31,14 @@
 #define BRACE_MAX_TICKS 72000u
 #define BRACE_MIN_TICKS 9600u
 #define RELAX_SECONDS 0.35f
+#define TIME_MAX 10u /* of the largest: the square root of NOH_RAGDOLL_SIZE_MAX */
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
+
+static float time_of(const noh_ragdoll_doll *doll)
+{
+    return noh_sqrt(noh_ragdoll_size(doll));
+}
 
 /* ---- bodies ---- */
 
@@ -250,15 +257,14 @@ static void brace_head(const bracing *b, const noh_stage_parts *parts)
     b->hertz[parts->head] = HEAD_HERTZ;
 }
 
-void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body, noh_ragdoll_pose *goals,
-                           float *hertz)
+void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body, float *origin,
+                           noh_ragdoll_pose *goals, float *hertz)
 {
     const noh_stage_brace *brace = &body->of.brace;
     const noh_ragdoll_doll *doll = &noh_ragdoll_dolls(shared->dolls)[body->doll - 1u];
     bracing b = { &shared->rig, doll->bodies, goals, hertz, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    noh_ragdoll_bodies_local(shared->dolls, body->doll - 1u, origin, goals);
     for (uint32_t i = 0; i < shared->rig.body_count; i++) {
-        memcpy(goals[i].position, doll->bodies[i].position, sizeof goals[i].position);
-        memcpy(goals[i].rotation, doll->bodies[i].rotation, sizeof goals[i].rotation);
         if (i) as_at_rest(&b, i);
         hertz[i] = TRUNK_HERTZ;
     }
@@ -269,7 +275,7 @@ void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage
         brace_arms(&b, &shared->parts, brace->toward);
         brace_head(&b, &shared->parts);
     }
-    for (uint32_t i = 0; i < shared->rig.body_count; i++) hertz[i] *= brace->strength;
+    for (uint32_t i = 0; i < shared->rig.body_count; i++) hertz[i] *= brace->strength / time_of(doll);
 }
 
 /* ---- legs ---- */
@@ -280,11 +286,12 @@ static void brake_leg(const noh_stage_parts *p, noh_ragdoll_doll *doll, uint32_t
 {
     const uint32_t bodies[3] = { p->thighs[leg], p->shins[leg], p->feet[leg] };
     const noh_ragdoll_state *hips = &doll->bodies[0], *foot = &doll->bodies[p->feet[leg]];
-    const float room = hips->position[1] - foot->position[1] - FOOT_MARGIN * length;
-    const float most = hips->velocity[1] + FOOT_RATE * (room > 0.0f ? room : 0.0f), down = -FOOT_DOWN * length;
+    const float time = time_of(doll), room = hips->position[1] - foot->position[1] - FOOT_MARGIN * length;
+    const float most = hips->velocity[1] + FOOT_RATE / time * (room > 0.0f ? room : 0.0f);
+    const float down = -FOOT_DOWN / time * length, leg_speed = length / time;
     const float excess = foot->velocity[1] - (most > down ? most : down);
     if (!(excess > 0.0f)) return;
-    const float share = excess < length ? excess / length : 1.0f; /* of the spin: all of it from a leg a second on */
+    const float share = excess < leg_speed ? excess / leg_speed : 1.0f; /* of the spin: all from a leg a second on */
     for (int i = 0; i < 3; i++) {
         noh_ragdoll_state *s = &doll->bodies[bodies[i]];
         s->velocity[1] -= excess * (i ? 1.0f : 0.5f);
@@ -311,10 +318,12 @@ void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *
     const uint32_t trunk = shared->parts.chest == NOH_NONE ? 0u : shared->parts.chest;
     const float down = -noh_ragdoll_size(doll) * doll->bodies[trunk].velocity[1];
     brace->fastest = down > brace->fastest ? down : brace->fastest;
-    brace->ticks += ticks < BRACE_MAX_TICKS ? ticks : BRACE_MAX_TICKS;
-    const int landed = brace->ticks > BRACE_MIN_TICKS && brace->fastest > 1.0f && down < LANDED * brace->fastest;
-    if (landed || brace->ticks > BRACE_MAX_TICKS || brace->strength < 1.0f) {
-        brace->strength -= (float)ticks / (float)NOH_TICKS_PER_SECOND / RELAX_SECONDS;
+    const float time = time_of(doll);
+    const uint32_t least = (uint32_t)(BRACE_MIN_TICKS * time), most = (uint32_t)(BRACE_MAX_TICKS * time);
+    brace->ticks += ticks < most ? ticks : most;
+    const int landed = brace->ticks > least && brace->fastest > time && down < LANDED * brace->fastest;
+    if (landed || brace->ticks > most || brace->strength < 1.0f) {
+        brace->strength -= (float)ticks / (float)NOH_TICKS_PER_SECOND / (RELAX_SECONDS * time);
     }
     if (!(brace->strength > 0.0f) || body->dead) body->moves = NOH_MOVES_BY_CLIPS;
 }
@@ -322,7 +331,8 @@ void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *
 const char *noh_stage_check_brace(const noh_stage_brace *b)
 {
     const float sum = b->toward[0] + b->toward[1] + b->fastest;
-    return noh_is_finite(sum) && b->strength > 0.0f && b->strength <= 1.0f && b->ticks <= 2u * BRACE_MAX_TICKS
+    return noh_is_finite(sum) && b->strength > 0.0f && b->strength <= 1.0f &&
+                   b->ticks <= 2u * TIME_MAX * BRACE_MAX_TICKS
                ? NULL
                : "state: an actor's brace is out of range";
 }

@@ -21,6 +21,8 @@
 #include "life/physics/world_ask_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
+#define APART 0.005f /* of a doll's size: its joints have another scale if they are farther apart than this */
+
 /* ---- made ---- */
 
 static const char *bad(const noh_kind_desc *d, const void *desc)
@@ -238,10 +240,9 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
 static void brace(const noh_stage_ragdoll_kind *shared, const noh_stage_body *b)
 {
     noh_ragdoll_pose goals[NOH_RAGDOLL_BODIES_MAX];
-    float hertz[NOH_RAGDOLL_BODIES_MAX];
-    noh_stage_brace_goals(shared, b, goals, hertz);
-    (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, noh_ragdoll_dolls(shared->dolls)[b->doll - 1u].origin,
-                                   goals, 0, hertz, NULL);
+    float hertz[NOH_RAGDOLL_BODIES_MAX], origin[3];
+    noh_stage_brace_goals(shared, b, origin, goals, hertz);
+    (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, origin, goals, 0, hertz, NULL);
 }
 
 /* Dolls learn what their clips want; those that are free cost nothing. */
@@ -343,6 +344,21 @@ static uint32_t free_doll(const noh_stage_kind *k)
     return 0;
 }
 
+/* Put bodies together by their joints at a scale, from the first body on: a game may have changed the scale of an actor
+ * that lies dead, whose bodies remember the old one. */
+static void rejoin(const noh_stage_ragdoll_kind *shared, float scale, noh_ragdoll_pose *bodies)
+{
+    for (uint32_t i = 1; i < shared->rig.body_count; i++) {
+        const noh_ragdoll_constants *c = &shared->dolls->shape.bodies[i];
+        const noh_ragdoll_pose *parent = &bodies[c->parent];
+        float arm[3];
+        noh_quat_rotate(parent->rotation, c->anchor_parent, arm);
+        noh_madd3(parent->position, scale, arm, bodies[i].position);
+        noh_quat_rotate(bodies[i].rotation, c->anchor, arm);
+        noh_madd3(bodies[i].position, -scale, arm, bodies[i].position);
+    }
+}
+
 /* An actor that was not shown yet falls out of the bind pose, at rest. */
 static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, uint32_t doll,
                              noh_error *error)
@@ -361,8 +377,15 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
         const float seconds = (float)(b->clocks[0] - b->clocks[1]) / (float)NOH_TICKS_PER_SECOND;
         noh_ragdoll_motions_of(b->bodies[1], b->bodies[0], count, seconds, motions);
     }
-    const noh_result result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, a->place.scale, b->bodies[0],
-                                                      motions, error);
+    noh_ragdoll_measures joints = { .separation_mean = 0.0f };
+    noh_result result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, a->place.scale, b->bodies[0],
+                                                motions, error);
+    if (result == NOH_OK && !stands) noh_ragdoll_measure(shared->dolls, doll - 1u, NULL, &joints);
+    if (joints.separation_mean > APART * shared->dolls->size) {
+        rejoin(shared, a->place.scale, b->bodies[0]);
+        result = noh_ragdoll_place_about(shared->dolls, doll - 1u, b->origin, a->place.scale, b->bodies[0], motions,
+                                         error);
+    }
     if (result == NOH_OK) take_offset(k, b, &a->place);
     return result;
 }

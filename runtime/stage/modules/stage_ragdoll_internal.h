@@ -128,9 +128,9 @@ noh_result noh_stage_brace_fall(noh_stage_kind *k, const noh_stage_actor *a, noh
 /* Let an actor fall with a push, or push one that has fallen. */
 noh_result noh_stage_knock_down(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b,
                                 const noh_stage_push *push, noh_error *error);
-/* Where a bracing ragdoll wants its bodies: goals[body_count] from the doll's origin, hertz[body_count]. */
-void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body, noh_ragdoll_pose *goals,
-                           float *hertz);
+/* Where a bracing ragdoll wants its bodies: goals[body_count] in metres from origin[3], hertz[body_count]. */
+void noh_stage_brace_goals(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body, float *origin,
+                           noh_ragdoll_pose *goals, float *hertz);
 void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *body, uint32_t ticks);
 void noh_stage_keep_feet_low(const noh_stage_ragdoll_kind *shared, const noh_stage_body *body);
 const char *noh_stage_check_brace(const noh_stage_brace *b);

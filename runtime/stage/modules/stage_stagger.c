@@ -21,7 +21,8 @@
 #include "life/physics/world_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
-/* Lengths are in legs, times in seconds. */
+/* Lengths are in legs, times in seconds of an actor of scale 1: times grow by the square root of the scale, as the
+ * pendulum's do. */
 #define PIECE_TICKS 200u /* of 1/240 s */
 #define PIECES_MAX 960u  /* of one step of the stage; the rest of a longer time is dropped */
 #define PIECE ((float)PIECE_TICKS / (float)NOH_TICKS_PER_SECOND)
@@ -32,6 +33,7 @@
 #define STEPS_MAX 5u
 #define LOST 1.1f /* a capture point farther off is not reached */
 #define CLOSE_TICKS 21600u
+#define TIME_MAX 10u /* of the largest: the square root of NOH_RAGDOLL_SIZE_MAX */
 #define LIFT 0.1f
 #define CLOSED 0.025f
 #define SLOW 0.3f        /* legs a second: then the other foot closes up */
@@ -46,10 +48,10 @@ typedef struct walk {
     const noh_stage_ragdoll_kind *shared;
     const noh_stage_body *body;
     noh_stage_stagger *s;
-    float leg, omega;
-    float side[2];   /* unit: the actor's left */
-    float middle[2]; /* of the stance: what the centre of mass is over when both feet stand as they did */
-    float place[3];  /* from the body's origin */
+    float leg, omega, time, piece; /* time: the square root of its scale; piece: PIECE over it */
+    float side[2];                 /* unit: the actor's left */
+    float middle[2];               /* of the stance: what the centre of mass is over when both feet stand as they did */
+    float place[3];                /* from the body's origin */
 } walk;
 
 static float length2(const float v[2])
@@ -74,8 +76,10 @@ static walk begin_walk(const noh_stage_kind *k, const noh_stage_actor *a, noh_st
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const noh_ragdoll_frame frame = noh_stage_ragdoll_frame(k, &a->place, b->origin);
     noh_stage_stagger *s = &b->of.stagger;
-    walk w = { shared, b, s, leg_of(shared, &a->place), 0.0f, { 0.0f, 0.0f }, { 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f } };
+    walk w = { .shared = shared, .body = b, .s = s, .leg = leg_of(shared, &a->place) };
     float turned[3];
+    w.time = noh_sqrt(a->place.scale);
+    w.piece = PIECE / w.time;
     w.omega = noh_sqrt(NOH_GRAVITY / (CENTRE * w.leg));
     noh_quat_rotate(a->place.rotation, left, turned);
     turned[1] = 0.0f;
@@ -221,16 +225,17 @@ static int decide(const walk *w)
     if (outside > LOST * w->leg) return 0;
     if (s->foot) return 1;
     if (outside > 0.0f) {
-        const float speed = length2(s->speed) / w->leg;
-        const float seconds = speed > 1.5f ? 0.22f : 0.34f - 0.08f * speed;
+        const float speed = length2(s->speed) / w->leg * w->time;
+        const float seconds = (speed > 1.5f ? 0.22f : 0.34f - 0.08f * speed) * w->time;
+        const uint32_t pieces = (uint32_t)(seconds / PIECE);
         if (s->steps++ == STEPS_MAX) return 0;
-        begin_step(w, choose_foot(w, capture), PIECE_TICKS * (uint32_t)(seconds / PIECE));
+        begin_step(w, choose_foot(w, capture), PIECE_TICKS * (pieces ? pieces : 1u));
         return 1;
     }
     for (int i = 0; i < 2; i++) apart[i] = s->feet[0].off[i] - s->feet[1].off[i];
-    if (length2(apart) > CLOSED * w->leg && length2(s->speed) < SLOW * w->leg) {
+    if (length2(apart) > CLOSED * w->leg && length2(s->speed) * w->time < SLOW * w->leg) {
         const uint32_t foot = s->steps ? 1u - s->last : 0u;
-        begin_step(w, foot, CLOSE_TICKS);
+        begin_step(w, foot, (uint32_t)(CLOSE_TICKS * w->time));
         memcpy(s->to, s->feet[1u - foot].off, sizeof s->to);
         s->steps = 0;
     }
@@ -272,7 +277,8 @@ static void move_centre(walk *w, float moved[3])
     press(w, p);
     for (int i = 0; i < 2; i++) {
         const float closes = w->s->foot && !s->steps ? s->feet[1u - s->last].off[i] : 0.0f;
-        const float pull = s->foot && !s->steps ? 16.0f * closes - 8.0f * s->speed[i] : -w->omega * w->omega * p[i];
+        const float pull = s->foot && !s->steps ? 16.0f * closes / (w->time * w->time) - 8.0f * s->speed[i] / w->time
+                                                : -w->omega * w->omega * p[i];
         s->speed[i] += pull * PIECE;
         way[i] = s->speed[i] * PIECE;
     }
@@ -283,7 +289,7 @@ static void move_centre(walk *w, float moved[3])
         w->place[2 * i] += way[i];
         moved[2 * i] += way[i];
     }
-    for (int f = 0; f < 2; f++) rise += 0.5f * s->feet[f].height * 8.0f * PIECE;
+    for (int f = 0; f < 2; f++) rise += 0.5f * s->feet[f].height * 8.0f * w->piece;
     w->place[1] += rise;
     moved[1] += rise;
     for (int f = 0; f < 2; f++) {
@@ -299,27 +305,27 @@ static void move_centre(walk *w, float moved[3])
 static void move_trunk(const walk *w)
 {
     noh_stage_stagger *s = w->s;
-    const float fast = length2(s->speed) / w->leg, spread = s->ends ? 0.0f : fast > 1.0f ? 1.0f : fast;
+    const float fast = length2(s->speed) / w->leg * w->time, spread = s->ends ? 0.0f : fast > 1.0f ? 1.0f : fast;
     for (int i = 0; i < 2; i++) {
-        s->lean_speed[i] -= (LEAN_RATE * LEAN_RATE * s->lean[i] + LEAN_RATE * s->lean_speed[i]) * PIECE;
-        s->lean[i] += s->lean_speed[i] * PIECE;
+        s->lean_speed[i] -= (LEAN_RATE * LEAN_RATE * s->lean[i] + LEAN_RATE * s->lean_speed[i]) * w->piece;
+        s->lean[i] += s->lean_speed[i] * w->piece;
     }
-    s->arms += (spread - s->arms) * (spread > s->arms ? 9.0f : 3.0f) * PIECE;
-    s->weight += s->ends ? -4.0f * PIECE : 0.0f;
+    s->arms += (spread - s->arms) * (spread > s->arms ? 9.0f : 3.0f) * w->piece;
+    s->weight += s->ends ? -4.0f * w->piece : 0.0f;
 }
 
 static void lower_feet(const walk *w)
 {
     noh_stage_foothold *f = w->s->feet;
     const int high = f[0].stance[1] > f[1].stance[1] ? 0 : 1;
-    const float over = f[high].stance[1] - f[1 - high].stance[1], most = 2.0f * w->leg * PIECE;
+    const float over = f[high].stance[1] - f[1 - high].stance[1], most = 2.0f * w->leg * w->piece;
     f[high].stance[1] -= over > most ? most : over; /* the push may come in the middle of a step */
 }
 
 static int is_done(const walk *w)
 {
     const noh_stage_stagger *s = w->s;
-    return !s->foot && length2(s->speed) < 0.03f * w->leg && length2(s->feet[0].off) < CLOSED * w->leg &&
+    return !s->foot && length2(s->speed) * w->time < 0.03f * w->leg && length2(s->feet[0].off) < CLOSED * w->leg &&
            length2(s->feet[1].off) < CLOSED * w->leg && s->arms < 0.1f;
 }
 
@@ -341,9 +347,13 @@ static void end_walk(walk *w, float moved[3])
 void noh_stage_step_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_body *b, uint32_t ticks)
 {
     noh_stage_stagger *s = &b->of.stagger;
-    walk w = begin_walk(k, a, b);
     float moved[3] = { 0.0f, 0.0f, 0.0f };
     int stands = 1;
+    if (!noh_stage_can_fall(a)) { /* the game has attached or scaled it */
+        b->moves = NOH_MOVES_BY_CLIPS;
+        return;
+    }
+    walk w = begin_walk(k, a, b);
     s->rest_ticks += ticks < PIECES_MAX * PIECE_TICKS ? ticks : PIECES_MAX * PIECE_TICKS;
     for (; s->rest_ticks >= PIECE_TICKS && stands && s->weight > 0.0f; s->rest_ticks -= PIECE_TICKS) {
         stands = decide(&w);
@@ -421,7 +431,7 @@ int noh_stage_begin_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
     add2(s.speed, 1.0f, by);
     if (!(length2(s.speed) <= most)) return 0;
     const float height = push->point[1] - b->origin[1] - b->bodies[0][0].position[1], high = 2.0f * height / leg;
-    add2(s.lean_speed, (high > 1.0f ? 1.0f : high < -1.0f ? -1.0f : high) * 2.0f / leg, by);
+    add2(s.lean_speed, (high > 1.0f ? 1.0f : high < -1.0f ? -1.0f : high) * 2.0f * noh_sqrt(size) / leg, by);
     s.steps = s.foot ? 1u : 0u;
     s.weight = 1.0f;
     s.ends = 0;
@@ -517,8 +527,8 @@ const char *noh_stage_check_stagger(const noh_stage_stagger *s)
                f->off[0] + f->off[1];
         sum += f->from[0] + f->from[1] + noh_dot3(f->stance, f->stance) + noh_quat_dot(f->rotation, f->rotation);
     }
-    return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= NOH_TICKS_PER_SECOND &&
-                   (!s->foot || s->step_lasts) && s->step_lasts <= NOH_TICKS_PER_SECOND &&
+    return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= TIME_MAX * NOH_TICKS_PER_SECOND &&
+                   (!s->foot || s->step_lasts) && s->step_lasts <= TIME_MAX * NOH_TICKS_PER_SECOND &&
                    s->rest_ticks < PIECE_TICKS && s->ends <= 1u
                ? NULL
                : "state: a push of an actor is out of range";

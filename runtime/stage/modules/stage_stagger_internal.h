@@ -25,7 +25,7 @@ typedef struct noh_stage_stagger {
     float speed[2];                  /* of the centre of mass, m/s */
     float left[2];                   /* of its way that the floats of the place could not hold */
     float pelvis[2], strays[2];      /* the pelvis when the push came; how far the clips have it from there */
-    float lean[2], lean_speed[2];    /* of the trunk, radians */
+    float lean[2], lean_speed[2];    /* of the trunk, radians; per second times the square root of the scale */
     float arms;                      /* 0..1: how far they spread */
     float weight;                    /* 0..1: of all of it */
     uint32_t foot;                   /* 1 + the foot that steps; 0: none */
