@@ -358,6 +358,27 @@ static void staggers_follow_the_size(void **state)
     close_scene(&s);
 }
 
+/* How long actors brace in a fall goes by the square root of their size. */
+static void braces_last_by_the_size(void **state)
+{
+    float lasts[SIZES] = { 0.0f, 0.0f, 0.0f };
+    scene s;
+    (void)state;
+    open_scene(&s, &ground, 1);
+    run(&s, 10);
+    for (uint32_t i = 0; i < SIZES; i++) push(&s, i, 3.0f * sqrtf(sizes[i]));
+    for (uint32_t f = 0; f < 180; f++) {
+        run(&s, 1);
+        for (uint32_t i = 0; i < SIZES; i++) {
+            if (noh_stage_body_of(&s.cast.stage->kinds[0], i)->moves == NOH_MOVES_BRACING)
+                lasts[i] = (float)(f + 1u) / sqrtf(sizes[i]);
+        }
+    }
+    print_message("# frames for size 1: %.1f %.1f %.1f\n", (double)lasts[0], (double)lasts[1], (double)lasts[2]);
+    for (uint32_t i = 0; i < SIZES; i++) assert_true(lasts[i] > 20.0f && fabsf(lasts[i] / lasts[1] - 1.0f) < 0.15f);
+    close_scene(&s);
+}
+
 /* A push that hardly moves an actor leaves its feet where they stand. */
 static void a_small_push_moves_no_foot(void **state)
 {
@@ -535,6 +556,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_scale_may_change_in_a_fall),
     cmocka_unit_test(a_hard_push_moves_the_smallest),
     cmocka_unit_test(a_small_push_moves_no_foot),
+    cmocka_unit_test(braces_last_by_the_size),
     cmocka_unit_test(who_cannot_fall_stands),
     cmocka_unit_test(a_dead_actor_may_be_scaled),
 };
