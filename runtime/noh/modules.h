@@ -365,7 +365,7 @@ noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3
                           noh_error *error);
 
 /* Call before noh_stage_step, with the same ticks. An actor that has lain still for NOH_FALL_STAY_TICKS, or has been
- * down for NOH_FALL_WAIT_TICKS, gets up. */
+ * down for NOH_FALL_WAIT_TICKS, times the square root of its scale if that is above 1, gets up. */
 noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t ticks,
                          noh_error *error);
 

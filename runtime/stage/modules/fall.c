@@ -55,6 +55,14 @@ noh_result noh_actor_push(noh_stage *stage, noh_actor actor, const float point[3
     return noh_actor_hit(stage, actor, at, impulse, error);
 }
 
+/* Large actors fall for longer: times grow by the square root of the scale. */
+static uint32_t wait_ticks(const noh_stage *stage, noh_actor actor)
+{
+    noh_place place;
+    if (noh_actor_place(stage, actor, &place, NULL) != NOH_OK || !(place.scale > 1.0f)) return NOH_FALL_WAIT_TICKS;
+    return (uint32_t)((float)NOH_FALL_WAIT_TICKS * noh_sqrt(place.scale < 100.0f ? place.scale : 100.0f));
+}
+
 noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint32_t layer, uint32_t ticks,
                          noh_error *error)
 {
@@ -67,7 +75,7 @@ noh_result noh_fall_step(noh_fall *fall, noh_stage *stage, noh_actor actor, uint
     fall->rise_ticks = 0;
     fall->down_ticks += ticks;
     fall->still_ticks = body == NOH_BODY_LIES ? fall->still_ticks + ticks : 0;
-    if (fall->still_ticks < NOH_FALL_STAY_TICKS && fall->down_ticks < NOH_FALL_WAIT_TICKS) return NOH_OK;
+    if (fall->still_ticks < NOH_FALL_STAY_TICKS && fall->down_ticks < wait_ticks(stage, actor)) return NOH_OK;
     fall->down_ticks = fall->still_ticks = 0;
     return noh_actor_get_up(stage, actor, &(noh_get_up){ .layer = layer }, &fall->rise_ticks, error);
 }

@@ -379,6 +379,28 @@ static void braces_last_by_the_size(void **state)
     close_scene(&s);
 }
 
+/* A fall that does not end is given up after a time that grows with the size of the actor. */
+static void larger_actors_are_down_for_longer(void **state)
+{
+    noh_fall falls[SIZES];
+    uint32_t frames[SIZES] = { 0, 0, 0 };
+    scene s;
+    (void)state;
+    memset(falls, 0, sizeof falls);
+    open_scene(&s, NULL, 1);
+    for (uint32_t i = 0; i < SIZES; i++) assert_int_equal(noh_actor_fall(s.cast.stage, s.actors[i], NULL), NOH_OK);
+    for (uint32_t f = 0; f < 400; f++) {
+        for (uint32_t i = 0; i < SIZES; i++) {
+            assert_int_equal(noh_fall_step(&falls[i], s.cast.stage, s.actors[i], 0, CAST_STEP, NULL), NOH_OK);
+            frames[i] += noh_actor_body(s.cast.stage, s.actors[i]) == NOH_BODY_FALLS;
+        }
+        run(&s, 1);
+    }
+    print_message("# down for %u %u %u frames\n", frames[0], frames[1], frames[2]);
+    assert_true(frames[0] == frames[1] && fabsf((float)frames[2] / (float)frames[1] - sqrtf(2.5f)) < 0.02f);
+    close_scene(&s);
+}
+
 /* A push that hardly moves an actor leaves its feet where they stand. */
 static void a_small_push_moves_no_foot(void **state)
 {
@@ -557,6 +579,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_hard_push_moves_the_smallest),
     cmocka_unit_test(a_small_push_moves_no_foot),
     cmocka_unit_test(braces_last_by_the_size),
+    cmocka_unit_test(larger_actors_are_down_for_longer),
     cmocka_unit_test(who_cannot_fall_stands),
     cmocka_unit_test(a_dead_actor_may_be_scaled),
 };
