@@ -358,7 +358,7 @@ static void staggers_follow_the_size(void **state)
     close_scene(&s);
 }
 
-/* How long actors brace in a fall goes by the square root of their size. */
+/* How long actors brace in a fall follows the square root of their size. */
 static void braces_last_by_the_size(void **state)
 {
     float lasts[SIZES] = { 0.0f, 0.0f, 0.0f };
