@@ -388,8 +388,8 @@ static int is_in_part(const noh_material *m, draw_part part)
     }
 }
 
-/* Pixels with a lower alpha are not drawn; -1: all are drawn. SOFT more: alpha becomes coverage, or
- * with three times SOFT a dither. */
+/* Pixels with a lower alpha are not drawn; -1: all are drawn. The shader takes cutoff + SOFT as alpha to coverage, and
+ * cutoff + 3 * SOFT as a dither. */
 #define SOFT 2.0f
 static float cutoff_of(const noh_gl_renderer *r, const noh_material *m, draw_part part)
 {
