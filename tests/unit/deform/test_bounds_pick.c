@@ -257,6 +257,40 @@ static void boxes_hold_the_arcs_of_dual_quaternions(void **state)
     check_arcs(2);
 }
 
+/* How far dual quaternions may carry a vertex depends on pairs of joints, not on which of two comes first. */
+static void boxes_do_not_depend_on_the_order_of_joints(void **state)
+{
+    const skin_cylinder c = { 6, 9, 3, 2, 0, 0, 2.0f, 0.05f };
+    static const char *const names[] = { "all" };
+    const skin_options all = { .dual_quaternion = names, .dual_quaternion_count = 1 };
+    model *m = skin_cylinder_model(&c);
+    test_random r = test_random_from(31);
+    size_t count;
+    uint8_t *bytes = skin_pack_of(m, &all, 1.0f, &count, NULL);
+    noh_pack pack = test_open(bytes, count);
+    noh_mesh mesh = test_mesh(&pack, 0);
+    (void)state;
+    for (int round = 0; round < 200; round++) {
+        float boxes[2][18], matrices[2][36], found[2][6];
+        for (uint32_t j = 0; j < 3; j++) {
+            for (uint32_t k = 0; k < 12; k++) matrices[0][12u * j + k] = test_random_float(&r, -1.0f, 1.0f);
+            for (uint32_t k = 0; k < 3; k++) {
+                boxes[0][6u * j + k] = test_random_float(&r, -1.0f, 0.0f);
+                boxes[0][6u * j + 3u + k] = test_random_float(&r, 0.0f, 1.0f);
+            }
+            memcpy(boxes[1] + 6u * (2u - j), boxes[0] + 6u * j, 6 * sizeof(float));
+            memcpy(matrices[1] + 12u * (2u - j), matrices[0] + 12u * j, 12 * sizeof(float));
+        }
+        for (uint32_t i = 0; i < 2; i++) {
+            mesh.joint_boxes = boxes[i];
+            noh_skin_box(&mesh, matrices[i], NULL, found[i]);
+        }
+        assert_memory_equal(found[0], found[1], sizeof found[0]);
+    }
+    free(bytes);
+    model_free(m);
+}
+
 static void boxes_of_rigid_meshes(void **state)
 {
     const test_model_desc desc = { 1, 12, 6, TEST_TANGENTS, 3 };
@@ -567,6 +601,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(boxes_of_simple_skin),
     cmocka_unit_test(boxes_by_dual_quaternions),
     cmocka_unit_test(boxes_hold_the_arcs_of_dual_quaternions),
+    cmocka_unit_test(boxes_do_not_depend_on_the_order_of_joints),
     cmocka_unit_test(boxes_of_rigid_meshes),
     cmocka_unit_test(rays_at_body),
     cmocka_unit_test(rays_at_body_with_eight_influences),
