@@ -452,7 +452,7 @@ static uint32_t step_group(const group *g, uint32_t ticks, obstacle *obstacles)
 uint32_t NOH_SPRING_STEP(const noh_spring_move *moves, uint32_t count, uint32_t ticks, float *scratch)
 {
     uint32_t dropped = 0;
-    float *aligned = scratch + (0u - (uintptr_t)scratch / sizeof(float)) % NOH_LANES;
+    float *aligned = scratch ? scratch + (0u - (uintptr_t)scratch / sizeof(float)) % NOH_LANES : NULL;
     NOH_ASSERT(moves || !count);
     for (uint32_t i = 0; i < count; i += NOH_LANES) {
         group g;
