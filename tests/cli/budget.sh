@@ -59,7 +59,7 @@ check 'and the bytes of the pack' grep -q "the packs themselves  *$(wc -c <"$pup
 noh budget "$puppet" --actors 20 --nominal
 check 'twice the same' cmp "$work/out" "$work/whole"
 
-noh budget "$puppet" --actors 20 --nominal --bytes 2097152
+noh budget "$puppet" --actors 20 --nominal --path mrt --bytes 2097152
 expect 0 'in 2 MiB'
 cp "$work/out" "$work/small"
 check 'the parts add up' adds_up "$work/small"
@@ -199,7 +199,7 @@ expect 0 'which budget takes'
 
 # ---- JSON ----
 
-noh budget "$puppet" --actors 20 --nominal --bytes 2097152 --json
+noh budget "$puppet" --actors 20 --nominal --path mrt --bytes 2097152 --json
 expect 0 '--json'
 cp "$work/out" "$work/one.json"
 check 'the parts add up there, too' awk '
