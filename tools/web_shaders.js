@@ -42,6 +42,16 @@ function units(text) {
     return depth ? [text] : [...out, text.slice(start)];
 }
 
+// A text without what stands between #ifdef of a name, which only shaders of a game's own define, and its #endif.
+function without(text, name) {
+    let depth = 0;
+    return text.split('\n').filter((line) => {
+        if (depth || line === `#ifdef ${name}`) depth += /^#\s*if/.test(line) ? 1 : /^#\s*endif/.test(line) ? -1 : 0;
+        else return true;
+        return false;
+    }).join('\n');
+}
+
 // The texts without functions that neither they nor a string of C name: a page has no shaders of its own, which might.
 function called(texts, strings) {
     const count = new Map(), head = /(^|[;}\n])((?:void|bool|float|u?int|[ui]?vec[234]|noh_\w+) +(\w+)\([^;{}]*\)\s*)\{[^]*\}$/;
@@ -91,7 +101,7 @@ const strings = new Set(files.flatMap((file) => Array.from(fs.readFileSync(file,
     .flatMap(([text]) => text.match(/^"\w+[^\s"]*"$/.test(text) ? /\w+/g : /\bnoh_\w+/g) || [])));
 const parts = fs.readFileSync(from, 'utf8').split(/^((?:static const char \*const \w+_pieces|const char \w+)\[\] = \{\n[^]*?\n\};\n)/m);
 const all = parts.map((part, i) => (i % 2 ? (part.startsWith('static') ? unquoted : decoded)(part.slice(part.indexOf('\n') + 1, part.indexOf('\n};'))) : null));
-const small = called(all.filter((text) => text !== null), strings);
+const small = called(all.filter((text) => text !== null).map((text) => without(text, 'NOH_EXTRAS')), strings);
 const texts = all.map((text, i) => (text === null ? null : small[(i - 1) / 2]));
 const short = renames(small, strings);
 for (let i = 1; i < parts.length; i += 2) {
