@@ -80,10 +80,9 @@ static face_moves find_moves(const model *m)
     return all;
 }
 
-int choice_is_face(const model *m)
+static int is_face(const face_moves *moves)
 {
-    const face_moves found = find_moves(m);
-    return found.blinks && found.opens;
+    return moves->blinks && moves->opens;
 }
 
 /* ---- eyes and lips ---- */
@@ -107,9 +106,9 @@ static int has_eye_joints(const model *m)
 
 /* Joints of eyes are for heads that have no joints: on a skeleton they would part the model from clips of other files,
  * which have the skeleton's own joints. */
-static int choose_eyes(model *m, FILE *report, model_error *error)
+static int choose_eyes(model *m, const face_moves *moves, FILE *report, model_error *error)
 {
-    const char *turn = find_moves(m).looks ? "targets turn them" : "nothing turns them";
+    const char *turn = moves->looks ? "targets turn them" : "nothing turns them";
     static const char asked[] = "--eyes: "; /* the program's user did not ask */
     model_error own = { "", "" };
     const char *what = own.what;
@@ -131,17 +130,17 @@ static int choose_eyes(model *m, FILE *report, model_error *error)
     }
     if (strcmp(own.what, "out of memory") == 0) return model_fail(error, own.where, "%s", own.what);
     if (report) fprintf(report, "eyes: %s\n", turn);
-    if (turn[0] == 't') return 0;
+    if (moves->looks) return 0;
     if (strncmp(own.what, asked, sizeof asked - 1u) == 0) what += sizeof asked - 1u;
     return model_warn(m, "eyes get no joints, and %s: %s%s%s", turn, own.where, own.where[0] ? ": " : "", what)
                ? model_fail(error, "", "out of memory")
                : 0;
 }
 
-static int choose_lips(model *m, FILE *report, model_error *error)
+static int choose_lips(model *m, const face_moves *moves, FILE *report, model_error *error)
 {
     char why[LIP_WHY_BYTES];
-    if (find_moves(m).bites) {
+    if (moves->bites) {
         say(report, "lips: a target of the model's own shows f and v");
         return 0;
     }
@@ -154,14 +153,15 @@ static int choose_lips(model *m, FILE *report, model_error *error)
 /* What is chosen before skins are made, in this order. */
 static const struct {
     unsigned bit;
-    int (*choose)(model *m, FILE *report, model_error *error);
+    int (*choose)(model *m, const face_moves *moves, FILE *report, model_error *error);
 } shapes[] = { { CHOICE_EYES, choose_eyes }, { CHOICE_LIPS, choose_lips } };
 
 int choices_shape(model *m, unsigned bits, FILE *report, model_error *error)
 {
-    if (!bits || !choice_is_face(m)) return 0;
-    for (size_t i = 0; i < sizeof shapes / sizeof shapes[0]; i++) {
-        if ((bits & shapes[i].bit) && shapes[i].choose(m, report, error)) return 1;
+    if (!bits) return 0;
+    const face_moves moves = find_moves(m);
+    for (size_t i = 0; i < sizeof shapes / sizeof shapes[0] && is_face(&moves); i++) {
+        if ((bits & shapes[i].bit) && shapes[i].choose(m, &moves, report, error)) return 1;
     }
     return 0;
 }
@@ -236,9 +236,10 @@ static double work_of(const model *m, raw_set *const *sets, uint32_t set_count)
 void choices_levels(const model *m, raw_set *const *sets, uint32_t set_count, lod_settings *levels, FILE *report)
 {
     const double work = work_of(m, sets, set_count), poses = poses_of(m);
+    const face_moves moves = find_moves(m);
     const size_t count = sizeof levels_of / sizeof levels_of[0];
     size_t i = 0;
-    if (!choice_is_face(m) || !(poses > 0.0)) return;
+    if (!is_face(&moves) || !(poses > 0.0)) return;
     while (i < count && levels_of[i].ns * poses > SHARE * work) i++;
     if (i < count) {
         levels->level_count = levels_of[i].count;

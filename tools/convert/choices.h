@@ -18,8 +18,6 @@ enum {
     CHOICE_LIPS = 2  /* a target that brings the lower lip to the teeth (lip_target.h) */
 };
 
-int choice_is_face(const model *m);
-
 /* Eyes and lips, as far as `bits` has them, before clips and skins are made of the model. report: a line on each;
  * NULL: quiet. What could not be made of eyes that nothing turns is a warning of the model. 0, or 1 when out of
  * memory. */
