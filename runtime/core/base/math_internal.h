@@ -50,6 +50,11 @@ static inline int noh_is_number(float x)
     return x >= -NOH_NUMBER_MAX && x <= NOH_NUMBER_MAX;
 }
 
+static inline int noh_is_number3(const float v[3])
+{
+    return noh_is_number(v[0]) && noh_is_number(v[1]) && noh_is_number(v[2]);
+}
+
 #define NOH_NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
 
 /* The point to count from instead of the origin: 0 for an x near it, else a multiple of 16 close to x, which is an exact

@@ -318,17 +318,21 @@ static noh_round_box round_of_capsule(const noh_capsule *c, const float origin[3
     return r;
 }
 
+/* Capsules of a world, then its boxes. */
+static noh_round_box obstacle_of(const noh_world *w, uint32_t i, const float origin[3])
+{
+    if (i < w->capsule_count) return round_of_capsule(&w->capsules[i], origin);
+    noh_round_box r = { w->boxes[i - w->capsule_count], 0.0f };
+    noh_sub3(r.box.centre, origin, r.box.centre);
+    return r;
+}
+
 void noh_contacts_find(const noh_world *w, const float origin[3], const noh_round_box *body, noh_contacts *contacts)
 {
     contacts->count = 0;
     touch_ground(w, origin, body, contacts);
-    for (uint32_t i = 0; i < w->capsule_count; i++) {
-        const noh_round_box on = round_of_capsule(&w->capsules[i], origin);
-        touch_round(body, &on, contacts);
-    }
-    for (uint32_t i = 0; i < w->box_count; i++) {
-        noh_round_box on = { w->boxes[i], 0.0f };
-        noh_sub3(w->boxes[i].centre, origin, on.box.centre);
+    for (uint32_t i = 0; i < w->capsule_count + w->box_count; i++) {
+        const noh_round_box on = obstacle_of(w, i, origin);
         touch_round(body, &on, contacts);
     }
 }
@@ -381,13 +385,8 @@ static void touch_shapes(const noh_world *w, const ball *b)
     if (w->field && noh_field_height_about(w->field, origin, at[0], at[2], &height, normal)) {
         add_touch(b, normal, (at[1] - height) * normal[1]);
     }
-    for (uint32_t i = 0; i < w->capsule_count; i++) {
-        const noh_round_box on = round_of_capsule(&w->capsules[i], origin);
-        touch_rounded(b, &on);
-    }
-    for (uint32_t i = 0; i < w->box_count; i++) {
-        noh_round_box on = { w->boxes[i], 0.0f };
-        noh_sub3(w->boxes[i].centre, origin, on.box.centre);
+    for (uint32_t i = 0; i < w->capsule_count + w->box_count; i++) {
+        const noh_round_box on = obstacle_of(w, i, origin);
         touch_rounded(b, &on);
     }
 }

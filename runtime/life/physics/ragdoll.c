@@ -357,11 +357,6 @@ static void set_size(noh_ragdoll_doll *doll, float size)
     doll->size_high = (uint16_t)(bits >> 16);
 }
 
-static int is_size(float size)
-{
-    return size >= NOH_RAGDOLL_SIZE_MIN && size <= NOH_RAGDOLL_SIZE_MAX;
-}
-
 /* Convert a point from metres about an origin to a doll's unit and origin. */
 static void enter(const noh_ragdoll_doll *doll, const float point[3], const float origin[3], float out[3])
 {
@@ -478,7 +473,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
         if (!noh_is_finite3(doll->origin)) return "state: a ragdoll's position is not finite";
-        if (!is_size(noh_ragdoll_size(doll))) return "state: a ragdoll's size is out of range";
+        if (!noh_ragdoll_is_size(noh_ragdoll_size(doll))) return "state: a ragdoll's size is out of range";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {
             if (!good_state(&doll->bodies[i]) || !(doll->hertz[i] >= 0.0f && noh_is_finite(doll->hertz[i])))
                 return "state: a ragdoll's body is not finite";
@@ -526,7 +521,7 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
         return noh_fail(error, NOH_ERR_ARG, "a placed body's position is not finite, or its rotation is not unit", bad,
                         0);
     }
-    NOH_ASSERT(is_size(size));
+    NOH_ASSERT(noh_ragdoll_is_size(size));
     set_size(d, size);
     noh_ragdoll_origin_near(bodies[0].position, d->origin);
     noh_madd3(d->origin, 1.0f, origin, d->origin);
@@ -715,9 +710,7 @@ void noh_ragdoll_push(noh_ragdolls *set, uint32_t doll, const float point[3], co
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     const float unit = noh_ragdoll_size(d);
     float from[3], own[3], rest[3], sized_impulse[3];
-    for (int k = 0; k < 3; k++) {
-        if (!noh_is_number(point[k]) || !noh_is_number(impulse[k])) return;
-    }
+    if (!noh_is_number3(point) || !noh_is_number3(impulse)) return;
     divide3(impulse, unit * unit * unit * unit, sized_impulse); /* its mass, and its metres */
     shorten3(sized_impulse, NOH_NUMBER_MAX);
     impulse = sized_impulse;

@@ -67,6 +67,7 @@ noh_result noh_ragdoll_rig_check(const noh_ragdoll_rig *rig, noh_error *error);
 
 #define NOH_RAGDOLL_SIZE_MIN 0.01f
 #define NOH_RAGDOLL_SIZE_MAX 100.0f
+#define NOH_RAGDOLL_TIME_MAX 10u /* the square root of NOH_RAGDOLL_SIZE_MAX: times of the largest to times of size 1 */
 #define NOH_RAGDOLL_LANES_MAX 8u
 #define NOH_RAGDOLL_LANE_FLOATS 52u                       /* per body in the shared memory, for each lane */
 #define NOH_RAGDOLL_PLACE_FLOATS (8u + NOH_OBSTACLES_MAX) /* per doll: its origin, and planes relative to it */
@@ -102,6 +103,12 @@ typedef struct noh_ragdoll_doll {
  * velocities count in multiples of it, not in metres: for a large doll the world is small, gravity weak. Functions take
  * and give metres. */
 float noh_ragdoll_size(const noh_ragdoll_doll *doll);
+
+/* Whether dolls may have a size. */
+static inline int noh_ragdoll_is_size(float size)
+{
+    return size >= NOH_RAGDOLL_SIZE_MIN && size <= NOH_RAGDOLL_SIZE_MAX;
+}
 
 /* Shared data of a body and of the joint to its parent, in the bodies' own spaces. */
 typedef struct noh_ragdoll_constants {

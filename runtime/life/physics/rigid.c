@@ -64,9 +64,7 @@ noh_result noh_rigid_init(noh_rigid *body, const noh_rigid_desc *desc, noh_error
         if (!(inertia[i] > 0.0f && noh_is_finite(inertia[i]) && noh_is_finite(1.0f / inertia[i])))
             return noh_fail(error, NOH_ERR_ARG, wrong, 2, 0);
     }
-    for (int i = 0; i < 3; i++) {
-        if (!noh_is_number(desc->position[i])) return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
-    }
+    if (!noh_is_number3(desc->position)) return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
     if (!(turned == 0.0f || (turned > 0.99f && turned < 1.01f))) return noh_fail(error, NOH_ERR_ARG, wrong, 3, 0);
     memset(body, 0, sizeof *body);
     memcpy(body->half, desc->half, sizeof body->half);

@@ -62,10 +62,7 @@ uint32_t noh_walkers_push(noh_walkers *walkers, noh_stage *stage, const float po
     NOH_ASSERT(walkers && stage && point);
     float beyond = -1.0f;
     uint32_t fell = 0, last = NOH_NONE;
-    for (int i = 0; i < 3; i++) {
-        if (!noh_is_number(point[i])) return 0;
-    }
-    if (!noh_is_number(radius) || !noh_is_number(impulse)) return 0;
+    if (!noh_is_number3(point) || !noh_is_number(radius) || !noh_is_number(impulse)) return 0;
     if (stage->phase != NOH_STAGE_IDLE || !noh_stage_ragdoll_kind_of(&stage->kinds[walkers->kind])) return 0;
     for (;;) {
         float square = 0.0f;

@@ -99,9 +99,7 @@ static const char *normal_place(const noh_place *in, noh_place *out)
     const float *q = in->rotation;
     float square = 0.0f;
     *out = *in;
-    for (int i = 0; i < 3; i++) {
-        if (!noh_is_number(in->position[i])) return "position of a place is not a number, or larger than 10^12";
-    }
+    if (!noh_is_number3(in->position)) return "position of a place is not a number, or larger than 10^12";
     for (int i = 0; i < 4; i++) square += q[i] * q[i];
     if (!noh_is_finite(square)) return "rotation of a place is not finite";
     if (!(in->scale >= 0.0f && noh_is_number(in->scale))) return "scale of a place is not in 0..10^12";

@@ -44,9 +44,7 @@ static const void *in_copy(const reader *r, const void *own)
 static const char *bad_place(const noh_place *place)
 {
     float length = 0.0f;
-    for (int i = 0; i < 3; i++) {
-        if (!noh_is_number(place->position[i])) return "state: an actor's place is not a number";
-    }
+    if (!noh_is_number3(place->position)) return "state: an actor's place is not a number";
     for (int i = 0; i < 4; i++) length += place->rotation[i] * place->rotation[i];
     if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f && noh_is_number(place->scale)))
         return "state: an actor's rotation is not unit, or its scale not in 0..10^12";

@@ -536,7 +536,8 @@ static int is_there(const noh_kind_desc *d, const void *desc)
 static const char *bad(const noh_kind_desc *d, const void *desc)
 {
     noh_springs_desc springs;
-    if (NOH_SPRINGS_MEET && desc && noh_world_check(desc, NULL)) return "world of a kind's springs: see noh_world_check";
+    if (NOH_SPRINGS_MEET && desc && noh_world_check(desc, NULL))
+        return "world of a kind's springs: see noh_world_check";
     return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
                    state_bytes_of(&springs, springs.chain_count) > NOH_MODIFIER_BYTES_MAX
                ? "springs of a kind: the springs of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"

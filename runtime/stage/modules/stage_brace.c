@@ -31,7 +31,6 @@
 #define BRACE_MAX_TICKS 72000u
 #define BRACE_MIN_TICKS 9600u
 #define RELAX_SECONDS 0.35f
-#define TIME_MAX 10u /* of the largest: the square root of NOH_RAGDOLL_SIZE_MAX */
 
 static const float up[3] = { 0.0f, 1.0f, 0.0f };
 
@@ -332,7 +331,7 @@ const char *noh_stage_check_brace(const noh_stage_brace *b)
 {
     const float sum = b->toward[0] + b->toward[1] + b->fastest;
     return noh_is_finite(sum) && b->strength > 0.0f && b->strength <= 1.0f &&
-                   b->ticks <= 2u * TIME_MAX * BRACE_MAX_TICKS
+                   b->ticks <= 2u * NOH_RAGDOLL_TIME_MAX * BRACE_MAX_TICKS
                ? NULL
                : "state: an actor's brace is out of range";
 }

@@ -392,7 +392,7 @@ static noh_result place_doll(noh_stage_kind *k, const noh_stage_actor *a, noh_st
 
 int noh_stage_can_fall(const noh_stage_actor *a)
 {
-    return !a->parent && a->place.scale >= NOH_RAGDOLL_SIZE_MIN && a->place.scale <= NOH_RAGDOLL_SIZE_MAX;
+    return !a->parent && noh_ragdoll_is_size(a->place.scale);
 }
 
 noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage_body *b, noh_error *error)

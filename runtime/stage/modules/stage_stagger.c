@@ -9,7 +9,9 @@
 
 #include "core/base/math_internal.h"
 #include "core/base/trig_internal.h"
+#include "life/physics/ragdoll_internal.h"
 #include "life/physics/vector_internal.h"
+#include "life/physics/world_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -18,7 +20,6 @@
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "stage/modules/stage_legs_internal.h"
-#include "life/physics/world_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
 /* Lengths are in legs, times in seconds of an actor of scale 1: times grow by the square root of the scale, as the
@@ -33,7 +34,6 @@
 #define STEPS_MAX 5u
 #define LOST 1.1f /* a capture point farther off is not reached */
 #define CLOSE_TICKS 21600u
-#define TIME_MAX 10u /* of the largest: the square root of NOH_RAGDOLL_SIZE_MAX */
 #define LIFT 0.1f
 #define CLOSED 0.025f
 #define SLOW 0.3f        /* legs a second: then the other foot closes up */
@@ -527,8 +527,8 @@ const char *noh_stage_check_stagger(const noh_stage_stagger *s)
                f->off[0] + f->off[1];
         sum += f->from[0] + f->from[1] + noh_dot3(f->stance, f->stance) + noh_quat_dot(f->rotation, f->rotation);
     }
-    return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= TIME_MAX * NOH_TICKS_PER_SECOND &&
-                   (!s->foot || s->step_lasts) && s->step_lasts <= TIME_MAX * NOH_TICKS_PER_SECOND &&
+    return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND &&
+                   (!s->foot || s->step_lasts) && s->step_lasts <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND &&
                    s->rest_ticks < PIECE_TICKS && s->ends <= 1u
                ? NULL
                : "state: a push of an actor is out of range";
