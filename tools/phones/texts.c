@@ -196,7 +196,8 @@ static void put_crowds(void)
                                          .layers_uint = rows[i].layers_uint,
                                          .lit = 1,
                                          .transfer = 4,
-                                         .features = (uint32_t)rows[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_WRINKLES };
+                                         .features = (uint32_t)rows[i].surface | NORMAL_AND_SURFACE |
+                                                     NOH_FEATURE_WRINKLES };
         put_mesh(rows[i].name, key);
     }
 }

@@ -238,7 +238,8 @@ NOH_ALWAYS_INLINE lane3 push_out(const obstacle *o, lane3 head, lanes radius, la
 }
 
 /* Turn bones so that their ends are in front of a plane: the part of a bone along the normal is at least `least`, its
- * length stays. A bone that points straight into the plane turns towards x, or towards z where the normal is nearly along x. */
+ * length stays. A bone that points straight into the plane turns towards x, or towards z where the normal is nearly
+ * along x. */
 NOH_ALWAYS_INLINE lane3 turn_up(lane3 normal, lanes least, lane3 head, lanes length, lane3 tail)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), tiny = lanes_mul(lanes_set(1e-8f), length);

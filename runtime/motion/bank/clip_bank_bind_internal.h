@@ -57,8 +57,8 @@ uint32_t noh_bank_count_fitting(const noh_bank_binding *b);
 int noh_bank_next_node(const noh_bank_binding *b, uint32_t *node, uint32_t *first, noh_clip_group *group);
 
 /* Find the bank's group that a clip's group of weights moves: the node of the same index if it has the same name and
- * width, else the first node that has, else one of the same name with NOH_BANK_ADDED_TARGET as one more, last target, which
- * keeps its default. Returns 0 if there is none. */
+ * width, else the first node that has, else one of the same name with NOH_BANK_ADDED_TARGET as one more, last target,
+ * which keeps its default. Returns 0 if there is none. */
 int noh_bank_find_node(const noh_bank_binding *b, const noh_clip_group *wanted, noh_clip_group *found);
 
 /* Count the named groups of the bank's clips, equal names and widths once, and their floats; adds to both counts. The
