@@ -86,6 +86,12 @@ if [ "${1:-}" = --one ]; then
     log=$logs/$(echo "$name" | tr / _)
     left_out_by_sanitizers "$name" &&
         set -- printf 'ok 1 - %s # SKIP %s\n1..1\n' "$name" 'under sanitizers only in make check-long'
+    # A pack that the script reads and nothing builds would be seen on a clean checkout alone.
+    case ${2:-} in tests/*.sh)
+        for file in $(grep -ohE '\$build/[a-z_/]+\.(noh|glb)' "$2" | grep -v none | sort -u); do
+            [ -e "$build/${file#*/}" ] || set -- printf 'not ok 1 - %s: name it in TEST_PACKS (tools/mk/checks.mk)\n1..1\n' "$file"
+        done ;;
+    esac
     (ulimit -S -t "$limit" && exec timeout -k 10 "$((4 * limit))" "$@") >"$log.txt" 2>&1 </dev/null
     status=$?
     times >"$log.times" # not in a subshell: it counts the children of the shell that calls it

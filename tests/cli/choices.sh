@@ -59,7 +59,7 @@ told
 check '--plain with an option has that' joints
 
 # A picture takes longer than levels.
-noh render "$build/demo/arm.noh" -o "$work/skin.png" --size 512x512
+noh render "$build/demo/puppet.noh" -o "$work/skin.png" --size 512x512
 printf 'newmtl skin\nmap_Kd skin.png\n' >"$work/face.mtl"
 face
 check 'with a texture it gets levels' grep -q '^LOD: 3 levels by --lod-fast, [1-9][0-9]* % more work' "$work/out"

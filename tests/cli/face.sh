@@ -192,7 +192,7 @@ check 'nothing stands still' awk '/"(outline|brows|lids|eyes|mouth)"/ { sub(",",
 noh face "$build/mask.noh" --idle 1
 expect 0 'in words'
 check 'a row' grep -q '^idle for 1 s, 30 pairs of pictures; without motion: outline ' "$work/out"
-noh face "$build/demo/arm.noh" --idle 1000
+noh face "$build/mask.noh" --idle 1000
 expect 2 'at most ten minutes'
 noh sheet "$build/mask.noh" -o "$work/idle.png" --face on --time 2 --tiles 4 --columns 4 --tile 64
 expect 0 'a sheet of a live face'
