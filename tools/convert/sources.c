@@ -101,7 +101,7 @@ static int read_clip_file(const char *path, file_reader reader, const source_opt
 static int read_model(const char *path, const source_options *options, model **out, model_error *error)
 {
     const obj_options obj = { options->unit_cm, options->targets };
-    const fbx_options fbx = { options->unit_cm };
+    const fbx_options fbx = { options->unit_cm, &options->extras };
     const file_kind *kind = file_kind_of(path);
     const file_reader reader = kind ? kind->reader : READER_GLTF;
     switch (reader) {

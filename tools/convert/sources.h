@@ -37,7 +37,7 @@ typedef struct source_options {
     const char *attach_joint; /* the joint that carries models without joints; NULL: the head */
     seam_mode seam;
     turn_options turn;
-    extra_list extras; /* extra attributes of vertices that stay, of glTF */
+    extra_list extras; /* extra attributes of vertices that stay, of glTF and FBX */
     unsigned clean; /* bits of mocap/clean.h */
 } source_options;
 

@@ -81,7 +81,7 @@ static void links(const char *lines)
 
 static model *load_bytes(const void *bytes, size_t count)
 {
-    const fbx_options plain = { 0.0 };
+    const fbx_options plain = { 0.0, NULL };
     model *m = NULL;
     model_error error = { "", "" };
     test_write_file(test_path("a.fbx"), bytes, count);
@@ -652,6 +652,43 @@ static void marks_units_and_numbers(void **state)
 }
 
 /* As C libraries spell them; a comma may begin a line. */
+#define UV_LAYER(number, name, values)                                                                           \
+    "\t\tLayerElementUV: " number " {\n\t\t\tName: \"" name "\"\n\t\t\tMappingInformationType: \"ByPolygonVertex\"\n"   \
+    "\t\t\tReferenceInformationType: \"Direct\"\n\t\t\tUV: *6 {\n\t\t\t\ta: " values "\n\t\t\t}\n\t\t}\n"
+
+/* A picture names its set of texture coordinates; a build may keep others. */
+static void each_picture_has_its_texture_coordinates(void **state)
+{
+    extra_list second = { 1, { "TEXCOORD_1" }, { 0 } };
+    const fbx_options keep = { 0.0, &second };
+    model_error error = { "", "" };
+    model *m;
+    (void)state;
+    begin();
+    add_triangle(1, UV_LAYER("0", "atlas", "0,0,1,0,0,1") UV_LAYER("1", "light", "0.5,0.25,0.5,0.25,0.5,0.5"));
+    add_object("Model", 2, "t", "Mesh", "", "");
+    add_object("Material", 3, "lit", "", "", "");
+    add_object("Texture", 4, "map", "", "\t\tP: \"UVSet\", \"KString\", \"\", \"\", \"light\"\n",
+               "\t\tRelativeFilename: \"none.png\"\n");
+    links(OO(2, 0) OO(1, 2) OO(3, 2) OP(4, 3, "DiffuseColor"));
+    m = load();
+    assert_near((double)m->meshes[0].uv[0], 0.5);
+    assert_near((double)m->meshes[0].uv[1], 0.75);
+    assert_true(has_warning(m, "has 2 sets of texture coordinates"));
+    model_free(m);
+    memcpy(strstr(text, "\"\", \"light\""), "\"\", \"atlas\"", 11);
+    test_write_file(test_path("a.fbx"), text, strlen(text));
+    if (fbx_read(test_path("a.fbx"), &keep, &m, &error)) fail_msg("refused: %s", error.what);
+    assert_near((double)m->meshes[0].uv[2], 1.0);
+    assert_int_equal(m->meshes[0].extras[0].width, 2);
+    assert_near((double)m->meshes[0].extra[0], 0.5);
+    assert_near((double)m->meshes[0].extra[1], 0.75);
+    assert_near((double)m->meshes[0].extra[2 * NOH_EXTRAS_MAX * 4 + 1], 0.5);
+    assert_false(has_warning(m, "sets of texture coordinates"));
+    assert_false(has_warning(m, "TEXCOORD_1"));
+    model_free(m);
+}
+
 static void words_in_place_of_numbers_are_zero(void **state)
 {
     model *m;
@@ -672,7 +709,7 @@ static void words_in_place_of_numbers_are_zero(void **state)
 
 static void refused(const void *bytes, size_t count, const char *what, const char *where)
 {
-    const fbx_options plain = { 0.0 };
+    const fbx_options plain = { 0.0, NULL };
     model *m = (model *)1;
     model_error error = { "", "" };
     test_write_file(test_path("a.fbx"), bytes, count);
@@ -706,7 +743,7 @@ static void damaged_files_are_refused(void **state)
 static void mutations_never_crash(void **state)
 {
     static uint8_t bytes[1 << 16];
-    const fbx_options plain = { 0.0 };
+    const fbx_options plain = { 0.0, NULL };
     test_random r = test_random_from(11);
     const int rounds = test_rounds(3000);
     int accepted = 0;
@@ -752,7 +789,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(materials_and_pictures),
     cmocka_unit_test(losses_are_warned_of),
     cmocka_unit_test(marks_units_and_numbers),
-    cmocka_unit_test(words_in_place_of_numbers_are_zero),
+    cmocka_unit_test(each_picture_has_its_texture_coordinates),
+        cmocka_unit_test(words_in_place_of_numbers_are_zero),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(mutations_never_crash),
 };

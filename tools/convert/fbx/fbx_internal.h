@@ -26,6 +26,7 @@
 
 #include <tiny_gltf.h>
 
+#include "convert/model/model.h"
 #include "fbx_pose.h"
 
 namespace fbx
@@ -56,6 +57,7 @@ struct job {
     scene in;
     std::string path;
     double unit_m = 0.01;                                 /* metres per unit of the file */
+    const extra_list *extras = nullptr;                   /* further sets of texture coordinates; null: none */
     std::vector<size_t> holder;                           /* [models] the node that each is written under, or none */
     std::vector<std::pair<size_t, drawn_mesh>> drawn;     /* by place in models */
     std::map<std::pair<size_t, size_t>, int> material_of; /* by object and texture of its colours */
@@ -101,6 +103,24 @@ struct element {
 /* The first layer of its kind; false: there is none that can be read. names: layer, values, index. */
 bool read_element(job &j, size_t geometry, const char *const names[3], size_t width, element &out);
 
+/* The sets of texture coordinates of a mesh, in the file's order. */
+struct uv_layer {
+    std::string name;
+    element of;
+    bool is_read = false;
+};
+struct uv_layers {
+    std::vector<uv_layer> all;
+    std::vector<size_t> kept; /* what the build keeps as TEXCOORD_n, n their places */
+
+    bool has(size_t layer) const;
+    /* The layer that the picture of a node's material uses. */
+    size_t of_material(job &j, size_t model, size_t material) const;
+    /* As glTF has them: from the top of the picture. Left as they are where the layer has none. */
+    void fill(size_t layer, size_t corner, size_t point, size_t polygon, float uv[2]) const;
+};
+uv_layers read_uvs(job &j, size_t geometry);
+
 /* --- fbx_shape.cpp --- */
 /* Points that a target moves, in order, and by how much. */
 using target_deltas = std::vector<std::pair<uint32_t, vec>>;
@@ -130,6 +150,8 @@ bool read_skin(job &j, size_t geometry, size_t model, size_t point_count, skin &
 /* --- fbx_material.cpp, fbx_picture.cpp --- */
 /* The material of a node's place, or -1. */
 int material_of(job &j, size_t material, size_t model);
+/* The name of the texture coordinates that the picture of its colours uses; empty: the first. */
+std::string uv_layer_of(job &j, size_t material, size_t model);
 /* The texture of an object, or -1. */
 int texture_of(job &j, size_t texture);
 /* What it is a picture of, for comparison; "" if there is none. */

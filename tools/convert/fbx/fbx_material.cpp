@@ -192,6 +192,21 @@ static size_t texture_of_node(const scene &s, size_t material, size_t model)
     return textures.empty() ? none : textures[std::min(place, textures.size() - 1)];
 }
 
+std::string uv_layer_of(job &j, size_t material, size_t model)
+{
+    const std::vector<value> *name = nullptr;
+    size_t picture = none;
+    for (const link &l : j.in.objects[material].below) {
+        use u;
+        if (j.in.objects[l.other].kind != "Texture" || !use_of(l.property, &u)) continue;
+        if (picture == none || u == USE_COLOR) picture = l.other;
+        if (u == USE_COLOR) break;
+    }
+    if (picture == none) picture = texture_of_node(j.in, material, model);
+    if (picture != none) name = j.in.property(picture, "UVSet");
+    return name && !name->empty() ? text_of((*name)[0]) : "";
+}
+
 int material_of(job &j, size_t material, size_t model)
 {
     size_t uses[USE_COUNT];

@@ -15,6 +15,7 @@ namespace fbx
 struct corner {
     uint32_t point;
     float normal[3], uv[2], color[4];
+    float more[NOH_EXTRAS_MAX][2]; /* sets of texture coordinates that the build keeps */
 };
 
 struct corner_hash {
@@ -37,6 +38,7 @@ struct corner_equal {
 
 /* The triangles of one material. */
 struct part {
+    size_t uvs = 0; /* the layer that its picture uses */
     std::vector<corner> vertices;
     std::vector<uint32_t> indices;
     std::unordered_map<corner, uint32_t, corner_hash, corner_equal> known;
@@ -51,8 +53,9 @@ struct mesh_job {
     skin bound;
     bool is_skinned = false;
     std::vector<uint32_t> joined; /* [points] the first point that is alike */
-    element normals, uvs, colors, materials;
-    bool has_normals = false, has_uvs = false, has_colors = false, has_materials = false;
+    element normals, colors, materials;
+    uv_layers uvs;
+    bool has_normals = false, has_colors = false, has_materials = false;
     std::map<int, part> parts; /* by place among the node's materials */
 
     mesh_job(job &of, size_t drawn, size_t by, const mat &moved) : j(of), geometry(drawn), model(by), pivot(moved) {}
@@ -60,12 +63,11 @@ struct mesh_job {
 
 /* --- corners --- */
 
-static void fill_corner(const mesh_job &m, size_t place, uint32_t point, size_t polygon, corner &out)
+static void fill_corner(const mesh_job &m, size_t uvs, size_t place, uint32_t point, size_t polygon, corner &out)
 {
     memset(&out, 0, sizeof out);
     out.point = m.joined[point];
     const double *n = m.has_normals ? m.normals.at(place, point, polygon) : nullptr;
-    const double *uv = m.has_uvs ? m.uvs.at(place, point, polygon) : nullptr;
     const double *color = m.has_colors ? m.colors.at(place, point, polygon) : nullptr;
     if (n) { /* the cofactors keep it upright on the surface */
         vec turned;
@@ -75,10 +77,8 @@ static void fill_corner(const mesh_job &m, size_t place, uint32_t point, size_t 
         const double sign = determinant(m.pivot) < 0.0 ? -1.0 : 1.0;
         for (int k = 0; k < 3; ++k) out.normal[k] = static_cast<float>(length > 0.0 ? sign * turned[k] / length : 0.0);
     }
-    if (uv) {
-        out.uv[0] = static_cast<float>(uv[0]);
-        out.uv[1] = static_cast<float>(1.0 - uv[1]); /* FBX counts from the bottom of the picture */
-    }
+    m.uvs.fill(uvs, place, point, polygon, out.uv);
+    for (size_t k = 0; k < m.uvs.kept.size(); ++k) m.uvs.fill(m.uvs.kept[k], place, point, polygon, out.more[k]);
     for (size_t k = 0; color && k < 4; ++k) out.color[k] = static_cast<float>(std::min(std::max(color[k], 0.0), 1.0));
     if (m.has_colors && !color) std::fill_n(out.color, 4, 1.0f);
 }
@@ -93,6 +93,19 @@ static void add_triangle(part &p, const corner *corners, bool turn_over)
     }
 }
 
+/* The part of a polygon, begun with its material's layer of texture coordinates. */
+static part &part_of(mesh_job &m, size_t first, uint32_t point, size_t polygon)
+{
+    const double *material = m.has_materials ? m.materials.at(first, point, polygon) : nullptr;
+    const int64_t given = material ? whole_of(*material) : 0;
+    const int place = static_cast<int>(std::min(std::max(given, int64_t{ 0 }), int64_t{ 65535 }));
+    const auto known = m.parts.find(place);
+    if (known != m.parts.end()) return known->second;
+    part &p = m.parts[place];
+    p.uvs = m.uvs.of_material(m.j, m.j.in.models[m.model], static_cast<size_t>(place));
+    return p;
+}
+
 /* points: of one polygon; first: the place of its first corner */
 static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t first, size_t polygon)
 {
@@ -103,8 +116,9 @@ static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t
         m.j.in.warn(place_of(m.j.in, m.geometry), " has points and lines, which were left out");
         return;
     }
+    part &p = part_of(m, first, points[0], polygon);
     for (size_t c = 0; c < points.size(); ++c) {
-        fill_corner(m, first + c, points[c], polygon, corners[c]);
+        fill_corner(m, p.uvs, first + c, points[c], polygon, corners[c]);
         places.insert(places.end(), &m.points[size_t{ points[c] } * 3], &m.points[size_t{ points[c] } * 3] + 3);
     }
     triangles.resize((points.size() - 2) * 3);
@@ -113,9 +127,6 @@ static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t
     if (failed)
         m.j.in.warn(place_of(m.j.in, m.geometry),
                     " has a polygon with too many corners, which was cut from its first corner: triangulate it");
-    const double *material = m.has_materials ? m.materials.at(first, points[0], polygon) : nullptr;
-    const int64_t place = material ? whole_of(*material) : 0;
-    part &p = m.parts[static_cast<int>(std::min(std::max(place, int64_t{ 0 }), int64_t{ 65535 }))];
     for (size_t t = 0; t < triangles.size(); t += 3) {
         const corner of[3] = { corners[triangles[t]], corners[triangles[t + 1]], corners[triangles[t + 2]] };
         add_triangle(p, of, determinant(m.pivot) < 0.0);
@@ -177,12 +188,11 @@ static void join_points(mesh_job &m)
 static void read_geometry(mesh_job &m)
 {
     static const char *const normals[3] = { "LayerElementNormal", "Normals", "NormalsIndex" };
-    static const char *const uvs[3] = { "LayerElementUV", "UV", "UVIndex" };
     static const char *const colors[3] = { "LayerElementColor", "Colors", "ColorIndex" };
     static const char *const materials[3] = { "LayerElementMaterial", "Materials", "" };
     const std::vector<double> points = finite_list(m.j, *m.j.in.objects[m.geometry].from, "Vertices");
     m.has_normals = read_element(m.j, m.geometry, normals, 3, m.normals);
-    m.has_uvs = read_element(m.j, m.geometry, uvs, 2, m.uvs);
+    m.uvs = read_uvs(m.j, m.geometry);
     m.has_colors = read_element(m.j, m.geometry, colors, 4, m.colors);
     m.has_materials = read_element(m.j, m.geometry, materials, 1, m.materials);
     for (size_t i = 0; i + 2 < points.size(); i += 3) {
@@ -254,8 +264,11 @@ static tinygltf::Primitive primitive_of(const mesh_job &m, const part &p)
     out.attributes["POSITION"] = add_positions(m.j, positions);
     if (m.has_normals)
         out.attributes["NORMAL"] = add_floats(m.j, values_of(p, offsetof(corner, normal), 3), TINYGLTF_TYPE_VEC3);
-    if (m.has_uvs)
+    if (m.uvs.has(p.uvs))
         out.attributes["TEXCOORD_0"] = add_floats(m.j, values_of(p, offsetof(corner, uv), 2), TINYGLTF_TYPE_VEC2);
+    for (size_t k = 0; k < m.uvs.kept.size(); ++k)
+        out.attributes["TEXCOORD_" + std::to_string(m.uvs.kept[k])] = add_floats(
+            m.j, values_of(p, offsetof(corner, more) + k * sizeof(float[2]), 2), TINYGLTF_TYPE_VEC2);
     if (m.has_colors)
         out.attributes["COLOR_0"] = add_floats(m.j, values_of(p, offsetof(corner, color), 4), TINYGLTF_TYPE_VEC4);
     if (m.is_skinned) add_influences(m.j, p, m.bound, out);

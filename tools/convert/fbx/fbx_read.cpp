@@ -41,12 +41,13 @@ static std::string line_of(const note &n)
     return out;
 }
 
-static std::string convert(const char *path, double unit_cm, std::vector<std::string> &notes)
+static std::string convert(const char *path, const fbx_options &options, std::vector<std::string> &notes)
 {
     job j;
     j.path = path;
     read_scene(read_bytes(path), j.in);
-    j.unit_m = (unit_cm > 0.0 ? unit_cm : j.in.unit_cm) / 100.0;
+    j.unit_m = (options.unit_cm > 0.0 ? options.unit_cm : j.in.unit_cm) / 100.0;
+    j.extras = options.extras;
     write_nodes(j);
     write_meshes(j);
     write_clips(j);
@@ -58,11 +59,12 @@ static std::string convert(const char *path, double unit_cm, std::vector<std::st
     return write_glb(j);
 }
 
-static int read(const char *path, double unit_cm, model **out, model_error *error)
+static int read(const char *path, const fbx_options &options, model **out, model_error *error)
 {
     std::vector<std::string> notes;
-    const std::string glb = convert(path, unit_cm, notes);
-    if (model_read_glb(reinterpret_cast<const uint8_t *>(glb.data()), glb.size(), path, out, error)) return 1;
+    const std::string glb = convert(path, options, notes);
+    if (model_read_glb(reinterpret_cast<const uint8_t *>(glb.data()), glb.size(), path, options.extras, out, error))
+        return 1;
     for (const std::string &said : notes)
         if (model_warn(*out, "%s", said.c_str())) {
             model_free(*out);
@@ -78,7 +80,7 @@ extern "C" int fbx_read(const char *path, const fbx_options *options, model **ou
 {
     *out = nullptr;
     try {
-        return fbx::read(path, options->unit_cm, out, error);
+        return fbx::read(path, *options, out, error);
     } catch (const fbx::failure &reason) {
         return model_fail(error, reason.where.c_str(), "%s", reason.what.c_str());
     } catch (const std::bad_alloc &) {

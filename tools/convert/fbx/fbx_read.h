@@ -14,7 +14,8 @@ extern "C" {
 #endif
 
 typedef struct fbx_options {
-    double unit_cm; /* centimetres per unit; 0: the file's */
+    double unit_cm;           /* centimetres per unit; 0: the file's */
+    const extra_list *extras; /* further sets of texture coordinates: TEXCOORD_1 is the file's second; NULL: none */
 } fbx_options;
 
 /* Returns 0 and *out, or 1 and *error. Calls model_complete. */

@@ -194,11 +194,12 @@ extern "C" int model_read_gltf_with(const char *path, const extra_list *extras, 
     return gltf::read(path, nullptr, extras, out, nullptr, error);
 }
 
-extern "C" int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error)
+extern "C" int model_read_glb(const uint8_t *bytes, size_t size, const char *path, const extra_list *extras,
+                              model **out, model_error *error)
 {
     const gltf::bytes data(bytes, bytes + size);
     *out = nullptr;
-    return gltf::read(path, &data, nullptr, out, nullptr, error);
+    return gltf::read(path, &data, extras, out, nullptr, error);
 }
 
 extern "C" int curves_read(const char *path, curve_list *out, model_error *error)

@@ -251,8 +251,9 @@ int model_read_gltf(const char *path, model **out, model_error *error);
 int model_read_gltf_with(const char *path, const extra_list *extras, model **out, model_error *error);
 
 /* The same of a .glb in memory. `path` names its source file: images lie in the same folder, and a clip without a
- * name takes the file's. */
-int model_read_glb(const uint8_t *bytes, size_t size, const char *path, model **out, model_error *error);
+ * name takes the file's. extras: NULL: none */
+int model_read_glb(const uint8_t *bytes, size_t size, const char *path, const extra_list *extras, model **out,
+                   model_error *error);
 
 /* World units per unit of a mesh: the largest scale, in the rest pose, of the nodes that draw it or of the joints that
  * move it; 1 if nothing draws it. */
