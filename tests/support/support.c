@@ -523,6 +523,12 @@ noh_morph_layers test_layers(const noh_mesh *mesh)
     return layers;
 }
 
+uint64_t test_hash(uint64_t hash, const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++) hash = (hash ^ ((const uint8_t *)bytes)[i]) * 0x100000001b3ull;
+    return hash;
+}
+
 void test_same_floats(const float *got, const float *expected, size_t count, const char *what)
 {
     for (size_t i = 0; i < count; i++) {
