@@ -2,6 +2,7 @@
  * value; what is not accumulated again; and what happens when capabilities are missing. */
 #include "support/gl_fixture.h"
 #include "deform/morph/morph_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -106,6 +107,25 @@ static void check_random_weights(fixture_morph *m)
         update(m);
         fixture_expect_all(m);
     }
+}
+
+/* What does not fit into a draw is drawn by the next. */
+static void check_few_at_a_time(fixture_morph *m)
+{
+    test_random r = { 63 };
+    if (!passes_of(m) || m->plan.path == NOH_MORPH_GATHER) return;
+    const uint32_t most = m->morph->batch.entries;
+    m->morph->batch.entries = m->plan.points ? 64 : 5;
+    set_all_random(m, &r);
+    assert_true(update(m).draws > 2u * passes_of(m));
+    fixture_expect_all(m);
+    m->morph->batch.entries = most;
+}
+
+static void draws_follow_each_other(void **state)
+{
+    (void)state;
+    for_every_way(check_few_at_a_time);
 }
 
 static void every_way_equals_the_cpu(void **state)
@@ -1107,6 +1127,7 @@ static void gather_works_on_core_es3(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(every_way_equals_the_cpu),
+    cmocka_unit_test(draws_follow_each_other),
     cmocka_unit_test(sums_do_not_drift),
     cmocka_unit_test(instances_start_at_rest),
     cmocka_unit_test(vertices_are_fetched_as_the_cpu_makes_them),

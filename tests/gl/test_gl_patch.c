@@ -295,6 +295,20 @@ static void sixty_four_are_one_draw_and_come_back(void **state)
     assert_int_equal(noh_gl_ledger_bytes(&s.g->ledger), bytes);
     free(before);
     free(after);
+    for (uint32_t i = 0; i < 5; i++) { /* the oldest five make room: what the others have grown is kept, and moves up */
+        const noh_decal_desc look = { .size = 0.01f * s.size, .color = { 0, 0, 200, 255 } };
+        noh_stage_hit hit;
+        assert_true(pick(&s, 94.0 + 4.0 * i, 100.0, &hit));
+        assert_int_equal(noh_decals_strike(&s.ring, s.c.stage, &hit, &look, NULL, NULL), NOH_OK);
+    }
+    const uint32_t grown = s.patches.grown;
+    before = picture(&s, GROWN);
+    assert_int_equal(s.patches.grown, grown + 5);
+    assert_int_equal(noh_stage_patches_restore(&s.patches, NULL), NOH_OK);
+    after = picture(&s, GROWN);
+    assert_memory_equal(before, after, PIXELS * 4u);
+    free(before);
+    free(after);
     close_shot(&s);
 }
 

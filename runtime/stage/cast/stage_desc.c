@@ -340,17 +340,15 @@ uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
 noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
 {
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
-    noh_clip_bank_desc bank;
-    memset(&bank, 0, sizeof bank);
-    bank.mesh = d.mesh;
-    bank.clips = d.clips;
-    bank.clip_packs = d.clip_packs;
-    bank.clip_pack_count = d.clip_pack_count;
-    bank.skeleton = d.skeleton;
-    bank.root_axes = d.root_axes;
-    bank.root_up = d.root_up;
-    bank.sample_rate_needed = d.sample_rate_needed;
-    bank.cached_segment_count = plan->kinds[kind].cached_segment_count;
+    noh_clip_bank_desc bank = { .mesh = d.mesh,
+                                .clips = d.clips,
+                                .clip_packs = d.clip_packs,
+                                .clip_pack_count = d.clip_pack_count,
+                                .skeleton = d.skeleton,
+                                .root_axes = d.root_axes,
+                                .root_up = d.root_up,
+                                .sample_rate_needed = d.sample_rate_needed,
+                                .cached_segment_count = plan->kinds[kind].cached_segment_count };
     if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
         bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;
     }

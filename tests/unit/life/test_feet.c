@@ -239,6 +239,41 @@ static void the_same_instant_is_the_same_pose(void **state)
     skin_asset_close(&s.a);
 }
 
+/* A shin is a hinge that bends backwards: what only bends, or only points backwards, is none. */
+static void what_is_no_shin_makes_no_leg(void **state)
+{
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    noh_pack_ragdoll_row own[NOH_RAGDOLL_BODIES_MAX];
+    noh_ragdoll_source source = { 0 };
+    noh_feet_rig rig;
+    uint32_t count, shin = NOH_NONE;
+    skin_asset a;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    source.pack = &a.pack;
+    assert_int_equal(noh_pack_skeleton_at(&a.pack, 0, &source.joints, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_ragdoll_find_rows(&source, rows, &count, NULL), NOH_OK);
+    for (uint32_t i = 0; i < count; i++) {
+        const char *name = noh_pack_joint_name(&a.pack, 0, rows[i].joint);
+        own[i] = (noh_pack_ragdoll_row){ .joint = (uint32_t)(name - noh_pack_string(&a.pack, 0)),
+                                         .hinge = rows[i].hinge,
+                                         .toward = rows[i].toward };
+        if (rows[i].hinge && rows[i].toward == NOH_RAGDOLL_BACKWARD) shin = i;
+    }
+    a.pack.ragdoll_rows = own;
+    a.pack.ragdoll_row_count = count;
+    assert_true(shin != NOH_NONE);
+    for (uint32_t hinge = 0; hinge < 2; hinge++) {
+        for (uint32_t toward = NOH_RAGDOLL_FORWARD; toward <= NOH_RAGDOLL_BACKWARD; toward++) {
+            own[shin].hinge = hinge;
+            own[shin].toward = toward;
+            assert_int_equal(noh_feet_rig_make(&source, &rig, NULL), NOH_OK);
+            assert_int_equal(rig.leg_count, hinge && toward == NOH_RAGDOLL_BACKWARD ? 2 : 1);
+        }
+    }
+    skin_asset_close(&a);
+}
+
 static void what_has_no_feet_is_refused(void **state)
 {
     noh_ragdoll_source source = { 0 };
@@ -259,7 +294,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(the_nearest_obstacle_is_the_ground),  cmocka_unit_test(legs_are_found_in_real_characters),
         cmocka_unit_test(a_pose_stands_on_what_the_game_says), cmocka_unit_test(each_foot_has_its_own_ground),
         cmocka_unit_test(a_turned_box_is_stood_on_its_side),   cmocka_unit_test(the_same_instant_is_the_same_pose),
-        cmocka_unit_test(what_has_no_feet_is_refused),
+        cmocka_unit_test(what_has_no_feet_is_refused),         cmocka_unit_test(what_is_no_shin_makes_no_leg),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -357,6 +357,28 @@ static void play_without_wants_is_even(void **state)
     }
 }
 
+/* The last sample of a segment ends what was decoded ahead of the next, wherever play began. */
+static void the_next_segment_is_ready_when_play_gets_there(void **state)
+{
+    (void)state;
+    for (uint32_t frames = 2; frames < 9; frames++) {
+        noh_clip_bank_desc desc = desc_of();
+        desc.cached_segment_count = 32768;
+        noh_clip_bank *set = test_clip_bank(&desc);
+        const noh_clip *clip = noh_clip_cache_clip(set->cache, 3);
+        const int64_t next = tick_of(set->cache, 3, 1), step = next / (int64_t)noh_clip_segment_first(clip, 1);
+        noh_transform pose[JOINTS];
+        for (uint32_t i = frames; i > 0; i--) {
+            noh_clip_cache_begin_frame(set->cache);
+            noh_clip_sample(set->cache, 3, next - (int64_t)i * step, JOINTS, pose, NULL);
+        }
+        assert_true(holds(set->cache, 3, 1));
+        assert_int_equal(set->cache->cached[set->cache->cached_of[set->cache->clips[3].first + 1u]].cursor.track,
+                         clip->prefixes[JOINTS].tracks);
+        free(set);
+    }
+}
+
 /* Every clip in turn, in a cache with room for `count` segments: what is decoded for 300 frames. */
 static noh_clip_cache_stats play_side_by_side(uint32_t count)
 {
@@ -496,6 +518,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_second_segment_spares_the_first),
     cmocka_unit_test(play_without_wants_is_even),
     cmocka_unit_test(decoding_ahead_evicts_nothing_that_plays),
+    cmocka_unit_test(the_next_segment_is_ready_when_play_gets_there),
     cmocka_unit_test(work_is_counted),
     cmocka_unit_test(a_cache_says_when_it_holds_all),
     cmocka_unit_test(frames_past_the_end_are_clamped),

@@ -1,9 +1,11 @@
-/* The jobs of a crowd run by four threads at once: the bits of one thread, and (tests/tsan.sh) no race. */
+/* The jobs of a crowd run by four threads at once: the bits of one thread, and (tests/tsan.sh) no race; what makes them
+ * so: neighbours whose order does not depend on the order of agents. */
 #define _POSIX_C_SOURCE 200112L
 #include "stage/crowd/crowd_internal.h"
 #include "noh/base.h"
 #include "noh/crowd.h"
 
+#include <math.h>
 #include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
@@ -112,8 +114,47 @@ static void four_threads_make_the_bits_of_one(void **state)
     free(one);
 }
 
+/* One agent has two neighbours, as far away on either side: the one with the lower id comes first, on whatever side. */
+static void ids_break_ties(void **state)
+{
+    (void)state;
+    for (uint32_t turn = 0; turn < 2; turn++) {
+        noh_crowd_desc desc = { .agent_max = 64, .origin = { -8.0f, -8.0f }, .extent = { 16.0f, 16.0f } };
+        const size_t bytes = noh_crowd_size(&desc);
+        noh_crowd *crowd = NULL;
+        crowd_runs runs = { .until = 0 };
+        uint32_t seen = 0;
+        assert_int_equal(noh_crowd_init(malloc(bytes), bytes, &desc, &crowd, NULL), NOH_OK);
+        assert_true(crowd->cells.width > 1); /* they are in two cells, so that ranks do not follow ids */
+        for (uint32_t i = 0; i < 3; i++) {
+            const float x = floorf(crowd->cells.origin.x + crowd->cells.edge) + (float)i - 1.0f;
+            const noh_crowd_agent a = { .position = { x, 0.5f }, .radius = 0.25f, .id = turn ? 2u - i : i };
+            assert_int_equal(noh_crowd_add(crowd, i, &a, NULL), NOH_OK);
+        }
+        (void)noh_crowd_begin(crowd, NOH_CROWD_STEP_TICKS);
+        (void)noh_crowd_jobs(crowd); /* sorts */
+        for (uint32_t rank = 0; rank < 3; rank++) {
+            const uint16_t *names = CROWD_CONST(uint16_t, crowd, neighbor) + rank * CROWD_NEIGHBORS;
+            const crowd_body *bodies = CROWD_CONST(crowd_body, crowd, body);
+            const uint32_t *ids = CROWD_CONST(uint32_t, crowd, id);
+            if (ids[CROWD_ITEM(bodies + rank)] != 1u) continue;
+            seen++;
+            noh_crowd_find_runs(crowd, rank, &runs);
+            noh_crowd_see(crowd, rank, &runs);
+            for (uint32_t k = 0; k < 2; k++) {
+                const uint32_t there = noh_crowd_rank_of(&runs, names[k]);
+                assert_int_equal(ids[CROWD_ITEM(bodies + there)], 2u * k);
+            }
+            assert_int_equal(names[2], CROWD_NO_NEIGHBOR);
+        }
+        assert_int_equal(seen, 1);
+        free(crowd);
+    }
+}
+
 int main(void)
 {
-    static const struct CMUnitTest tests[] = { cmocka_unit_test(four_threads_make_the_bits_of_one) };
+    static const struct CMUnitTest tests[] = { cmocka_unit_test(four_threads_make_the_bits_of_one),
+                                               cmocka_unit_test(ids_break_ties) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
