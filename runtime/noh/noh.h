@@ -453,8 +453,8 @@ noh_actor noh_stage_actor_at(const noh_stage *stage, uint32_t index);
 
 /* Set an actor's place, before root motion, as of the next step; if called after a step and before the next frame, as
  * of that step. Frames between two steps interpolate towards it (noh_stage_frame_between); other frames show it there.
- * errors  NOT_FOUND; ARG a value that is not finite or beyond NOH_NUMBER_MAX, a rotation without length, a scale below
- *         0 */
+ * errors  NOT_FOUND; ARG a value that is not finite or beyond NOH_NUMBER_MAX, a rotation without length, a scale that
+ *         is neither 0 nor 10^-12..10^12 */
 noh_result noh_actor_set_place(noh_stage *stage, noh_actor actor, const noh_place *place, noh_error *error);
 
 /* An actor's place after the last step; relative to the joint if it is attached.
@@ -833,8 +833,8 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
  *         other objects that were made for it, or drawn on it, again before you use them
  * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
  *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
- *         where: what there is), or the driver is out of memory; UNSUPPORTED it needs a program that no kind of the
- *         plan needs, or has `finer`; GL the driver refused an object; as noh_stage_init. The slot is then as it was */
+ *         where: what there is), or the driver is out of memory; UNSUPPORTED with `gpu`, it needs a program that no
+ *         kind of the plan needs, or has `finer`; GL the driver refused an object; as noh_stage_init. The slot is then as it was */
 noh_result noh_stage_set_kind(noh_stage *stage, uint32_t kind, const noh_kind_desc *desc, noh_error *error);
 
 /* ---- state ---- */

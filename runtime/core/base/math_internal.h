@@ -13,6 +13,7 @@
 #define NOH_BASE_MATH_INTERNAL_H
 
 #include <float.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <string.h>
 
@@ -54,6 +55,18 @@ static inline int noh_is_number3(const float v[3])
 {
     return noh_is_number(v[0]) && noh_is_number(v[1]) && noh_is_number(v[2]);
 }
+
+static inline int noh_are_numbers(const float *x, size_t count)
+{
+    int all = 1;
+    for (size_t i = 0; i < count; i++) all &= noh_is_number(x[i]);
+    return all;
+}
+
+/* Whether the fields of a struct from one on, before another, are numbers: all of them are floats. */
+#define NOH_ARE_NUMBERS(type, of, from, end)                                                     \
+    noh_are_numbers((const float *)(const void *)((const uint8_t *)(of) + offsetof(type, from)), \
+                    (offsetof(type, end) - offsetof(type, from)) / sizeof(float))
 
 #define NOH_NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
 

@@ -482,20 +482,20 @@ void noh_feet_init(noh_feet *feet)
 
 const char *noh_feet_check(const noh_feet *feet)
 {
-    float sum = feet->pelvis + feet->speed;
+    int good = noh_is_number(feet->pelvis) && noh_is_number(feet->speed);
     for (uint32_t i = 0; i < NOH_FEET_LEGS_MAX; i++) {
         const noh_foot *f = &feet->feet[i];
         const float square = noh_dot3(f->normal, f->normal);
-        for (int k = 0; k < 9; k++) sum += f->was[k / 3][k % 3];
-        sum += f->height + f->speed + f->moved[0] + f->moved[1] + f->held[0] + f->held[1];
+        good = good && noh_are_numbers(f->was[0], 9) && noh_is_number(f->height) && noh_is_number(f->speed) &&
+               noh_are_numbers(f->moved, 2) && noh_are_numbers(f->held, 2);
         if (f->part > 2u || f->is_held > 1u || f->has_ground > 1u || !(f->stands >= 0.0f && f->stands <= 1.0f)) {
             return "feet: the planted part, its share or a flag is out of range";
         }
         if (!(square == 0.0f || (square > 0.99f && square < 1.01f))) return "feet: a normal is not unit";
     }
-    return noh_is_finite(sum) && feet->begun <= 1u && feet->kept <= NOH_FEET_LEGS_MAX
+    return good && feet->begun <= 1u && feet->kept <= NOH_FEET_LEGS_MAX
                ? NULL
-               : "feet: a number is not finite, or a flag is not 0 or 1";
+               : "feet: a number is out of range, or a flag is not 0 or 1";
 }
 
 static void step_foot(const step *s, noh_foot *f, leg_now *n, keeping keeps)

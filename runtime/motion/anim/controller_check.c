@@ -3,6 +3,7 @@
 
 #include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
+#include "core/base/math_internal.h"
 #include "motion/anim/changes_internal.h"
 #include "motion/anim/controller_internal.h"
 #include "noh/base.h"
@@ -71,6 +72,14 @@ static const char *bad_track(const noh_clip_set *set, const noh_track *t)
     return t->position < least || t->position > most ? "track: its position is out of range" : NULL;
 }
 
+/* What a transition by inertia adds: of joints, then of floats. */
+static const char *bad_inertia(const noh_controller *c)
+{
+    const float *offsets = (const float *)(const void *)((const uint8_t *)c + c->inertia_offset);
+    const size_t count = c->inertia_offset ? 12u * (size_t)c->joint_count + 2u * (size_t)c->float_count : 0;
+    return noh_are_numbers(offsets, count) ? NULL : "controller: an inertial offset is not a number";
+}
+
 /* Whether the bits of a change's end value are a weight valid for its kind. */
 static int is_weight(const noh_change *change, int64_t bits)
 {
@@ -135,5 +144,6 @@ noh_result noh_controller_check(const void *memory, size_t bytes, const noh_clip
         what = bad_change(c, &changes[i]);
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
     }
-    return NOH_OK;
+    what = bad_inertia(c);
+    return what ? noh_fail(error, NOH_ERR_DATA, what, 0, 0) : NOH_OK;
 }

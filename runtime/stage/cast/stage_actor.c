@@ -102,8 +102,8 @@ static const char *normal_place(const noh_place *in, noh_place *out)
     if (!noh_is_number3(in->position)) return "position of a place is not a number, or larger than 10^12";
     for (int i = 0; i < 4; i++) square += q[i] * q[i];
     if (!noh_is_finite(square)) return "rotation of a place is not finite";
-    if (!(in->scale >= 0.0f && noh_is_number(in->scale))) return "scale of a place is not in 0..10^12";
-    if (in->scale <= 0.0f) out->scale = 1.0f;
+    if (in->scale == 0.0f) out->scale = 1.0f;
+    if (!noh_is_scale(out->scale)) return "scale of a place is not in 10^-12..10^12";
     if (q[0] == 0.0f && q[1] == 0.0f && q[2] == 0.0f && q[3] == 0.0f) {
         memcpy(out->rotation, identity, sizeof identity);
     } else if (square < 1e-12f) {

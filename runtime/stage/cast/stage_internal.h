@@ -80,6 +80,17 @@ typedef struct noh_stage_actor {
 
 #define NOH_STAGE_WORN NOH_NONE
 
+/* 0: a program that takes no states but its own, and saves the bytes of their checks: the page. */
+#ifndef NOH_STATE_CHECKS
+#define NOH_STATE_CHECKS 1
+#endif
+
+/* Such that it, its inverse and their cubes are floats in full precision. */
+static inline int noh_is_scale(float scale)
+{
+    return scale >= 1.0f / NOH_NUMBER_MAX && scale <= NOH_NUMBER_MAX;
+}
+
 /* [4] as it is drawn; NULL: white. */
 static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
 {

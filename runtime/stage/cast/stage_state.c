@@ -46,8 +46,8 @@ static const char *bad_place(const noh_place *place)
     float length = 0.0f;
     if (!noh_is_number3(place->position)) return "state: an actor's place is not a number";
     for (int i = 0; i < 4; i++) length += place->rotation[i] * place->rotation[i];
-    if (!(length > 0.9f && length < 1.1f) || !(place->scale > 0.0f && noh_is_number(place->scale)))
-        return "state: an actor's rotation is not unit, or its scale not in 0..10^12";
+    if (!(length > 0.9f && length < 1.1f) || !noh_is_scale(place->scale))
+        return "state: an actor's rotation is not unit, or its scale not in 10^-12..10^12";
     return NULL;
 }
 
@@ -73,12 +73,13 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     for (int i = 0; i < 3 && !what; i++) {
-        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !noh_is_number((float)a->home[i]))
+        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !noh_is_number((float)a->home[i]) ||
+            !noh_is_number((float)a->moved.translation[i]))
             what = "state: an actor's place is not a number";
     }
     for (int i = 0; i < 4 && !what; i++) {
         if (!(a->rotation_rest[i] > -0.01f && a->rotation_rest[i] < 0.01f))
-            what = "state: an actor's rotation is not unit, or its scale not in 0..10^12";
+            what = "state: an actor's rotation is not unit";
     }
     if (what) return what;
     if (!(a->look.pixels >= 0.0f && a->look.pixels <= NOH_PIXELS_MAX))
@@ -188,7 +189,7 @@ static noh_result check_state(const noh_stage *s, const void *state, size_t byte
         return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan and these kinds in its slots", 0,
                         s->state_bytes);
     }
-    for (uint32_t i = 0; i < s->desc.kind_count && result == NOH_OK; i++) {
+    for (uint32_t i = 0; NOH_STATE_CHECKS && i < s->desc.kind_count && result == NOH_OK; i++) {
         result = check_kind(&r, i, error);
     }
     return result;

@@ -1,6 +1,7 @@
 /* character_check.c: whether a block of bytes is a character. */
 #include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
+#include "core/base/math_internal.h"
 #include "motion/anim/controller_internal.h"
 #include "stage/character/character_internal.h"
 #include "stage/character/time_lod_internal.h"
@@ -45,10 +46,20 @@ static const char *bad_head(const noh_character *ch, size_t bytes, const noh_cli
         at += 48u * (uint64_t)set->joint_count;
         at = (at + 4u * (uint64_t)set->float_count + 15u) & ~(uint64_t)15;
     }
-    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f))
-        return "character: the stretch of a pose is negative or NaN";
+    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f) || !noh_are_numbers(ch->stretches, 2))
+        return "character: the stretch of a pose is negative, or not a number";
+    if (!noh_are_numbers(ch->spheres[0], 8)) return "character: a sphere is not a number";
     if (ch->multiplied > 3u) return "character: unknown palette flags";
     return ch->bytes != at ? "character: its size does not match its counts" : NULL;
+}
+
+/* Palettes and floats fill the block from the first palette on. */
+static const char *bad_poses(const noh_character *ch)
+{
+    const float *poses = (const float *)(const void *)((const uint8_t *)ch + ch->palette_offsets[0]);
+    return noh_are_numbers(poses, (ch->bytes - ch->palette_offsets[0]) / sizeof(float))
+               ? NULL
+               : "character: a pose is not a number";
 }
 
 noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,
@@ -62,6 +73,7 @@ noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_
         return result;
     }
     what = bad_head(ch, bytes, set);
+    if (!what) what = bad_poses(ch);
     if (!what) what = bad_lod(&ch->lod, table);
     if (!what) what = bad_time(&ch->time);
     if (what) {

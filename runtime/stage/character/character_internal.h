@@ -140,7 +140,7 @@ void noh_character_cut(noh_character *ch);
 /* ---- memory ---- */
 
 /* Check a block from outside, such as a saved game, before any other call. If it passes, no call overruns its memory.
- * Its poses are not checked, so until the next update the character may look wrong.
+ * Its poses are checked to be numbers, so until the next update the character may look wrong.
  * shapes  table: the LOD levels that will be used with it
  * errors  ARG memory is NULL or misaligned; DATA not a character for this set and table */
 noh_result noh_character_check(const void *memory, size_t bytes, const noh_clip_set *set, const noh_lod_table *table,

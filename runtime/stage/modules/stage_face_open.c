@@ -480,26 +480,23 @@ static void shift(noh_stage_kind *k, const float by[3])
 static int is_sound(const noh_face *f)
 {
     const noh_face_speech *s = &f->speech;
-    float sum = s->brows + s->nod + s->blink + s->away + f->head[0].from + f->head[0].speed + f->head[0].goal +
-                f->head[1].from + f->head[1].speed + f->head[1].goal;
-    for (int i = 0; i < 3; i++) sum += f->from[i] + f->target[i] + (i < 2 ? f->away[i] + f->tremor[i] : 0.0f);
+    int good = noh_are_numbers(&s->brows, sizeof *s / sizeof(float)) && NOH_ARE_NUMBERS(noh_face, f, from, head);
+    for (int i = 0; i < 2; i++) good = good && NOH_ARE_NUMBERS(noh_face_spring, &f->head[i], from, start);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         const noh_face_emotion *e = &f->emotions[i];
-        sum += e->amount.from + e->amount.speed + e->amount.goal + e->amount.omega + e->fade_omega;
+        good = good && NOH_ARE_NUMBERS(noh_face_spring, &e->amount, from, start) && noh_is_number(e->fade_omega);
         if (e->emotion >= NOH_EMOTION_COUNT || e->on > 1u || e->holds > 1u) return 0;
     }
-    return noh_is_finite(sum) && noh_is_finite(f->head[0].omega + f->head[1].omega) && f->clock >= 0 &&
-           f->activity < NOH_ACTIVITY_COUNT && f->flags <= NOH_FACE_FLAGS && f->gaze <= 2u && f->blinking <= 2u &&
-           (f->gaze != 2u || f->gaze_ticks);
+    return good && f->clock >= 0 && f->activity < NOH_ACTIVITY_COUNT && f->flags <= NOH_FACE_FLAGS && f->gaze <= 2u &&
+           f->blinking <= 2u && (f->gaze != 2u || f->gaze_ticks);
 }
 
 static noh_result check(const noh_stage_kind *k, const void *state, noh_error *error)
 {
     const noh_stage_face *f = state;
-    float sum = f->point[0] + f->point[1] + f->point[2] + f->open + f->mean + f->quiet + f->said;
     (void)k;
-    for (int i = 0; i < NOH_VISEME_COUNT; i++) sum += f->visemes[i];
-    return !noh_is_finite(sum) || f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||
+    return !noh_is_number3(f->point) || !NOH_ARE_NUMBERS(noh_stage_face, f, visemes, looks) ||
+                   f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||
                    !is_sound(&f->face)
                ? noh_fail(error, NOH_ERR_DATA, "state: bad face of an actor", 0, 0)
                : NOH_OK;

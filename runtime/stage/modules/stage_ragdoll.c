@@ -520,41 +520,23 @@ noh_body_state noh_actor_body(const noh_stage *stage, noh_actor actor)
 
 /* ---- state from outside ---- */
 
-static int is_finite_pose(const noh_ragdoll_pose *pose)
+static int is_hold(const noh_stage_body *b, uint32_t i)
 {
-    float sum = 0.0f;
-    for (int n = 0; n < 3; n++) sum += pose->position[n] - pose->position[n];
-    for (int n = 0; n < 4; n++) sum += pose->rotation[n] - pose->rotation[n];
-    return sum == 0.0f;
-}
-
-static int is_finite_hold(const noh_stage_body *b, uint32_t i)
-{
-    float sum = 0.0f;
-    for (int n = 0; n < 3; n++) {
-        sum += b->offset[n] - b->offset[n] + b->speed[n] - b->speed[n] + b->origin[n] - b->origin[n];
-    }
-    return sum == 0.0f && b->hertz[i] >= 0.0f && noh_is_finite(b->hertz[i]) && b->animated[i] >= 0.0f &&
-           b->animated[i] <= 1.0f;
+    return b->hertz[i] >= 0.0f && noh_is_number(b->hertz[i]) && b->animated[i] >= 0.0f && b->animated[i] <= 1.0f;
 }
 
 static const char *bad_move(const noh_stage_kind *k, const noh_stage_body *b)
 {
     const int falls = b->state == NOH_BODY_FALLS, legs = (int)noh_stage_ragdoll_kind_of(k)->parts.has_legs;
-    float sum = 0.0f;
     if (b->moves == NOH_MOVES_BY_CLIPS) return NULL;
     if (b->moves > NOH_MOVES_BRACING || falls != (b->moves == NOH_MOVES_BRACING))
         return "state: bad ragdoll of an actor";
     if (b->moves >= NOH_MOVES_STAGGERING && !legs) return "state: an actor without legs staggers";
     if (b->moves == NOH_MOVES_STAGGERING) return noh_stage_check_stagger(&b->of.stagger);
     if (b->moves == NOH_MOVES_BRACING) return noh_stage_check_brace(&b->of.brace);
-    for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
-        for (int n = 0; n < 3; n++) {
-            sum += b->of.motions[i].velocity[n] - b->of.motions[i].velocity[n];
-            sum += b->of.motions[i].spin[n] - b->of.motions[i].spin[n];
-        }
-    }
-    return sum == 0.0f && b->rise_ticks ? NULL : "state: an actor's ragdoll is not finite";
+    return noh_are_numbers(b->of.motions[0].velocity, 6u * NOH_RAGDOLL_BODIES_MAX) && b->rise_ticks
+               ? NULL
+               : "state: an actor's ragdoll is not a number";
 }
 
 static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
@@ -564,9 +546,12 @@ static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
         (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->dead > 1u || (b->doll && b->goals > 1u)) {
         return "state: bad ragdoll of an actor";
     }
+    if (!NOH_ARE_NUMBERS(noh_stage_body, b, bodies, of) || !NOH_ARE_NUMBERS(noh_stage_body, b, offset, hertz) ||
+        !noh_is_number3(b->origin)) {
+        return "state: an actor's ragdoll is not a number";
+    }
     for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {
-        if (!is_finite_pose(&b->bodies[0][i]) || !is_finite_pose(&b->bodies[1][i]) || !is_finite_hold(b, i))
-            return "state: an actor's ragdoll is not finite";
+        if (!is_hold(b, i)) return "state: an actor's ragdoll is not a number";
     }
     return bad_move(k, b);
 }

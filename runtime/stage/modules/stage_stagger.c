@@ -520,16 +520,11 @@ void noh_stage_run_stagger(const noh_stage_kind *k, noh_stage_body *b, noh_modif
 
 const char *noh_stage_check_stagger(const noh_stage_stagger *s)
 {
-    float sum = s->to[0] + s->to[1] + s->to_height + s->left[0] + s->left[1] + s->arms + s->weight;
-    for (int i = 0; i < 2; i++) {
-        const noh_stage_foothold *f = &s->feet[i];
-        sum += s->speed[i] + s->lean[i] + s->lean_speed[i] + s->pelvis[i] + s->strays[i] + f->height + f->height_was +
-               f->off[0] + f->off[1];
-        sum += f->from[0] + f->from[1] + noh_dot3(f->stance, f->stance) + noh_quat_dot(f->rotation, f->rotation);
-    }
-    return noh_is_finite(sum) && s->foot <= 2u && s->last <= 1u && s->step_ticks <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND &&
-                   (!s->foot || s->step_lasts) && s->step_lasts <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND &&
-                   s->rest_ticks < PIECE_TICKS && s->ends <= 1u
+    const int are_numbers = NOH_ARE_NUMBERS(noh_stage_stagger, s, feet, foot);
+    return are_numbers && s->arms <= 1.01f && s->weight > 0.0f && s->weight <= 1.0f && s->foot <= 2u && s->last <= 1u &&
+                   s->step_ticks <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND && (!s->foot || s->step_lasts) &&
+                   s->step_lasts <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND && s->rest_ticks < PIECE_TICKS &&
+                   s->ends <= 1u
                ? NULL
                : "state: a push of an actor is out of range";
 }
