@@ -25,6 +25,12 @@ for option in eyes=wet eyes nose=eye; do
     check 'no pack of it' test ! -e "$work/none.noh"
 done
 
+# A figure of toons is lit by the low sun of the sky.
+noh build "$mask" -o "$work/toon.noh" --surface paint=toon --plain --quiet
+noh render "$work/toon.noh" -o "$work/auto.png" --size 64x64
+noh render "$work/toon.noh" -o "$work/sky.png" --size 64x64 --light sky
+check 'toons are lit by the sky' cmp -s "$work/auto.png" "$work/sky.png"
+
 # Tints: by surface, by extras, by option.
 noh info "$work/named.noh"
 for line in "material 'eyes': eye, opaque, without tint" "material 'paint': plain, opaque, without tint"; do

@@ -134,7 +134,7 @@
         .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text, \
         .what = "environment light: white, studio, room, sky, a panorama (.hdr, .png), or none "             \
                 "(one plain lamp); "                                                                         \
-                "auto: room for skin, otherwise studio, but none for bones and --debug",                     \
+                "auto: room for skin, sky for toons, otherwise studio; none for bones and --debug",         \
         .example = "room", __VA_ARGS__                                                                       \
     }
 

@@ -9,13 +9,16 @@
 
 #define PI 3.14159265358979323846
 
-/* Skin shows its depth by a window, everything else in soft boxes. */
+/* Skin shows its depth by a window, toons need a low sun, because the edge of a high lamp's shade crosses their faces;
+ * everything else is in soft boxes. */
 static const char *light_of(const noh_pack *pack)
 {
+    const char *light = "studio";
     for (uint32_t i = 0; pack && i < pack->material_count; i++) {
         if (pack->materials[i].surface == NOH_SURFACE_SKIN) return "room";
+        if (pack->materials[i].surface == NOH_SURFACE_TOON) light = "sky";
     }
-    return "studio";
+    return light;
 }
 
 int lighting_wanted(light_options *o, const noh_pack *pack, int shows_surfaces)
