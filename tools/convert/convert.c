@@ -11,6 +11,7 @@
 #include "convert/clips/joint_order.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/mocap/clean.h"
+#include "convert/model/eye_paint.h"
 #include "convert/model/model_build.h"
 #include "convert/model/size_guess.h"
 #include "convert/model/strands.h"
@@ -360,7 +361,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     }
     if (options->only == CONVERT_CLIPS) return 0;
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
-    if (teeth_paint(s->m)) return out_of_memory(error);
+    if (teeth_paint(s->m) || eye_paint(s->m) || lash_strips_hide(s->m)) return out_of_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }

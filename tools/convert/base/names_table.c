@@ -101,9 +101,9 @@ const char *const names_table[] = {
     "strip head_facs_bs blendShape1 blendShape",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
-     * occlusion-shell, tear-shell: what stands in front of an eye and is seen through. */
+     * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
-    "material eye eye eyes eyeocclusion eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
+    "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
     "material eye глаз глаза *目 *瞳 *眼 *눈",
     "material teeth tooth teeth gum gums tongue mouth zahn zähne zaehne zunge zahnfleisch dent dents gencive",
@@ -116,8 +116,10 @@ const char *const names_table[] = {
     "material beside-eye lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture",
     "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",
     "material beside-eye eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas",
-    "material occlusion-shell occlusion eyeocclusion",
-    "material tear-shell tear tears tearline lacrimal eyemoisture",
+    "material beside-eye eyeshell edge eyeedge blend eyeblend saliva",
+    "material lashes lash lashes eyelash eyelashes wimper wimpern cil cils pestaña pestañas ciglia ресницы *睫",
+    "material occlusion-shell occlusion eyeocclusion shell eyeshell",
+    "material tear-shell tear tears tearline lacrimal eyemoisture edge eyeedge blend eyeblend saliva",
     "material beside-eye ciglia sopracciglia ресницы брови *睫 *眉 *影 *眼鏡 *眼镜 *안경 *눈썹",
     NULL
 };

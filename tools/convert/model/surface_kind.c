@@ -97,6 +97,11 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha)
     return kind == NOH_SURFACE_HAIR && alpha == MODEL_ALPHA_OPAQUE ? NOH_SURFACE_PLAIN : kind;
 }
 
+int surface_is_lashes(const char *name)
+{
+    return is_of(name, "lashes");
+}
+
 /* Each capital of the pattern stands for one, each 0 for a digit. */
 static int begins_as(const char *name, const char *pattern)
 {
@@ -145,7 +150,7 @@ void surface_kind_set(model_material *m, uint32_t kind)
 }
 
 /* Black with an alpha multiplies what is behind it by the rest. */
-static int set_shell(model *m, model_material *shell, float alpha, const char *what)
+static void set_alpha(model_material *shell, float alpha)
 {
     shell->alpha = MODEL_ALPHA_BLEND;
     shell->base_color_texture = MODEL_NONE;
@@ -157,6 +162,16 @@ static int set_shell(model *m, model_material *shell, float alpha, const char *w
     shell->metallic = 0.0f;
     shell->roughness = 1.0f;
     shell->f90_loss = 1.0f;
+}
+
+void surface_hide(model_material *m)
+{
+    set_alpha(m, 0.0f);
+}
+
+static int set_shell(model *m, model_material *shell, float alpha, const char *what)
+{
+    set_alpha(shell, alpha);
     return model_warn(m, "material '%s': an opaque shell would hide its eye, so it %s; rename the material to keep it",
                       shell->name, what);
 }

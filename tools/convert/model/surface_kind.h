@@ -19,6 +19,9 @@ uint32_t surface_kind_of_name(const char *name);
 /* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
 uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
+/* Whether a material's name means lashes. */
+int surface_is_lashes(const char *name);
+
 /* 1 for the materials of VRoid Studio ("N00_000_00_Face_00_SKIN"), whose characters are drawn as toons, also where an
  * exporter dropped their MToon. */
 int surface_is_of_vroid(const char *name);
@@ -26,6 +29,9 @@ int surface_is_of_vroid(const char *name);
 /* Set a material's kind. Unlit materials stay plain. The default reflectance (0.04) becomes the surface's: 0.028 for
  * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
+
+/* Make a material one that draws nothing. */
+void surface_hide(model_material *m);
 
 /* Opaque shells in front of eyes would hide them. Occlusion shells ("Eye_Occlusion") become black with an alpha of 0.2
  * and so darken; tear shells ("Tearline") are not drawn, because eyes gloss by themselves. Each adds a warning to the

@@ -152,8 +152,7 @@ static double apart(const eye_sphere *a, const eye_sphere *b)
     return sqrt(square);
 }
 
-/* Equal in size, side by side at one height and depth, with room for a nose between. */
-static int are_eyes(const eye_sphere *a, const eye_sphere *b)
+int eye_spheres_pair(const eye_sphere *a, const eye_sphere *b)
 {
     const double way = apart(a, b);
     return fabs(a->radius - b->radius) < 0.1 * a->radius && way > 2.0 * a->radius && way < 10.0 * a->radius &&
@@ -168,7 +167,7 @@ static uint32_t find_pair(const split *s, const candidate *pair[2])
         for (uint32_t b = a + 1; b < s->count; b++) {
             const eye_sphere *x = &s->found[a].sphere, *y = &s->found[b].sphere;
             const int swap = x->centre[0] < y->centre[0];
-            if (!are_eyes(x, y)) continue;
+            if (!eye_spheres_pair(x, y)) continue;
             if (pairs && (apart(&pair[0]->sphere, swap ? y : x) > 0.5 * x->radius ||
                           apart(&pair[1]->sphere, swap ? x : y) > 0.5 * x->radius)) {
                 return 2;

@@ -21,6 +21,8 @@ typedef struct eye_sphere {
 
 /* vertices[count]. 1: they do not span a sphere. */
 int eye_sphere_fit(const float *positions, const uint32_t *vertices, uint32_t count, eye_sphere *out);
+/* Whether they are two eyes: equal in size, side by side at one height and depth, with room for a nose between. */
+int eye_spheres_pair(const eye_sphere *a, const eye_sphere *b);
 
 /* Find the eyes of the first mesh that has any, and add the joints LeftEye and RightEye at their centres: below the
  * joint that moves them, or, in a mesh without a skin, below a new joint Face that moves all else. x is to the left, as

@@ -1,0 +1,338 @@
+#include "eye_paint.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "convert/model/islands.h"
+#include "convert/model/model_build.h"
+#include "convert/model/surface_kind.h"
+#include "convert/skin/eye_split.h"
+#include "noh/format.h"
+
+#define BALLS_MAX 16u
+#define BALL_VERTICES_MIN 24u
+#define BALL_RESIDUAL_MAX 0.1
+#define PALE_MIN 0.3f /* the darkest channel of eyes that are painted, linear */
+#define HUES 0.05f
+#define SIDE 256u   /* texels */
+#define REACH 1.5f  /* 1 - cosine of the angle to the gaze at the picture's border: 120 degrees */
+#define IRIS 0.42f  /* radius, in radii of the ball: 5.2 mm of 12.4 */
+#define PUPIL 0.36f /* of the iris */
+#define WET 0.1f
+#define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
+
+typedef struct balls {
+    eye_sphere spheres[BALLS_MAX];
+    uint32_t materials[BALLS_MAX];
+    uint32_t count;
+} balls;
+
+/* A ball of a plain eye's material: vertices[count] of the mesh. */
+typedef void ball_visit(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
+                        uint32_t count, balls *b);
+
+/* ---- which eyes ---- */
+
+static int is_plain_material(const model_material *m)
+{
+    const float *c = m->base_color;
+    return m->surface == NOH_SURFACE_EYE && m->alpha == MODEL_ALPHA_OPAQUE && m->base_color_texture == MODEL_NONE &&
+           m->emissive_texture == MODEL_NONE && m->emissive[0] + m->emissive[1] + m->emissive[2] <= 0.0f &&
+           fminf(c[0], fminf(c[1], c[2])) > PALE_MIN &&
+           fmaxf(c[0], fmaxf(c[1], c[2])) - fminf(c[0], fminf(c[1], c[2])) < HUES;
+}
+
+static int is_white(const model_mesh *mesh, const model_submesh *part)
+{
+    for (uint32_t v = part->first_vertex; mesh->color && v < part->first_vertex + part->vertex_count; v++) {
+        for (size_t c = 0; c < 3; c++) {
+            if (mesh->color[4 * (size_t)v + c] < 1.0f - HUES) return 0;
+        }
+    }
+    return 1;
+}
+
+/* Whether the part is of a plain eye's material, and its vertex colours are white. */
+static int is_plain(const model *m, const model_mesh *mesh, const model_submesh *part)
+{
+    return mesh->uv && part->material != MODEL_NONE && is_plain_material(&m->materials[part->material]) &&
+           is_white(mesh, part);
+}
+
+/* The vertices lie on a sphere, and on its front, too. */
+static int is_ball(const model_mesh *mesh, const uint32_t *vertices, uint32_t count, eye_sphere *sphere)
+{
+    double front = 0.0;
+    if (count < BALL_VERTICES_MIN || eye_sphere_fit(mesh->position, vertices, count, sphere) ||
+        sphere->residual > BALL_RESIDUAL_MAX) {
+        return 0;
+    }
+    for (uint32_t i = 0; i < count; i++) {
+        front = fmax(front, (double)mesh->position[3 * (size_t)vertices[i] + 2] - sphere->centre[2]);
+    }
+    return front > 0.8 * sphere->radius;
+}
+
+static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, uint32_t *room,
+                       ball_visit *visit, balls *b)
+{
+    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+        uint32_t count = 0;
+        eye_sphere sphere;
+        if (island[v] != v) continue;
+        for (uint32_t w = v; w < part->first_vertex + part->vertex_count; w++) {
+            if (island[w] == v) room[count++] = w;
+        }
+        if (is_ball(&m->meshes[mesh], room, count, &sphere)) visit(m, mesh, part->material, &sphere, room, count, b);
+    }
+}
+
+static int visit_balls(model *m, ball_visit *visit, balls *b)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        uint32_t *island = NULL, *room = NULL;
+        int failed = 0;
+        for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
+            if (!is_plain(m, mesh, &mesh->submeshes[s])) continue;
+            if (!island) {
+                island = model_zeros(mesh->vertex_count, sizeof *island);
+                room = model_zeros(mesh->vertex_count, sizeof *room);
+                failed = !island || !room;
+                if (!failed) islands_find(mesh, island, room);
+            }
+            if (!failed) visit_part(m, i, &mesh->submeshes[s], island, room, visit, b);
+        }
+        free(island);
+        free(room);
+        if (failed) return 1;
+    }
+    return 0;
+}
+
+static void collect(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
+                    uint32_t count, balls *b)
+{
+    (void)m, (void)mesh, (void)vertices, (void)count;
+    if (b->count == BALLS_MAX) return;
+    b->materials[b->count] = material;
+    b->spheres[b->count++] = *sphere;
+}
+
+/* ---- the picture ---- */
+
+static float smooth(float from, float to, float x)
+{
+    const float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
+    return t * t * (3.0f - 2.0f * t);
+}
+
+/* The cosine of n times the angle whose cosine is x, without libm, whose last bits differ between machines. */
+static float cosine_of(uint32_t n, float x)
+{
+    float before = 1.0f, at = x;
+    for (uint32_t i = 1; i < n; i++) {
+        const float next = 2.0f * x * at - before;
+        before = at;
+        at = next;
+    }
+    return at;
+}
+
+static float fibres(float x, float y)
+{
+    return 0.4f * cosine_of(17, x) + 0.35f * cosine_of(29, 0.6f * x + 0.8f * y) +
+           0.25f * cosine_of(53, 0.8f * x - 0.6f * y);
+}
+
+/* sRGB, at a place of the front as the gaze sees it, in radii of the iris; x, y: unit */
+static void eye_color(float from_gaze, float x, float y, float out[3])
+{
+    static const float white[3] = { 236.0f, 231.0f, 227.0f }, edge[3] = { 38.0f, 30.0f, 26.0f };
+    static const float outer[3] = { 92.0f, 66.0f, 43.0f }, inner[3] = { 138.0f, 97.0f, 55.0f };
+    const float t = from_gaze, bright = 1.0f + 0.16f * fibres(x, y) * smooth(PUPIL, 0.6f, t);
+    const float in_white = smooth(0.97f, 1.08f, t), in_edge = smooth(0.72f, 0.98f, t),
+                in_outer = smooth(0.45f, 0.8f, t);
+    const float lit = smooth(PUPIL - 0.03f, PUPIL + 0.04f, t) * (0.55f + 0.45f * smooth(PUPIL, 0.55f, t));
+    for (int c = 0; c < 3; c++) {
+        float value = (inner[c] + in_outer * (outer[c] - inner[c])) * bright;
+        value += in_edge * (edge[c] - value);
+        value = 8.0f + lit * (value - 8.0f);
+        out[c] = value + in_white * (white[c] - value);
+    }
+}
+
+static uint32_t add_picture(model *m)
+{
+    model_texture *grown = realloc(m->textures, (m->texture_count + 1u) * sizeof *grown), *t;
+    if (!grown) return MODEL_NONE;
+    m->textures = grown;
+    t = &grown[m->texture_count];
+    memset(t, 0, sizeof *t);
+    t->name = model_string("painted eye");
+    t->rgba = model_zeros((size_t)SIDE * SIDE, 4);
+    t->width = t->height = SIDE;
+    t->wrap_s = t->wrap_t = 33071;
+    t->use = MODEL_TEXTURE_COLOR;
+    for (uint32_t i = 0; t->rgba && i < SIDE * SIDE; i++) {
+        const float x = ((float)(i % SIDE) + 0.5f) * 2.0f / (float)SIDE - 1.0f;
+        const float y = ((float)(i / SIDE) + 0.5f) * 2.0f / (float)SIDE - 1.0f;
+        const float square = x * x + y * y, radius = sqrtf(square), along = 1.0f - REACH * square;
+        float color[3];
+        eye_color(along > 0.0f ? sqrtf(1.0f - along * along) / IRIS : 1.0f / IRIS, x / radius, y / radius, color);
+        for (size_t c = 0; c < 3; c++) t->rgba[4u * i + c] = (uint8_t)(color[c] + 0.5f);
+        t->rgba[4u * i + 3u] = 255;
+    }
+    if (t->name && t->rgba) return m->texture_count++;
+    free(t->name);
+    free(t->rgba);
+    return MODEL_NONE;
+}
+
+/* ---- on the ball ---- */
+
+/* Leave the balls that have a partner. */
+static void keep_pairs(balls *b)
+{
+    balls kept = { .count = 0 };
+    for (uint32_t i = 0; i < b->count; i++) {
+        int paired = 0;
+        for (uint32_t k = 0; k < b->count; k++) paired |= eye_spheres_pair(&b->spheres[i], &b->spheres[k]);
+        if (!paired) continue;
+        kept.materials[kept.count] = b->materials[i];
+        kept.spheres[kept.count++] = b->spheres[i];
+    }
+    *b = kept;
+}
+
+static int is_painted(const balls *b, uint32_t material)
+{
+    for (uint32_t i = 0; i < b->count; i++) {
+        if (b->materials[i] == material) return 1;
+    }
+    return 0;
+}
+
+/* Areas of the ball are areas of the picture (Lambert's azimuthal projection about the gaze). */
+static void project(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
+                    uint32_t count, balls *b)
+{
+    for (uint32_t i = 0; is_painted(b, material) && i < count; i++) {
+        const float *p = m->meshes[mesh].position + 3 * (size_t)vertices[i];
+        float *uv = m->meshes[mesh].uv + 2 * (size_t)vertices[i];
+        double way[3], beside, radius;
+        for (int c = 0; c < 3; c++) way[c] = (double)p[c] - sphere->centre[c];
+        if (!vec_normalize(way)) continue;
+        beside = sqrt(way[0] * way[0] + way[1] * way[1]);
+        radius = sqrt(fmax(1.0 - way[2], 0.0) / (double)REACH);
+        radius = 0.5 * (radius < 1.0 ? radius : 1.0);
+        uv[0] = (float)(0.5 + (beside > 0.0 ? radius * way[0] / beside : 0.0));
+        uv[1] = (float)(0.5 - (beside > 0.0 ? radius * way[1] / beside : 0.0));
+    }
+}
+
+/* Of a material that was painted, what is no ball is white. */
+static void whiten(model *m, const balls *b)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+            const model_submesh *part = &mesh->submeshes[s];
+            if (!is_plain(m, mesh, part) || !is_painted(b, part->material)) continue;
+            memset(mesh->uv + 2 * (size_t)part->first_vertex, 0, 2 * (size_t)part->vertex_count * sizeof *mesh->uv);
+        }
+    }
+}
+
+static int finish(model *m, const balls *b)
+{
+    const uint32_t picture = add_picture(m);
+    int failed = picture == MODEL_NONE;
+    for (uint32_t i = 0; i < m->material_count && !failed; i++) {
+        model_material *eye = &m->materials[i];
+        if (!is_painted(b, i)) continue;
+        eye->base_color_texture = picture;
+        for (int c = 0; c < 3; c++) eye->base_color[c] = 1.0f;
+        if (eye->roughness > WET) eye->roughness = WET;
+        failed = model_warn(m,
+                            "material '%s': eyes of one colour look blind, so an iris was painted (--surface "
+                            "'%s=plain': none)",
+                            eye->name, eye->name);
+    }
+    return failed;
+}
+
+int eye_paint(model *m)
+{
+    balls b = { .count = 0 };
+    if (visit_balls(m, collect, &b)) return 1;
+    keep_pairs(&b);
+    if (b.count == 0) return 0;
+    whiten(m, &b);
+    return visit_balls(m, project, &b) || finish(m, &b);
+}
+
+/* ---- lashes ---- */
+
+static uint32_t first_of(uint32_t *joined, uint32_t v)
+{
+    while (joined[v] != v) v = joined[v] = joined[joined[v]];
+    return v;
+}
+
+/* Triangles that share vertices are one piece; lashes may touch the skin. joined: [vertex_count] */
+static int is_strip(const model_mesh *mesh, const model_submesh *part, uint32_t *joined)
+{
+    const uint32_t end = part->first_vertex + part->vertex_count, *indices = mesh->indices + part->first_index;
+    uint32_t pieces = 0;
+    for (uint32_t v = part->first_vertex; v < end; v++) joined[v] = v;
+    for (uint32_t i = 0; i < part->index_count; i++) {
+        joined[first_of(joined, indices[i])] = first_of(joined, indices[i / 3u * 3u]);
+    }
+    for (uint32_t v = part->first_vertex; v < end; v++) pieces += joined[v] == v;
+    return is_white(mesh, part) && part->index_count / 3u >= STRIP_TRIANGLES * pieces;
+}
+
+/* 1 if all that the material is on are strips, -1 when out of memory. */
+static int on_strips(const model *m, uint32_t material)
+{
+    uint32_t strips = 0, others = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+            uint32_t *joined;
+            if (mesh->submeshes[s].material != material) continue;
+            joined = model_zeros(mesh->vertex_count, sizeof *joined);
+            if (!joined) return -1;
+            if (is_strip(mesh, &mesh->submeshes[s], joined)) {
+                strips++;
+            } else {
+                others++;
+            }
+            free(joined);
+        }
+    }
+    return strips > 0 && others == 0;
+}
+
+int lash_strips_hide(model *m)
+{
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        model_material *lashes = &m->materials[i];
+        int hidden;
+        if (lashes->alpha != MODEL_ALPHA_OPAQUE || lashes->base_color_texture != MODEL_NONE ||
+            !surface_is_lashes(lashes->name))
+            continue;
+        hidden = on_strips(m, i);
+        if (hidden < 0) return 1;
+        if (!hidden) continue;
+        surface_hide(lashes);
+        if (model_warn(m,
+                       "material '%s': lashes without a picture would be a slab, so they are left out; rename the "
+                       "material to keep them",
+                       lashes->name))
+            return 1;
+    }
+    return 0;
+}

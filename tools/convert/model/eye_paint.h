@@ -1,0 +1,19 @@
+/* eye_paint.h: an iris and a pupil for eyes of one colour, which would look blind, and no lashes that are a slab. */
+#ifndef NOH_CONVERT_MODEL_EYE_PAINT_H
+#define NOH_CONVERT_MODEL_EYE_PAINT_H
+
+#include "model.h"
+
+/* Paint pale eyes that have no texture, glow not, and have one vertex colour: two balls of one size, side by side, get
+ * a texture that is made here and texture coordinates about +z, where they look. The outermost is the one that is seen.
+ * Such materials become white and wet, and add a warning. Meshes without texture coordinates are left as they are.
+ * Surfaces of materials are known.
+ * returns  1: out of memory */
+int eye_paint(model *m);
+
+/* Strips of lashes that lack the picture that cuts them are slabs: opaque ones without a texture and vertex colours are
+ * not drawn, with a warning. Lashes of one island each stay.
+ * returns  1: out of memory */
+int lash_strips_hide(model *m);
+
+#endif
