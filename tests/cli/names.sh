@@ -135,13 +135,14 @@ noh build "$work/m.obj" -o "$work/m.noh"
 check 'metres' grep -q 'the figure is 1.7 m high, its eyes' "$work/out"
 check 'and no word of units' sh -c '! grep -q "more likely" "$1"' - "$work/out"
 eyes "$work/cm.obj" 3.15 170
-noh build "$work/cm.obj" -o "$work/cm.noh"
+noh build "$work/cm.obj" -o "$work/cm.noh" --unit-cm 100
 check 'centimetres' grep -q 'a unit is more likely a centimetre than a metre' "$work/out"
-noh build "$work/cm.obj" -o "$work/cm.noh" --unit-cm 1
-check 'which --unit-cm 1 mends' grep -q 'the figure is 1.7 m high' "$work/out"
+noh build "$work/cm.obj" -o "$work/cm.noh"
+check 'which eyes tell' grep -q 'by the distance of its eyes, a unit of the model is 1 cm' "$work/out"
+check 'and so is the height' grep -q 'the figure is 1.7 m high' "$work/out"
 eyes "$work/dm.obj" 0.315 17
 noh build "$work/dm.obj" -o "$work/dm.noh"
-check 'decimetres' grep -q 'more likely a decimetre' "$work/out"
+check 'decimetres' grep -q 'a unit of the model is 10 cm' "$work/out"
 eyes "$work/x.obj" 50 1
 noh build "$work/x.obj" -o "$work/x.noh"
 check 'eyes wider apart than the model is high are none' sh -c '! grep -q "the figure is" "$1"' - "$work/out"

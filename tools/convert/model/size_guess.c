@@ -96,35 +96,52 @@ static sizes measure(const model *m)
     return s;
 }
 
+typedef struct unit {
+    double metres;
+    const char *name;
+} unit;
+
+/* The unit that fits better than a metre; NULL: none does. */
+static const unit *better_unit(const sizes *s)
+{
+    static const unit units[] = { { 0.1, "a decimetre" },
+                                  { 0.0254, "an inch" },
+                                  { 0.01, "a centimetre" },
+                                  { 0.001, "a millimetre" },
+                                  { 100.0, "a hectometre" } };
+    const double scale = s->eyes > 0.0 ? s->eyes / EYES_M : s->height / HEIGHT_M;
+    const double off = s->eyes > 0.0 ? OFF_BY_EYES : OFF_BY_HEIGHT;
+    const unit *best = units;
+    if (!(scale > 0.0) || (scale < off && scale > 1.0 / off)) return NULL;
+    for (const unit *u = units; u < units + sizeof units / sizeof units[0]; u++) {
+        if (fabs(log(scale * u->metres)) < fabs(log(scale * best->metres))) best = u;
+    }
+    return best;
+}
+
+double size_unit(const model *m)
+{
+    const sizes s = measure(m);
+    const unit *best = better_unit(&s);
+    return best ? best->metres : 1.0;
+}
+
 int size_guess(model *m, FILE *report)
 {
-    static const struct {
-        double metres;
-        const char *name;
-    } units[] = { { 0.1, "a decimetre" },
-                  { 0.0254, "an inch" },
-                  { 0.01, "a centimetre" },
-                  { 0.001, "a millimetre" },
-                  { 100.0, "a hectometre" } };
     char eyes[48] = "";
     const sizes s = measure(m);
-    const double scale = s.eyes > 0.0 ? s.eyes / EYES_M : s.height / HEIGHT_M;
-    const double off = s.eyes > 0.0 ? OFF_BY_EYES : OFF_BY_HEIGHT;
-    size_t best = 0;
-    if (!(scale > 0.0)) { /* no person */
+    const unit *best = better_unit(&s);
+    if (!(s.eyes > 0.0) && !(s.height > 0.0)) { /* no person */
         const double height = height_of_meshes(m);
         if (report && height > 0.0) fprintf(report, "the model is %.3g m high\n", height);
         return 0;
     }
     if (s.eyes > 0.0) (void)snprintf(eyes, sizeof eyes, ", its eyes %.3g cm apart", 100.0 * s.eyes);
     if (report) fprintf(report, "the figure is %.3g m high%s\n", s.height, eyes);
-    if (scale < off && scale > 1.0 / off) return 0;
-    for (size_t i = 1; i < sizeof units / sizeof units[0]; i++) {
-        if (fabs(log(scale * units[i].metres)) < fabs(log(scale * units[best].metres))) best = i;
-    }
+    if (!best) return 0;
     return model_warn(
         m,
         "the figure is %.3g m high%s: a unit is more likely %s than a metre (--unit-cm for .obj and .fbx; "
         "scale others by %g in the program that made them)",
-        s.height, eyes, units[best].name, units[best].metres);
+        s.height, eyes, best->name, best->metres);
 }

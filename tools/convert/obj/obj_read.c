@@ -6,6 +6,7 @@
 
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
+#include "convert/model/size_guess.h"
 
 /* Vertices while corners become them: a corner that was met in the same part before is the same vertex. */
 typedef struct vertices {
@@ -155,6 +156,17 @@ static int add_mesh(const char *path, model *m)
     return !m->meshes[0].name || !m->nodes[0].name;
 }
 
+/* The format has no unit: the distance of the eyes tells it, if there are any. */
+static int take_unit(model *m, double *unit_cm)
+{
+    const double metres = size_unit(m);
+    model_mesh *mesh = &m->meshes[0];
+    if (metres == 1.0) return 0;
+    for (size_t i = 0; i < 3 * (size_t)mesh->vertex_count; i++) mesh->position[i] *= (float)metres;
+    *unit_cm *= metres;
+    return model_warn(m, "by the distance of its eyes, a unit of the model is %g cm (--unit-cm CM: another)", *unit_cm);
+}
+
 /* The format has no unit: a size that no character has is a sign that it is not the one that was taken. */
 static int warn_of_size(const model_mesh *mesh, double unit_cm, model *m)
 {
@@ -185,7 +197,7 @@ static int warn_of_losses(const obj_text *o, model *m)
 static int fill_model(const char *path, const obj_text *o, vertices *v, const obj_options *options, model *m,
                       model_error *error)
 {
-    const double unit_cm = options->unit_cm > 0.0 ? options->unit_cm : 100.0;
+    double unit_cm = options->unit_cm > 0.0 ? options->unit_cm : 100.0;
     model_mesh *mesh;
     uint32_t *source;
     uint64_t corners;
@@ -193,7 +205,8 @@ static int fill_model(const char *path, const obj_text *o, vertices *v, const ob
     if (start_vertices(o, v, &corners) || add_mesh(path, m)) return out_of_memory(error);
     mesh = &m->meshes[0];
     if (index_parts(o, v, corners, mesh) || fill_vertices(o, v, unit_cm / 100.0, mesh) ||
-        obj_materials_read(path, o, m) || warn_of_size(mesh, unit_cm, m) || warn_of_losses(o, m)) {
+        obj_materials_read(path, o, m) || (options->unit_cm <= 0.0 && take_unit(m, &unit_cm)) ||
+        warn_of_size(mesh, unit_cm, m) || warn_of_losses(o, m)) {
         return out_of_memory(error);
     }
     if (!options->targets) return 0;

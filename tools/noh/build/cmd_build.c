@@ -1001,7 +1001,7 @@ static const option options[] = {
       .value = "auto|CM",
       .initial = "auto",
       .what =
-          "centimetres per unit of .bvh, .obj, .fbx, .trc and .c3d files, above 0; auto: 1 for .bvh, 100 for .obj, the file's unit for the others",
+          "centimetres per unit of .bvh, .obj, .fbx, .trc and .c3d files, above 0; auto: 1 for .bvh, for .obj 100 or what the distance of the eyes tells, the file's unit for the others",
       .example = "2.54" },
     { .name = "--rest",
       .kind = OPTION_TEXT,
