@@ -53,6 +53,16 @@ noh speak hello --face "$puppet" -o line.noh
     done
 }
 
+# A figure without targets has its head where the joint of that name is.
+LC_ALL=C sed 's/"targets"/"tergets"/g' "$build/demo/puppet.glb" >still.glb
+noh build still.glb -o still.noh --quiet
+noh render still.noh -o still_face.png $small --camera face
+noh render still.noh -o still_full.png $small --camera full
+noh info still.noh
+check 'it has none' sh -c '! grep -q "targets, " "$1"' - "$work/out"
+check 'and its head is framed' sh -c '! cmp -s "$1" "$2"' - still_face.png still_full.png
+
+
 # A body whose face is a square of 0.2 at a height of 1.5, with hair as high as 0.8 of it: of a drawn figure.
 quads='f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n'
 rest='v -.2 0 0\nv .2 0 0\nv .2 1.5 0\nv -.2 1.5 0\nv -.1 1.7 0\nv .1 1.7 0\nv .1 1.86 0\nv -.1 1.86 0\n'

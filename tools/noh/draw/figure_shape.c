@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "convert/base/names.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/deform.h"
@@ -182,6 +183,39 @@ static bounds measure(const figure *f, int face)
     return b;
 }
 
+#define NECK_TO_CROWN 1.2 /* a head's width, in its height over its joint */
+#define HEAD_MAX 0.3      /* of the figure's height */
+
+/* The box over a joint, no wider than heads are. */
+static bounds over_joint(const bounds *all, const float joint[12])
+{
+    const double high = all->high[1] - (double)joint[7];
+    bounds b = *all;
+    b.low[1] = (double)joint[7];
+    for (int c = 0; c < 3; c += 2) {
+        b.low[c] = fmax(b.low[c], (double)joint[3 + 4 * c] - 0.5 * NECK_TO_CROWN * high);
+        b.high[c] = fmin(b.high[c], (double)joint[3 + 4 * c] + 0.5 * NECK_TO_CROWN * high);
+    }
+    return b;
+}
+
+/* The head of a figure whose face no target moves, by the joint that a name calls its head; 0: there is none. */
+static int head_by_joint(const figure *f, const bounds *all, bounds *head)
+{
+    const char *name;
+    for (uint32_t j = 0; (name = noh_stage_name(f->stage, 0, NOH_NAME_JOINT, j)) != NULL; j++) {
+        char means[NOH_NAME_BYTES_MAX];
+        float joint[12];
+        if (!names_find(NAME_JOINT, name, means, NULL) || strcmp(means, "head") != 0 ||
+            noh_actor_joint(f->stage, f->actors[0], j, joint, NULL) != NOH_OK) {
+            continue;
+        }
+        *head = over_joint(all, joint);
+        return head->high[1] > head->low[1] && head->high[1] - head->low[1] < HEAD_MAX * (all->high[1] - all->low[1]);
+    }
+    return 0;
+}
+
 #define FACE_IS_ALL \
     0.3               /* of the figure's height: a face as high is a head alone or a bust; of a body it is a seventh */
 #define HAIR_OVER 0.1 /* of the figure's height: hair may reach over its meshes by as much */
@@ -197,6 +231,14 @@ static bounds around_face(const figure *f, const bounds *all, bounds face)
         face.high[c] = fmin(face.high[c] + above[c] * high, all->high[c] + (c < 2 ? hair : 0.0));
     }
     return face;
+}
+
+/* A head with its neck and hair. */
+static bounds around_head(const bounds *all, bounds head)
+{
+    const double high = head.high[1] - head.low[1];
+    head.low[1] = fmax(head.low[1] - 0.4 * high, all->low[1]);
+    return head;
 }
 
 #define UPPER_SHARE 0.45 /* of the height of a body */
@@ -226,9 +268,10 @@ bounds figure_bounds(const figure *f, view_frame frame)
     const bounds all = measure(f, 0), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     if (all.low[0] > all.high[0]) return none;
     if (frame == FRAME_FULL) return all;
-    const bounds face = measure(f, 1);
+    bounds face = measure(f, 1);
     const int has_face = face.low[0] <= face.high[0];
     if (has_face && (frame == FRAME_FACE || is_head(&all, &face))) return around_face(f, &all, face);
+    if (frame == FRAME_FACE && head_by_joint(f, &all, &face)) return around_head(&all, face);
     return frame == FRAME_UPPER ? upper_of(all) : all;
 }
 
