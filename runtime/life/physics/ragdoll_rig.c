@@ -49,6 +49,20 @@ void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float positi
     noh_quat_normalize(rotation);
 }
 
+void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, uint32_t slot,
+                    float point[3])
+{
+    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
+    float local[3], position[3], rotation[4];
+    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
+    for (uint32_t up = skin->joints[slot]; up != NOH_JOINT_ROOT; up = k->parents[up]) {
+        for (int i = 0; i < 3; i++) local[i] *= k->bind_pose[up].scale[i];
+    }
+    noh_ragdoll_bind(k, skin->joints[slot], position, rotation);
+    noh_quat_rotate(rotation, local, local);
+    noh_madd3(position, 1.0f, local, point);
+}
+
 /* The body that a joint moves with: its own, or its nearest ancestor's; the first body for joints above all bodies. */
 static uint32_t owner_of(const maker *m, uint32_t joint)
 {

@@ -21,17 +21,9 @@ void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float positi
 uint32_t noh_ragdoll_row_above(const noh_ragdoll_source *source, const noh_ragdoll_row *rows, uint32_t count,
                                uint32_t joint);
 
-/* The position of a vertex in the bind pose, by its heaviest joint. */
-NOH_UNUSED static inline void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin,
-                                             uint32_t vertex, uint32_t slot, float point[3])
-{
-    const float *v = mesh->positions + 3 * (size_t)vertex, *rows = skin->inverse_bind + 12 * (size_t)slot;
-    float local[3], position[3], rotation[4];
-    for (int i = 0; i < 3; i++) local[i] = noh_dot3(rows + 4 * i, v) + rows[4 * i + 3];
-    noh_ragdoll_bind(k, skin->joints[slot], position, rotation);
-    noh_quat_rotate(rotation, local, local);
-    noh_madd3(position, 1.0f, local, point);
-}
+/* The position of a vertex in the bind pose, by its heaviest joint. Scales of joints are the same in all directions. */
+void noh_rig_vertex(const noh_skeleton *k, const noh_mesh *mesh, const noh_skin *skin, uint32_t vertex, uint32_t slot,
+                    float point[3]);
 
 /* Whether a joint is `below` itself, or one of the joints above it. */
 static inline int noh_joint_is_above(const noh_skeleton *k, uint32_t joint, uint32_t below)

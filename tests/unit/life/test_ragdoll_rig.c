@@ -91,6 +91,38 @@ static void sizes_follow_the_skin(void **state)
     skin_asset_close(&a);
 }
 
+/* A skeleton in centimetres below a root with a scale of 0.01, as exporters write it, is the same figure. */
+static void scales_of_joints_count(void **state)
+{
+    skin_asset a;
+    noh_skin skin;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    noh_ragdoll_source s = source_of(&a.pack);
+    const noh_ragdoll_rig rig = rig_of(&s);
+    noh_transform *bind = test_zeros(s.joints.joint_count * sizeof *bind);
+    memcpy(bind, s.joints.bind_pose, s.joints.joint_count * sizeof *bind);
+    for (uint32_t j = 1; j < s.joints.joint_count; j++) {
+        for (int i = 0; i < 3; i++) bind[j].translation[i] *= 100.0f;
+    }
+    for (int i = 0; i < 3; i++) bind[0].scale[i] *= 0.01f;
+    for (uint32_t k = 0; noh_pack_skin_at(&a.pack, k, &skin, NULL) == NOH_OK; k++) {
+        float *rows = (float *)(uintptr_t)skin.inverse_bind; /* the test's own memory */
+        for (uint32_t i = 0; i < 12u * skin.header->joint_count; i++) rows[i] *= 100.0f;
+    }
+    s.joints.bind_pose = bind;
+    const noh_ragdoll_rig scaled = rig_of(&s);
+    assert_int_equal(scaled.body_count, rig.body_count);
+    for (uint32_t i = 0; i < rig.body_count; i++) {
+        const noh_ragdoll_body *b = &rig.bodies[i], *c = &scaled.bodies[i];
+        assert_true(fabsf(c->radius - b->radius) < 1e-4f && fabsf(c->half - b->half) < 1e-4f);
+        assert_true(fabsf(c->mass - b->mass) < 1e-2f * b->mass);
+        for (int n = 0; n < 3; n++) assert_true(fabsf(c->position[n] - b->position[n]) < 1e-4f);
+    }
+    free(bind);
+    skin_asset_close(&a);
+}
+
 /* Left and right are each other's mirror, but for the skin's asymmetry. */
 static void sides_are_alike(void **state)
 {
@@ -298,9 +330,13 @@ static void everybody_falls_and_lies(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(everybody_falls_and_lies),      cmocka_unit_test(zero_is_the_bind_pose),
-    cmocka_unit_test(sizes_follow_the_skin),         cmocka_unit_test(sides_are_alike),
-    cmocka_unit_test(rows_out_of_order_are_refused), cmocka_unit_test(hips_and_shoulders_are_limbs_where_none_is_below),
+    cmocka_unit_test(everybody_falls_and_lies),
+    cmocka_unit_test(zero_is_the_bind_pose),
+    cmocka_unit_test(sizes_follow_the_skin),
+    cmocka_unit_test(scales_of_joints_count),
+    cmocka_unit_test(sides_are_alike),
+    cmocka_unit_test(rows_out_of_order_are_refused),
+    cmocka_unit_test(hips_and_shoulders_are_limbs_where_none_is_below),
 };
 
 TEST_MAIN(tests, NULL, NULL)
