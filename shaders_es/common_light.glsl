@@ -11,10 +11,12 @@ vec3 noh_toon(noh_surface s, float lit)
 }
 #elif defined(NOH_TOON)
 /* The colour of a toon in white light: two tones and the edge between them, a rim and a matcap, as in
- * VRMC_materials_mtoon 1.0 of the VRM Consortium. lit: 0 in shadow */
+ * VRMC_materials_mtoon 1.0 of the VRM Consortium. The lamp is lower than the light's key, and in part the viewer's:
+ * the edge of a high lamp would cross the face. lit: 0 in shadow */
 vec3 noh_toon(noh_surface s, float lit)
 {
-    float hard = noh_surface_more[0].x, reach = dot(s.normal, noh_key) + noh_surface_values.w + 1.0 - hard;
+    vec3 lamp = normalize(noh_key * vec3(1.0, 0.4, 1.0) + 0.3 * s.view);
+    float hard = noh_surface_more[0].x, reach = dot(s.normal, lamp) + noh_surface_values.w + 1.0 - hard;
     vec3 color = mix(s.shade, s.albedo, clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit);
     float away = clamp(1.0 - dot(s.normal, s.view) + noh_surface_more[0].z, 1e-4, 1.0);
     color += noh_surface_more[1] * pow(away, noh_surface_more[0].y);

@@ -551,15 +551,14 @@ static void a_highlight_is_seen_from_its_point(void **state)
     scene_close(&s);
 }
 
-/* A ball lit from the right: in shade it has one tone, in light another, and between them the edge is as hard and as
- * far as the material says. */
+/* A ball lit from the right, and from above: in shade it has one tone, in light another, and between them the edge is as
+ * hard and as far as the material says. The lamp is lower than the key, and nearer to the viewer. */
 static void a_toon_has_two_tones(void **state)
 {
-    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f }, right[3] = { 1.0f, 0.0f, 0.0f };
+    static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f },
+                       keys[2][3] = { { 1.0f, 0.0f, 0.0f }, { 0.0f, 1.0f, 0.0f } };
     model_material toon = scene_material(values);
-    noh_lighting lighting;
     double worst = 0.0;
-    uint8_t *rgba;
     scene s;
     (void)state;
     toon.surface = NOH_SURFACE_TOON;
@@ -569,18 +568,23 @@ static void a_toon_has_two_tones(void **state)
     toon.surface_values[3] = 0.2f;
     toon.surface_more[0] = 0.6f;
     scene_open(&s, &toon, &scene_black, 0, NULL);
-    key_alone(right, &lighting);
-    rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
-    for (uint32_t x = SIDE / 10; x < SIDE - SIDE / 10; x++) {
-        const double lit = fmin(fmax((pixel_at(x) + 0.2 + 0.4) / 0.8, 0.0), 1.0);
-        for (int c = 0; c < 3; c++) {
-            const double dark = (double)toon.surface_values[c], should = 0.9 * (dark + (1.0 - dark) * lit);
-            worst = fmax(worst, fabs(decoded(rgba[4 * ((size_t)(SIDE / 2) * SIDE + x) + (size_t)c]) - should));
+    for (int k = 0; k < 2; k++) {
+        const double size = k ? hypot(0.4, 0.3) : hypot(1.0, 0.3);
+        noh_lighting lighting;
+        key_alone(keys[k], &lighting);
+        uint8_t *rgba = scene_draw(&s, SPHERE, scene_identity, &lighting);
+        for (uint32_t x = SIDE / 10; x < SIDE - SIDE / 10; x++) {
+            const double at = pixel_at(x), reach = ((k ? 0.0 : at) + 0.3 * sqrt(1.0 - at * at)) / size;
+            const double lit = fmin(fmax((reach + 0.2 + 0.4) / 0.8, 0.0), 1.0);
+            for (int c = 0; c < 3; c++) {
+                const double dark = (double)toon.surface_values[c], should = 0.9 * (dark + (1.0 - dark) * lit);
+                worst = fmax(worst, fabs(decoded(rgba[4 * ((size_t)(SIDE / 2) * SIDE + x) + (size_t)c]) - should));
+            }
         }
+        free(rgba);
     }
     print_message("off by %.4f at most\n", worst);
     assert_true(worst < 0.02);
-    free(rgba);
     scene_close(&s);
 }
 
