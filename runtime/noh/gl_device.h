@@ -358,6 +358,10 @@ const noh_gl_api *noh_gl_lost_api(void);
 typedef struct noh_gl_ledger {
     uint64_t buffer_bytes, texture_bytes, renderbuffer_bytes;
     uint32_t buffers, textures, renderbuffers, framebuffers, programs;
+    /* With stages that share (noh_stage_desc.share): the number of the context. After a lost one add 1, before anything
+     * is made or restored in the new one */
+    uint32_t contexts;
+    struct noh_gl_sharing *sharing; /* private: these stages */
 } noh_gl_ledger;
 
 typedef struct noh_gl_buffer {

@@ -226,6 +226,19 @@ typedef struct noh_stage_gpu noh_stage_gpu; /* noh_gl.h has the only one */
 typedef enum noh_shading { NOH_SHADING_FULL, NOH_SHADING_PHONE } noh_shading;
 
 /* Zero is a good default for every field except kinds and kind_count. */
+/* Another stage, planned before. */
+typedef struct noh_stage_peer {
+    const struct noh_stage_desc *desc;
+    const struct noh_stage_plan *plan;
+} noh_stage_peer;
+
+/* Stages that share and are there for as long as this one: the plan counts only what they do not have. Read by
+ * noh_stage_plan_make and noh_stage_plan_parts alone. Zeros: none */
+typedef struct noh_stage_peers {
+    const noh_stage_peer *peers; /* [peer_count] */
+    uint32_t peer_count;
+} noh_stage_peers;
+
 typedef struct noh_stage_desc {
     const noh_kind_desc *kinds; /* [kind_count]; required */
     uint32_t kind_count;        /* 1..NOH_STAGE_KINDS_MAX */
@@ -269,6 +282,9 @@ typedef struct noh_stage_desc {
      * stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of noh_gl.h; default (NULL) nothing is drawn */
+    /* With the other stages of the same ledger that share, what a pack has on the GPU exists once (noh_gl.h). Default
+     * (NULL) each stage has its own */
+    const noh_stage_peers *share;
 } noh_stage_desc;
 
 /* ---- the plan ---- */
@@ -322,6 +338,7 @@ typedef struct noh_concession {
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
     uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots, at most */
+    uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: what its peers have, and it would take if it were alone */
     uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
     uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer` */
     uint32_t halves;      /* 1: 16-bit accumulators */

@@ -173,6 +173,18 @@ noh budget --desc "$work/cast/stiff.txt" --nominal
 expect 1 'without inertia it is refused'
 says 'needs room for inertia'
 
+printf 'share 1\nkind hero\nmesh puppet.noh\nactor_count 20\n' >"$work/cast/level.txt"
+printf 'peer level.txt\nkind hero\nmesh puppet.noh\nactor_count 1\nkind face\nmesh mask.noh\nactor_count 1\n' >"$work/cast/room.txt"
+noh budget --desc "$work/cast/room.txt" --nominal
+expect 0 'a stage that shares with a peer'
+check 'counts what the other has not' adds_up "$work/out"
+cp "$work/out" "$work/shared"
+sed 's/^peer .*/share 1/' "$work/cast/room.txt" >"$work/cast/alone.txt"
+noh budget --desc "$work/cast/alone.txt" --nominal
+shared=$(awk '$1 == "shared" { print $2 }' "$work/shared")
+check 'and the line of what they share is the difference' test $(($(sum_of 3 "$work/shared") + shared)) = "$(sum_of 3 "$work/out")"
+check 'which is not nothing' test "$shared" -gt 100000
+
 refused() { # LINE MESSAGE : what is in $work/cast/bad.txt is refused so
     noh budget --desc "$work/cast/bad.txt" --nominal
     expect 1 "refused: $2"
@@ -186,6 +198,8 @@ refused 2 "$work/cast/pupet.noh: "
 head -c 5000 "$mask" >"$work/cast/cut.noh"
 printf 'kind hero\nmesh cut.noh\nactor_count 20\n' >"$work/cast/bad.txt"
 refused 2 "$work/cast/cut.noh: "
+printf 'peer bad.txt\nkind hero\nmesh puppet.noh\nactor_count 20\n' >"$work/cast/bad.txt"
+refused 1 'more than 4 peers, or peers of each other'
 noh budget --desc "$work/cast/none.txt"
 expect 1 'a text that is not there'
 says none.txt

@@ -442,7 +442,7 @@ static noh_result morph_init(void *memory, size_t bytes, int empty, noh_error *e
     desc.meshes = &s.mesh;
     desc.mesh_count = 1;
     desc.path = NOH_MORPH_CPU;
-    result = empty ? noh_gl_morph_init_empty(memory, bytes, &on, &desc, NULL, &morph, error)
+    result = empty ? noh_gl_morph_init_empty(memory, bytes, &on, &desc, NULL, NULL, &morph, error)
                    : noh_gl_morph_init(memory, bytes, &on, &desc, &morph, error);
     if (result == NOH_OK) noh_gl_morph_delete(morph);
     return result;

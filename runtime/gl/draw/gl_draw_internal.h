@@ -41,6 +41,11 @@ noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error 
 noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
                                        noh_gl_texture *out, noh_error *error);
 
+/* Make a mesh with the buffers of `of`, which has the same levels. The last mesh that has them deletes them.
+ * errors  as noh_gl_mesh_create */
+noh_result noh_gl_mesh_create_on(const noh_gl_api *api, const noh_mesh *mesh, const noh_gl_mesh *of, noh_gl_mesh *out,
+                                 noh_error *error);
+
 /* Upload the next piece of its pixels.
  * ranges   *at: initially 0, then as left by the previous call; *bytes: most bytes to send, at least 64 for progress;
  *          the bytes sent are subtracted

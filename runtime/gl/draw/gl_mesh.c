@@ -236,6 +236,13 @@ GLuint noh_gl_mesh_make_array(const noh_gl_api *gl, const noh_gl_mesh *m, const 
     return array;
 }
 
+static noh_result make_array(const noh_gl_api *api, noh_gl_mesh *m, noh_error *error)
+{
+    m->vertex_array = noh_gl_mesh_make_array(api, m, NULL);
+    label_mesh(api, m);
+    return noh_gl_error_check(api, "the driver refused the vertex array of a mesh", 0, error);
+}
+
 /* room: determines the sizes; mesh: the mesh to draw; contents: `mesh`, or NULL for none. */
 static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_mesh *room, const noh_mesh *mesh,
                        const noh_mesh *contents, noh_gl_mesh *out, noh_error *error)
@@ -273,11 +280,25 @@ static noh_result make(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_m
         noh_gl_mesh_delete(api, ledger, &m);
         return result;
     }
-    m.vertex_array = noh_gl_mesh_make_array(api, &m, NULL);
-    label_mesh(api, &m);
-    result = noh_gl_error_check(api, "the driver refused the vertex array of a mesh", 0, error);
+    result = make_array(api, &m, error);
     if (result) {
         noh_gl_mesh_delete(api, ledger, &m);
+        return result;
+    }
+    *out = m;
+    return NOH_OK;
+}
+
+noh_result noh_gl_mesh_create_on(const noh_gl_api *api, const noh_mesh *mesh, const noh_gl_mesh *of, noh_gl_mesh *out,
+                                 noh_error *error)
+{
+    noh_gl_mesh m = *of;
+    noh_result result;
+    m.mesh = *mesh;
+    noh_gl_error_take(api);
+    result = make_array(api, &m, error);
+    if (result) {
+        if (m.vertex_array) api->DeleteVertexArrays(1, &m.vertex_array);
         return result;
     }
     *out = m;

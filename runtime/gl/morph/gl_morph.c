@@ -140,8 +140,8 @@ static noh_gl_morph *build(noh_arena arena, const noh_gl_device *device, const n
 }
 
 noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_device *device,
-                                   const noh_gl_morph_desc *desc, const GLuint *programs, noh_gl_morph **morph,
-                                   noh_error *error)
+                                   const noh_gl_morph_desc *desc, const GLuint *programs, const noh_gl_texture *tiles,
+                                   noh_gl_morph **morph, noh_error *error)
 {
     noh_gl_morph_plan plan;
     noh_gl_morph *m;
@@ -159,9 +159,8 @@ noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_devi
     }
     m = build(arena, device, desc, plan);
     m->programs = programs;
-    result = make_gl_objects(m, device->log, device->log_bytes, error);
+    result = noh_gl_morph_remake(m, tiles, device->log, device->log_bytes, error);
     if (result) {
-        noh_gl_morph_delete(m);
         return result;
     }
     *morph = m;
@@ -171,7 +170,7 @@ noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_devi
 noh_result noh_gl_morph_init(void *memory, size_t bytes, const noh_gl_device *device, const noh_gl_morph_desc *desc,
                              noh_gl_morph **morph, noh_error *error)
 {
-    return noh_gl_morph_init_empty(memory, bytes, device, desc, NULL, morph, error);
+    return noh_gl_morph_init_empty(memory, bytes, device, desc, NULL, NULL, morph, error);
 }
 
 noh_result noh_gl_morph_compile(const noh_gl_device *device, noh_morph_path path, const noh_gl_morph_desc *desc,
@@ -225,16 +224,54 @@ void noh_gl_morph_forget(noh_gl_morph *m)
     delete_objects(m, noh_gl_lost_api());
 }
 
-noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+noh_result noh_gl_morph_remake(noh_gl_morph *m, const noh_gl_texture *tiles, char *log, size_t log_bytes,
+                               noh_error *error)
 {
     noh_result result;
-    noh_gl_morph_forget(m);
     mark_all_dirty(m);
+    m->tiles_taken = tiles != NULL;
+    if (tiles) m->tiles = *tiles;
     result = make_gl_objects(m, log, log_bytes, error);
     if (result) {
+        if (tiles) memset(&m->tiles, 0, sizeof m->tiles);
         noh_gl_morph_delete(m);
     }
     return result;
+}
+
+noh_result noh_gl_morph_restore(noh_gl_morph *m, char *log, size_t log_bytes, noh_error *error)
+{
+    noh_gl_morph_forget(m);
+    return noh_gl_morph_remake(m, NULL, log, log_bytes, error);
+}
+
+/* ---- delta tiles of others ---- */
+
+noh_gl_tiles_key noh_gl_morph_key(const noh_mesh *meshes, uint32_t count, const noh_gl_morph_plan *plan)
+{
+    noh_gl_tiles_key key;
+    const noh_mesh *finest = meshes;
+    int one = count && plan->path != NOH_MORPH_CPU && plan->path != NOH_MORPH_STREAMS; /* those have no tiles */
+    memset(&key, 0, sizeof key);
+    for (uint32_t i = 0; i < count; i++) {
+        one &= meshes[i].rects == meshes->rects && meshes[i].texels == meshes->texels;
+        if (meshes[i].header->level < finest->header->level) finest = &meshes[i];
+    }
+    if (!one) return key;
+    key.mesh = finest->header;
+    key.transfer = finest->transfer;
+    key.block_count = plan->block_count;
+    key.wide = (uint16_t)plan->wide;
+    key.by_block = (uint16_t)noh_gl_morph_has_lists(plan->path);
+    return key;
+}
+
+noh_gl_tiles_key noh_gl_morph_key_of(const noh_gl_morph *m)
+{
+    const noh_gl_morph_mesh *owner = &m->meshes[m->meshes[0].owner];
+    int one = m->table_count == m->mesh_count;
+    for (uint32_t i = 1; i < m->mesh_count; i++) one &= m->meshes[i].owner == m->meshes[0].owner;
+    return noh_gl_morph_key(&owner->mesh, one ? 1u : 0u, &m->plan);
 }
 
 /* ---- asking ---- */
@@ -322,6 +359,7 @@ int noh_gl_morph_fill(noh_gl_morph *morph, const noh_mesh *from, uint32_t *at, u
     int done = 1;
     NOH_ASSERT(morph && (morph->programs || morph->table_count > morph->mesh_count) && from && at && bytes);
     finest = noh_mesh_at_lod(from, morph->meshes[morph->meshes[0].owner].mesh.header->level);
+    if (morph->tiles_taken) *at = morph->meshes[morph->meshes[0].owner].tile_count;
     if (morph->plan.path != NOH_MORPH_CPU) {
         done = noh_gl_morph_fill_tiles(morph, &morph->meshes[morph->meshes[0].owner], &finest, at, bytes);
     }

@@ -51,10 +51,27 @@ uint32_t noh_gl_morph_strips(const noh_mesh *mesh);
  * then an update may be made.
  * programs  [2] without and with changes of occlusion (noh_gl_morph_compile); borrowed, also by restores: their names
  *           may change. NULL: as noh_gl_morph_init
+ * tiles     filled delta tiles of accumulators with the same key, whose name this one takes; the last that has it
+ *           deletes it. NULL: it makes its own
  * errors    UNSUPPORTED the program that it needs is 0; as noh_gl_morph_init */
 noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_device *device,
-                                   const noh_gl_morph_desc *desc, const GLuint *programs, noh_gl_morph **morph,
-                                   noh_error *error);
+                                   const noh_gl_morph_desc *desc, const GLuint *programs, const noh_gl_texture *tiles,
+                                   noh_gl_morph **morph, noh_error *error);
+
+/* After noh_gl_morph_forget, as noh_gl_morph_restore. tiles: as above. */
+noh_result noh_gl_morph_remake(noh_gl_morph *morph, const noh_gl_texture *tiles, char *log, size_t log_bytes,
+                               noh_error *error);
+
+/* What the texture of delta tiles depends on, all bytes of it; `mesh` NULL: there is none that others can use. */
+typedef struct noh_gl_tiles_key {
+    const noh_mesh_header *mesh; /* whose targets it has */
+    const noh_transfer_header *transfer;
+    uint32_t block_count;
+    uint16_t wide, by_block;
+} noh_gl_tiles_key;
+/* meshes: [count] of a desc without `coarse` */
+noh_gl_tiles_key noh_gl_morph_key(const noh_mesh *meshes, uint32_t count, const noh_gl_morph_plan *plan);
+noh_gl_tiles_key noh_gl_morph_key_of(const noh_gl_morph *morph);
 
 /* Whether a path sums by a program of its own. */
 int noh_gl_morph_has_program(noh_morph_path path);
@@ -146,6 +163,7 @@ struct noh_gl_morph {
     noh_gl_texture layers;
     noh_gl_texture tiles; /* delta texels, in tiles of 4 x 4 (gl_morph_tiles.c) */
     uint32_t tiles_across_log2;
+    uint32_t tiles_taken;      /* 1: they were filled when they came */
     noh_gl_table record_table;     /* records of active targets, or lists */
     noh_gl_table starts;           /* where lists begin, by block */
     noh_gl_buffer stream, indices; /* vertices of blocks, gather's instances, or the streams; quads (blended paths) */

@@ -273,10 +273,10 @@ int noh_gl_morph_fill_tiles(noh_gl_morph *m, const noh_gl_morph_mesh *to, const 
 noh_result noh_gl_morph_make_tiles(noh_gl_morph *m, noh_error *error)
 {
     const noh_gl_texture_desc desc = noh_gl_morph_tiles_desc(&m->plan, &m->tiles_across_log2);
-    noh_result result = noh_gl_texture_create(m->gl, m->ledger, &desc, &m->tiles, error);
+    noh_result result = m->tiles_taken ? NOH_OK : noh_gl_texture_create(m->gl, m->ledger, &desc, &m->tiles, error);
     for (uint32_t i = 0; !result && i < m->table_count; i++) {
         const noh_gl_morph_mesh *mesh = &m->meshes[i];
-        uint32_t at = 0, bytes = UINT32_MAX;
+        uint32_t at = m->tiles_taken ? mesh->tile_count : 0, bytes = UINT32_MAX;
         while (noh_gl_morph_is_there(m, i) && !noh_gl_morph_fill_tiles(m, mesh, &mesh->mesh, &at, &bytes)) {
             bytes = UINT32_MAX;
         }

@@ -32,7 +32,8 @@ typedef struct measure {
     noh_stage_list *list; /* NULL: not wanted */
     uint64_t gpu_bytes;
     uint32_t morph_path;
-    int direct; /* draws sum (noh_gl_sums_in_draws) */
+    int direct;            /* draws sum (noh_gl_sums_in_draws) */
+    uint64_t shared_bytes; /* that peers have, not in gpu_bytes */
 } measure;
 
 #define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
@@ -84,7 +85,15 @@ NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const
     model->room = noh_gl_room_make(mesh, coarse, room);
 }
 
-static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model, noh_error *error)
+/* Bytes on the GPU, 0 where peers have them. */
+static uint64_t own_bytes(measure *m, int peers_have, uint64_t bytes)
+{
+    if (peers_have) m->shared_bytes += bytes;
+    return peers_have ? 0 : bytes;
+}
+
+/* peers: NOH_PEER_* */
+static noh_result visit_model(measure *m, noh_gl_site site, unsigned peers, noh_gl_model *model, noh_error *error)
 {
     const noh_mesh mesh = noh_gl_site_mesh(m->desc, m->plan, site);
     const size_t from = m->arena.used;
@@ -92,6 +101,7 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     noh_gl_morph_desc d;
     noh_gl_morph_plan plan;
     noh_result result = NOH_OK;
+    const noh_gl_texture *filled = NULL;
     size_t targets;
     void *memory;
     uint8_t *sides;
@@ -99,15 +109,12 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     const int slot = m->desc->kinds[site.kind].changes != 0;
     const int later = noh_gl_site_coarse(m->desc, m->plan, site, &coarse);
     void *room = noh_arena_carve(&m->arena, later ? noh_gl_room_size(&mesh) : 0, 16);
-    add(m, "mesh buffers", site.kind, from, noh_gl_mesh_bytes(&mesh));
+    add(m, "mesh buffers", site.kind, from, own_bytes(m, (peers & NOH_PEER_MESH) != 0, noh_gl_mesh_bytes(&mesh)));
     if (model) {
-        const noh_gl_device *on = &m->gl->device;
         model->load_kind = NOH_NONE;
         model->waits = slot;
         if (later) set_later(m, site, &mesh, &coarse, room, model);
-        result = later  ? noh_gl_model_make_mesh(on, model, error)
-                 : slot ? noh_gl_mesh_create_empty(on->api, on->ledger, &mesh, &mesh, &model->mesh, error)
-                        : noh_gl_mesh_create(on->api, on->ledger, &mesh, &model->mesh, error);
+        result = noh_gl_model_make_mesh(m->gl, model, &mesh, slot, error);
     }
     if (result != NOH_OK || mesh.header->touched_count == 0) {
         return result;
@@ -127,13 +134,19 @@ static noh_result visit_model(measure *m, noh_gl_site site, noh_gl_model *model,
     targets = m->arena.used;
     memory = noh_arena_carve(&m->arena, (size_t)plan.cpu_bytes, 16);
     sides = CARVE(m, m->desc->motion ? plan.instance_count / 2u : 0, uint8_t);
-    add(m, "morph targets", site.kind, targets, plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes);
+    add(m, "morph targets", site.kind, targets,
+        plan.gpu_bytes - plan.layer_bytes - plan.vertex_bytes - plan.delta_bytes +
+            own_bytes(m, (peers & NOH_PEER_TILES) != 0, plan.delta_bytes));
     add(m, plan.vertex_ring ? "morphed vertices" : "accumulators", site.kind, m->arena.used,
         plan.layer_bytes + plan.vertex_bytes);
     if (!model) return NOH_OK;
     if (m->desc->motion) model->sides = memset(sides, 0, plan.instance_count / 2u);
+    if (noh_gl_shares(m->gl) && !later) {
+        const noh_gl_tiles_key key = noh_gl_morph_key(d.meshes, d.mesh_count, &plan);
+        filled = noh_gl_shared_tiles(m->gl, &key);
+    }
     result = noh_gl_morph_init_empty(memory, (size_t)plan.cpu_bytes, &m->gl->device, &d, slot ? m->gl->programs : NULL,
-                                     &model->morph, error);
+                                     filled, &model->morph, error);
     model->part_count = d.mesh_count;
     return result == NOH_OK ? noh_gl_model_set_mesh(model, error) : result;
 }
@@ -280,10 +293,16 @@ static void carve_head(measure *m)
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
     noh_gl_views *views = CARVE(m, m->desc->motion ? 2u : 0, noh_gl_views);
+    noh_gl_sharing *sharing = CARVE(m, NOH_STAGES_SHARE && m->desc->share, noh_gl_sharing);
     if (m->gl) { /* a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
         gl->models = of;
+        gl->sharing = NULL;
+        if (NOH_STAGES_SHARE && m->desc->share) {
+            gl->sharing = memset(sharing, 0, sizeof *sharing);
+            sharing->context = gl->device.ledger->contexts;
+        }
         gl->model_count = models;
         gl->meshes = meshes;
         gl->mesh_count = mesh_count;
@@ -333,7 +352,11 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
     noh_gl_item *item = gl ? &gl->kinds[site.kind].items[site.item] : NULL;
     noh_result result = NOH_OK;
     if (owner.kind == site.kind && owner.item == site.item) {
-        result = visit_model(m, site, model, error);
+        unsigned peers = 0;
+        if (NOH_STAGES_SHARE && m->desc->share) {
+            peers = noh_gl_peers_have(m->desc, m->plan, m->caps, site, m->direct);
+        }
+        result = visit_model(m, site, peers, model, error);
         if (model && !m->desc->kinds[site.kind].changes) gl->meshes[index] = mesh_for_renderers(m, site, model);
     }
     if (item) {
@@ -346,8 +369,9 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
 static noh_result count_pictures(measure *m, uint32_t kind, noh_error *error)
 {
     const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, kind);
-    uint64_t bytes;
-    const noh_result result = noh_gl_pictures_plan(m->desc, kind, m->caps, &bytes, error);
+    uint64_t bytes, shared;
+    const noh_result result = noh_gl_pictures_plan(m->desc, kind, m->caps, &bytes, &shared, error);
+    m->shared_bytes += shared;
     if (bytes) add(m, "textures", kind, m->arena.used, bytes);
     if (covers) add(m, "covers", kind, m->arena.used, covers);
     return result;
@@ -371,7 +395,7 @@ static noh_result visit(measure *m, noh_error *error)
     }
     carve_slots(m);
     if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
-    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, &m->gl->device, m->gl->kinds, error) : result;
+    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, m->gl, error) : result;
 }
 
 noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps,
@@ -379,7 +403,7 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
                              noh_error *error)
 {
     measure m = { desc, desc, plan, caps, memory ? noh_arena_over(memory, SIZE_MAX) : noh_arena_measure(),
-                  gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps) };
+                  gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps), 0 };
     noh_gl_site site = { kind, 0 };
     noh_result result = NOH_OK;
     carve_kind(&m, kind, gl ? &gl->kinds[kind] : NULL);
@@ -407,10 +431,11 @@ static noh_result measure_slot(const noh_stage_desc *desc, const struct noh_gl_c
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                 uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
 {
-    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0, 0 };
     const noh_result result = visit(&m, error);
     *cpu_bytes = m.arena.used;
     *gpu_bytes = m.gpu_bytes;
+    plan->shared_bytes = m.shared_bytes;
     if (m.morph_path || !noh_stage_has_slots(desc)) plan->morph_path = m.morph_path;
     return result;
 }
@@ -418,7 +443,7 @@ static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_
 static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                        noh_stage_list *list)
 {
-    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0, 0 };
     (void)visit(&m, NULL);
 }
 
@@ -441,7 +466,7 @@ static noh_result make_renderer(const noh_stage_gl *gl, const noh_stage *s, cons
 static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
 {
     noh_stage_gl *gl = stage->gpu;
-    noh_gl_pictures_delete(&stage->desc, d, gl->kinds, NOH_NONE);
+    noh_gl_pictures_delete(&stage->desc, d, gl, NOH_NONE);
     noh_gl_covers_delete(&stage->desc, stage->plan, d, gl->kinds, NOH_NONE);
     noh_gl_slots_forget_programs(gl, d);
     for (uint32_t i = 0; i < gl->model_count; i++) {
@@ -449,9 +474,15 @@ static void let_go_meshes(noh_stage *stage, const noh_gl_device *d)
     }
 }
 
-static void destroy(noh_stage *stage)
+static void let_go_shared(const noh_stage_gl *gl)
+{
+    for (uint32_t i = 0; i < gl->model_count && noh_gl_shares(gl); i++) noh_gl_share_let_go(gl, &gl->models[i]);
+}
+
+static void delete_all(noh_stage *stage)
 {
     noh_stage_gl *gl = stage->gpu;
+    let_go_shared(gl);
     if (gl->renderer->gl) noh_gl_renderer_delete(gl->renderer);
     if (gl->light && gl->light->gl) noh_gl_light_delete(gl->light);
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
@@ -465,12 +496,19 @@ static void destroy(noh_stage *stage)
     let_go_meshes(stage, &gl->device);
 }
 
+static void destroy(noh_stage *stage)
+{
+    delete_all(stage);
+    if (noh_gl_shares(stage->gpu)) noh_gl_share_leave(stage);
+}
+
 /* The context is lost with its objects: only update the ledger. */
 static void forget(noh_stage *stage)
 {
     noh_stage_gl *gl = stage->gpu;
     noh_gl_device lost = gl->device;
     lost.api = noh_gl_lost_api();
+    let_go_shared(gl);
     if (gl->renderer->gl) noh_gl_renderer_forget(gl->renderer);
     if (gl->light) noh_gl_light_forget(gl->light);
     for (uint32_t i = 0; i < stage->desc.kind_count; i++) {
@@ -513,7 +551,7 @@ static noh_result open_slots(noh_stage *s, const noh_stage_desc *asked, noh_erro
 static noh_result init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc, noh_stage *stage,
                        noh_error *error)
 {
-    measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0 };
+    measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
@@ -522,6 +560,7 @@ static noh_result init(void *memory, size_t bytes, const void *device, const noh
     m.gl = &first;
     result = visit(&m, error);
     stage->gpu = m.gl;
+    if (noh_gl_shares(m.gl)) noh_gl_share_join(stage);
     if (result == NOH_OK) result = open_slots(stage, desc, error);
     if (result == NOH_OK) {
         m.gl->renderer_desc.layers_uint = layers_of(stage, m.gl);
@@ -573,7 +612,7 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
         result = restore_kind(stage, i, error);
     }
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
-    if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, &gl->device, gl->kinds, error);
+    if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, gl, error);
     if (result == NOH_OK) result = noh_gl_covers_create(&stage->desc, stage->plan, &gl->device, gl->kinds, error);
     for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
         if (!gl->kinds[i].slot || !gl->kinds[i].items) continue;
@@ -587,10 +626,16 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
  * to be deleted in the new one. */
 static noh_result restore(noh_stage *stage, noh_error *error)
 {
-    noh_result result;
+    const noh_stage_gl *gl = stage->gpu;
+    const int shares = noh_gl_shares(gl);
+    noh_result result = shares ? noh_gl_share_check_restore(gl, error) : NOH_OK;
+    if (result != NOH_OK) return result;
     forget(stage);
+    if (shares) gl->sharing->context = gl->device.ledger->contexts;
     result = restore_all(stage, error);
-    if (result != NOH_OK) destroy(stage);
+    if (result == NOH_OK) return result;
+    delete_all(stage);
+    if (shares) gl->sharing->context--; /* it has no object of this context */
     return result;
 }
 

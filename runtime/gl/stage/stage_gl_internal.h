@@ -8,6 +8,7 @@
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/draw/gl_renderer_internal.h"
 #include "gl/draw/gl_skin_internal.h"
+#include "gl/morph/gl_morph_internal.h"
 #include "noh/base.h"
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
@@ -27,6 +28,7 @@ typedef struct noh_gl_model {
     uint32_t mesh_index; /* in the packs */
     int loaded;          /* 1: they are used */
     int waits;           /* of a slot whose kind is not filled: its sums are not updated */
+    int taken;           /* 1: its buffers were filled when they came (stage_gl_share.c) */
     noh_mesh coarse;     /* the finest level that the kind's own pack has */
     noh_mesh room;       /* the finest of the plan: copies of its headers and its submeshes, and nothing else */
     uint64_t mesh_at;    /* how far the upload is */
@@ -115,14 +117,21 @@ typedef struct noh_gl_kind {
     noh_gl_filling filling;
 } noh_gl_kind;
 
+/* A stage that shares, linked by its ledger. */
+typedef struct noh_gl_sharing {
+    noh_stage *stage;
+    struct noh_gl_sharing *next;
+    uint32_t context; /* noh_gl_ledger.contexts when its objects were made */
+} noh_gl_sharing;
+
 typedef struct noh_stage_gl {
     noh_gl_device device;
     noh_gl_kind *kinds;
     noh_gl_model *models;
-    uint32_t model_count;
+    noh_gl_sharing *sharing; /* NULL: it does not share */
+    uint32_t model_count, mesh_count;
     noh_mesh *meshes; /* [mesh_count] full, for renderers: of the models of kinds that stay, then of all kinds that the
                        * slots were planned for */
-    uint32_t mesh_count;
     noh_gl_renderer_desc renderer_desc; /* without meshes and shaders */
     unsigned programs[2];               /* of the sums of slots; 0: none needs it, or its context was lost */
     uint8_t needs_program[2];
@@ -210,8 +219,11 @@ noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan,
 /* Makes the copy for noh_gl_model.room in `memory`: noh_gl_room_size bytes, aligned to 16. */
 size_t noh_gl_room_size(const noh_mesh *mesh);
 noh_mesh noh_gl_room_make(const noh_mesh *mesh, const noh_mesh *coarse, void *memory);
-/* Make the mesh of a model, with what its own pack has. */
-noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error);
+/* Make the mesh of a model: of a slot empty, else with what the kind's own pack has; with buffers of others where it
+ * shares.
+ * mesh  where nothing comes later */
+noh_result noh_gl_model_make_mesh(const noh_stage_gl *gl, noh_gl_model *model, const noh_mesh *mesh, int slot,
+                                  noh_error *error);
 /* Its mesh is what its accumulators' finished vertices are drawn by. */
 noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error);
 /* ---- slots (stage_gl_slot.c) ---- */
@@ -248,6 +260,28 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
                              noh_stage_gl *gl, uint32_t kind, void *memory, noh_kind_room *room, uint32_t *morph_path,
                              noh_error *error);
 
+/* ---- what stages share (stage_gl_share.c) ---- */
+
+static inline int noh_gl_shares(const noh_stage_gl *gl)
+{
+    return NOH_STAGES_SHARE && gl->sharing;
+}
+
+/* All but the last only where a stage shares. In and out; errors  ARG it has objects of the ledger's context */
+void noh_gl_share_join(noh_stage *stage);
+void noh_gl_share_leave(const noh_stage *stage);
+noh_result noh_gl_share_check_restore(const noh_stage_gl *gl, noh_error *error);
+/* What other models and pictures have, filled; NULL: nothing. */
+const noh_gl_mesh *noh_gl_shared_mesh(const noh_stage_gl *gl, const noh_mesh *mesh);
+const noh_gl_texture *noh_gl_shared_tiles(const noh_stage_gl *gl, const noh_gl_tiles_key *key);
+/* Before the objects of a model are deleted: it forgets those that others have, too. */
+void noh_gl_share_let_go(const noh_stage_gl *gl, noh_gl_model *model);
+/* What the peers of a desc have of a site's model. */
+#define NOH_PEER_MESH 1u
+#define NOH_PEER_TILES 2u
+unsigned noh_gl_peers_have(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps,
+                           noh_gl_site site, int direct);
+
 /* Make the mesh and accumulators of a model again in a new context, with the levels that it had. */
 noh_result noh_gl_model_restore(const noh_stage *stage, noh_gl_model *model, int slot, noh_error *error);
 int noh_gl_load(noh_stage *stage, uint32_t load_kind, int anew, uint32_t *bytes);
@@ -267,22 +301,22 @@ void noh_gl_choose_covers(noh_stage *stage);
 
 /* ---- textures ---- */
 
-/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes.
+/* The textures of a kind's sets that no kind before it has, no set before theirs: their bytes; `shared`: those that
+ * peers have, which are not in `bytes`.
  * errors  UNSUPPORTED a texture has blocks that the context does not support */
 noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
-                                noh_error *error);
+                                uint64_t *shared, noh_error *error);
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
 /* Make, make again in a new context, delete the textures of all kinds (NOH_NONE). Of a slot: make them without pixels,
  * fill them by a piece. */
-noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                  noh_error *error);
-noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                   noh_error *error);
-noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                        uint32_t kind, noh_error *error);
-int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind,
-                         noh_gl_filling *f, uint32_t *bytes);
-void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind);
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error);
+noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error);
+noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
+                                        noh_error *error);
+int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_gl_filling *f,
+                         uint32_t *bytes);
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, const noh_stage_gl *gl,
+                            uint32_t kind);
 
 /* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
 typedef struct noh_gl_tiles {

@@ -60,13 +60,26 @@ static void fill_mesh(const noh_gl_device *device, const noh_gl_model *model, co
     } while (!noh_gl_mesh_fill(device->api, &model->mesh, from, &at, &bytes));
 }
 
-noh_result noh_gl_model_make_mesh(const noh_gl_device *device, noh_gl_model *model, noh_error *error)
+static noh_result make_coarse(const noh_gl_device *device, noh_gl_model *model, noh_error *error)
 {
     const noh_result result = noh_gl_mesh_create_empty(device->api, device->ledger, &model->room, &model->coarse,
                                                        &model->mesh, error);
     if (result) return result;
     fill_mesh(device, model, &model->coarse);
     return noh_gl_error_check(device->api, "the driver refused the buffers of a mesh", 0, error);
+}
+
+noh_result noh_gl_model_make_mesh(const noh_stage_gl *gl, noh_gl_model *model, const noh_mesh *mesh, int slot,
+                                  noh_error *error)
+{
+    const noh_gl_device *d = &gl->device;
+    const noh_gl_mesh *of;
+    if (model->load_kind != NOH_NONE) return make_coarse(d, model, error);
+    of = noh_gl_shares(gl) ? noh_gl_shared_mesh(gl, mesh) : NULL;
+    model->taken = of != NULL;
+    if (of) return noh_gl_mesh_create_on(d->api, mesh, of, &model->mesh, error);
+    return slot ? noh_gl_mesh_create_empty(d->api, d->ledger, mesh, mesh, &model->mesh, error)
+                : noh_gl_mesh_create(d->api, d->ledger, mesh, &model->mesh, error);
 }
 
 /* The finest level of the plan in the pack that was loaded later, with the materials and skin of the kind's pack. */
@@ -121,15 +134,14 @@ void noh_gl_use(noh_stage *s, uint32_t load_kind, int loaded)
 
 /* ---- a new context ---- */
 
-static noh_result restore_mesh(const noh_gl_device *d, noh_gl_model *model, int slot, noh_error *error)
+static noh_result restore_morph(const noh_stage_gl *gl, noh_gl_morph *morph, noh_error *error)
 {
-    const noh_mesh mesh = model->mesh.mesh;
-    if (model->load_kind == NOH_NONE && !slot) {
-        return noh_gl_mesh_restore(d->api, d->ledger, &model->mesh, error);
+    const noh_gl_texture *tiles = NULL;
+    if (noh_gl_shares(gl)) {
+        const noh_gl_tiles_key key = noh_gl_morph_key_of(morph);
+        tiles = noh_gl_shared_tiles(gl, &key);
     }
-    noh_gl_mesh_delete(noh_gl_lost_api(), d->ledger, &model->mesh);
-    return slot ? noh_gl_mesh_create_empty(d->api, d->ledger, &mesh, &mesh, &model->mesh, error)
-                : noh_gl_model_make_mesh(d, model, error);
+    return noh_gl_morph_remake(morph, tiles, NULL, 0, error);
 }
 
 noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
@@ -143,9 +155,10 @@ noh_result noh_gl_model_set_mesh(const noh_gl_model *model, noh_error *error)
 
 noh_result noh_gl_model_restore(const noh_stage *s, noh_gl_model *model, int slot, noh_error *error)
 {
-    const noh_gl_device *d = &((const noh_stage_gl *)s->gpu)->device;
-    noh_result result = restore_mesh(d, model, slot, error);
-    if (result == NOH_OK && model->morph) result = noh_gl_morph_restore(model->morph, NULL, 0, error);
+    const noh_stage_gl *gl = s->gpu;
+    const noh_mesh mesh = model->mesh.mesh;
+    noh_result result = noh_gl_model_make_mesh(gl, model, &mesh, slot, error);
+    if (result == NOH_OK && model->morph) result = restore_morph(gl, model->morph, error);
     if (result == NOH_OK && model->morph) result = noh_gl_model_set_mesh(model, error);
     model->mesh_at = 0;
     model->morph_at = 0;

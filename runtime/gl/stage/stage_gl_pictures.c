@@ -1,5 +1,6 @@
 /* stage_gl_pictures.c: the textures of all kinds and of their texture sets. The GPU holds each texture of a pack
- * once: the first set that has it owns it, the others copy its name. */
+ * once: the first set that has it owns it, the others copy its name. An owner of a stage that shares takes the name from
+ * an owner that has it already (stage_gl_share.c). */
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "noh/base.h"
@@ -87,17 +88,88 @@ static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
     return where->kind < end;
 }
 
+/* ---- stages that share ---- */
+
+/* The next owner of a texture, in all stages of this one's context, and what it has; NULL at the end. `whole`: of kinds
+ * that are uploaded. */
+typedef struct walk {
+    const noh_gl_sharing *at;
+    site where;
+} walk;
+
+static walk begin(const noh_stage_gl *gl)
+{
+    return (walk){ gl->device.ledger->sharing, { 0, 0, UINT32_MAX } };
+}
+
+static const noh_gl_texture *next_owner(const noh_stage_gl *gl, walk *w, int whole)
+{
+    for (; w->at; w->at = w->at->next, w->where = (site){ 0, 0, UINT32_MAX }) {
+        const noh_stage *s = w->at->stage;
+        const noh_stage_gl *other = s->gpu;
+        while (w->at->context == gl->sharing->context && next_site(&s->desc, s->desc.kind_count, &w->where)) {
+            noh_texture texture;
+            if (!other->kinds[w->where.kind].pictures || !owns(&s->desc, w->where, &texture)) continue;
+            if (!whole || !s->kinds[w->where.kind].finer.hidden) return at(other->kinds, &s->desc, w->where);
+        }
+    }
+    return NULL;
+}
+
+static const noh_gl_texture *find_shared(const noh_stage_desc *desc, const noh_stage_gl *gl, site where)
+{
+    const noh_pack *pack, *has;
+    const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
+    walk w = begin(gl);
+    const noh_gl_texture *found;
+    while ((found = next_owner(gl, &w, 1)) != NULL) {
+        const noh_kind_desc *kind = &w.at->stage->desc.kinds[w.where.kind];
+        if (!found->name || noh_stage_worn(kind, w.where.set, w.where.texture, &has) != index) continue;
+        if (has->bytes == pack->bytes) return found;
+    }
+    return NULL;
+}
+
+static int others_have(const noh_stage_gl *gl, const noh_gl_texture *own)
+{
+    walk w = begin(gl);
+    const noh_gl_texture *other;
+    while ((other = next_owner(gl, &w, 0)) != NULL) {
+        if (other != own && other->name == own->name) return 1;
+    }
+    return 0;
+}
+
+static int peers_have(const noh_stage_desc *desc, site where)
+{
+    const noh_pack *pack;
+    const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
+    if (!desc->share || desc->kinds[where.kind].changes) return 0;
+    for (uint32_t p = 0; p < desc->share->peer_count; p++) {
+        const noh_stage_desc *peer = desc->share->peers[p].desc;
+        for (uint32_t k = 0; k < peer->kind_count; k++) {
+            uint32_t texture;
+            for (uint32_t set = 0; set <= peer->kinds[k].texture_set_count; set++) {
+                if (!peer->kinds[k].changes && has(&peer->kinds[k], set, pack, index, &texture)) return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+/* ---- all kinds ---- */
+
 noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
-                                noh_error *error)
+                                uint64_t *shared, noh_error *error)
 {
     site where = { kind, 0, UINT32_MAX };
     noh_result result = NOH_OK;
-    *bytes = 0;
+    *bytes = *shared = 0;
     while (result == NOH_OK && next_site(desc, kind + 1u, &where)) {
         noh_texture texture;
         if (!owns(desc, where, &texture)) continue;
         result = noh_gl_picture_check(&texture, caps->astc, error);
-        *bytes += noh_gl_picture_bytes(&texture, caps->etc2);
+        *(NOH_STAGES_SHARE && peers_have(desc, where) ? shared : bytes) += noh_gl_picture_bytes(&texture, caps->etc2);
     }
     return result;
 }
@@ -105,19 +177,27 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
 typedef enum making { CREATE, CREATE_EMPTY, RESTORE } making;
 
 /* kind: NOH_NONE: of all kinds that have room for them. */
-static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_gl_kind *kinds, uint32_t kind,
-                       making how, noh_error *error)
+static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, making how,
+                       noh_error *error)
 {
+    const noh_gl_device *d = &gl->device;
+    noh_gl_kind *kinds = gl->kinds;
     site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
     const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
     noh_result result = NOH_OK;
     while (result == NOH_OK && next_site(desc, end, &where)) {
+        const noh_gl_texture *shared = NULL;
         noh_gl_texture *to;
         noh_texture texture;
+        int is_owner;
         if (!kinds[where.kind].pictures) continue;
         to = at(kinds, desc, where);
-        if (!owns(desc, where, &texture)) {
+        is_owner = owns(desc, where, &texture);
+        if (is_owner && noh_gl_shares(gl)) shared = find_shared(desc, gl, where);
+        if (!is_owner) {
             *to = *at(kinds, desc, owner_of(desc, where));
+        } else if (shared) {
+            *to = *shared;
         } else if (how == RESTORE && !kinds[where.kind].slot) {
             result = noh_gl_picture_restore(d->api, d->ledger, &texture, to, error);
         } else if (how != CREATE) {
@@ -130,34 +210,33 @@ static noh_result make(const noh_stage_desc *desc, const noh_gl_device *d, noh_g
     return result;
 }
 
-noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                  noh_error *error)
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error)
 {
-    return make(desc, device, kinds, NOH_NONE, CREATE, error);
+    return make(desc, gl, NOH_NONE, CREATE, error);
 }
 
-noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                        uint32_t kind, noh_error *error)
+noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
+                                        noh_error *error)
 {
-    return make(desc, device, kinds, kind, CREATE_EMPTY, error);
+    return make(desc, gl, kind, CREATE_EMPTY, error);
 }
 
-noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds,
-                                   noh_error *error)
+noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error)
 {
-    return make(desc, device, kinds, NOH_NONE, RESTORE, error);
+    return make(desc, gl, NOH_NONE, RESTORE, error);
 }
 
-int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind,
-                         noh_gl_filling *f, uint32_t *bytes)
+int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_gl_filling *f,
+                         uint32_t *bytes)
 {
     site where = { kind, 0, UINT32_MAX };
     uint32_t index = 0;
     for (; next_site(desc, kind + 1u, &where); index++) {
+        const noh_gl_texture *to = at(gl->kinds, desc, where);
         noh_texture texture;
         if (index < f->picture) continue;
-        if (owns(desc, where, &texture) &&
-            !noh_gl_picture_fill(device->api, &texture, at(kinds, desc, where), &f->at, bytes))
+        if (owns(desc, where, &texture) && !(noh_gl_shares(gl) && others_have(gl, to)) && /* theirs are filled */
+            !noh_gl_picture_fill(gl->device.api, &texture, to, &f->at, bytes))
             return 0;
         f->at = 0;
         f->picture = index + 1u;
@@ -165,13 +244,17 @@ int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_gl_device *device
     return 1;
 }
 
-void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, noh_gl_kind *kinds, uint32_t kind)
+void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, const noh_stage_gl *gl,
+                            uint32_t kind)
 {
     site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
     const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
     while (next_site(desc, end, &where)) {
+        noh_gl_texture *of;
         noh_texture texture;
-        if (!kinds[where.kind].pictures || !owns(desc, where, &texture)) continue;
-        noh_gl_texture_delete(device->api, device->ledger, at(kinds, desc, where));
+        if (!gl->kinds[where.kind].pictures || !owns(desc, where, &texture)) continue;
+        of = at(gl->kinds, desc, where);
+        if (noh_gl_shares(gl) && others_have(gl, of)) of->name = 0;
+        noh_gl_texture_delete(device->api, device->ledger, of);
     }
 }

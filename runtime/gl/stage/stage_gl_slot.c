@@ -194,7 +194,7 @@ noh_result noh_gl_slot_open(noh_stage *s, uint32_t kind, noh_error *error)
         memset(&k->filling, 0, sizeof k->filling);
         result = noh_gl_visit_slot(&s->desc, s->plan, caps, gl, kind, k->slot, &room, NULL, error);
     }
-    if (result == NOH_OK) result = noh_gl_pictures_create_empty(&s->desc, &gl->device, gl->kinds, kind, error);
+    if (result == NOH_OK) result = noh_gl_pictures_create_empty(&s->desc, gl, kind, error);
     return result == NOH_OK ? noh_gl_covers_create(&s->desc, s->plan, &gl->device, gl->kinds, error) : result;
 }
 
@@ -218,12 +218,13 @@ void noh_gl_slot_close(noh_stage *s, uint32_t kind)
     const noh_gl_device *d = &gl->device;
     noh_gl_kind *k = &gl->kinds[kind], none;
     noh_gl_model *model;
-    noh_gl_pictures_delete(&s->desc, d, gl->kinds, kind);
+    noh_gl_pictures_delete(&s->desc, d, gl, kind);
     noh_gl_covers_delete(&s->desc, s->plan, d, gl->kinds, kind);
     for (uint32_t m = 0; k->items && m < s->plan->kinds[kind].mesh_count; m++) {
         if (k->items[m].skin) noh_gl_skin_delete(k->items[m].skin);
     }
     for (uint32_t m = 0; (model = model_of(s, kind, m)) != NULL; m++) {
+        if (noh_gl_shares(gl)) noh_gl_share_let_go(gl, model);
         if (model->morph) noh_gl_morph_delete(model->morph);
         noh_gl_mesh_delete(d->api, d->ledger, &model->mesh);
         memset(model, 0, sizeof *model);
@@ -243,7 +244,8 @@ static int fill_meshes(const noh_stage *s, uint32_t kind, noh_gl_filling *f, uin
     noh_gl_model *model;
     for (; (model = model_of(s, kind, f->item)) != NULL; f->item++) {
         if (model->mesh.mesh.header) { /* else another item owns its model */
-            if (!noh_gl_mesh_fill(d->api, &model->mesh, &model->mesh.mesh, &f->mesh_at, bytes)) return 0;
+            if (!model->taken && !noh_gl_mesh_fill(d->api, &model->mesh, &model->mesh.mesh, &f->mesh_at, bytes))
+                return 0;
             if (model->morph && !noh_gl_morph_fill(model->morph, &model->mesh.mesh, &f->at, bytes)) return 0;
         }
         f->mesh_at = 0;
@@ -261,7 +263,7 @@ static noh_result fill(noh_stage *s, uint32_t kind, uint32_t *bytes, noh_error *
     if (before.done) return NOH_OK;
     noh_gl_error_take(gl->device.api);
     k->filling.done = fill_meshes(s, kind, &k->filling, bytes) &&
-                      noh_gl_pictures_fill(&s->desc, &gl->device, gl->kinds, kind, &k->filling, bytes);
+                      noh_gl_pictures_fill(&s->desc, gl, kind, &k->filling, bytes);
     result = noh_gl_error_check(gl->device.api, "the driver refused the data of a kind", kind, error);
     if (result != NOH_OK) k->filling = before;
     return result;

@@ -84,9 +84,11 @@ static noh_result open_all_views(noh_stage *s, const noh_stage_blocks *b, noh_er
 
 static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_stage_blocks *b)
 {
+    static const noh_stage_peers without_peers = { NULL, 0 };
     noh_stage *s = b->stage;
     memset(s, 0, sizeof *s);
     s->desc = noh_stage_desc_filled(desc);
+    if (NOH_STAGES_SHARE && desc->share) s->desc.share = &without_peers; /* only plans read them */
     noh_stage_desc_by_plan(&s->desc, plan);
     s->slots = b->slots;
     if (s->slots) s->slots->plan = *plan;

@@ -52,6 +52,10 @@
 extern "C" {
 #endif
 
+#ifndef NOH_STAGES_SHARE
+#define NOH_STAGES_SHARE 1 /* 0: a page that has one stage is built without noh_stage_desc.share */
+#endif
+
 /* ---- state ---- */
 
 typedef struct noh_stage_held {

@@ -571,6 +571,14 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     if (desc->gpu && !caps) {
         return noh_fail(error, NOH_ERR_ARG, "a stage that draws needs the capabilities of a GPU", 0, 0);
     }
+    for (uint32_t i = 0; NOH_STAGES_SHARE && desc->share && i < desc->share->peer_count; i++) {
+        const noh_stage_peer *peer = desc->share->peers ? &desc->share->peers[i] : NULL;
+        if (!peer || !peer->desc || !peer->plan || !peer->desc->share || peer->desc->gpu != desc->gpu) {
+            return noh_fail(error, NOH_ERR_ARG,
+                            "a peer of a stage that shares: it is NULL, it does not share, or it is not drawn alike", i,
+                            0);
+        }
+    }
     filled = noh_stage_desc_filled(desc);
     memset(plan, 0, sizeof *plan);
     plan->halves = desc->halves > 0;

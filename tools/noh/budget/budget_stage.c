@@ -129,12 +129,32 @@ static int budget_of_stage(const budget_args *a, const char *subject, noh_stage_
     return status;
 }
 
+/* Peers first, for the plan of a stage reads theirs. */
+static int plan_peers(const budget_args *a, stage_desc_file *file, const noh_gl_caps *caps)
+{
+    int status = 0;
+    for (uint32_t i = 0; i < file->share.peer_count && !status; i++) {
+        noh_stage_desc *desc = &file->peer_files[i]->desc;
+        noh_error error;
+        status = plan_peers(a, file->peer_files[i], caps);
+        desc->gpu = a->without_gpu ? NULL : &noh_stage_on_gl;
+        desc->morph_path = (uint32_t)a->figure.path;
+        if (!status && noh_stage_plan_make(desc, desc->gpu ? caps : NULL, &file->peer_plans[i], &error)) {
+            status = tool_fail_error(a->desc, &error);
+        }
+    }
+    return status;
+}
+
 int budget_of_desc(const budget_args *a)
 {
     stage_desc_file *file;
     int status = stage_desc_file_read(a->desc, &file);
     if (!status) {
-        status = budget_of_stage(a, a->desc, &file->desc, NULL, NULL, NULL);
+        noh_gl_caps caps;
+        if (file->share.peer_count && !a->without_gpu) status = budget_caps(a, 1, &caps);
+        if (!status) status = plan_peers(a, file, &caps);
+        if (!status) status = budget_of_stage(a, a->desc, &file->desc, NULL, NULL, NULL);
         stage_desc_file_free(file);
     }
     return status;

@@ -97,6 +97,10 @@ static void print_parts(const stage_budget *b)
     }
     printf("  %-26s %-16s %12llu %12llu\n", "sum", "", (unsigned long long)b->cpu_bytes,
            (unsigned long long)b->gpu_bytes);
+    if (b->desc->share) {
+        printf("  %-26s %-16s %12s %12llu  not in the sum: its peers have them\n", "shared", "", "",
+               (unsigned long long)b->plan.shared_bytes);
+    }
     printf("  %-26s %-16s %12llu %12s  of the total: a saved state\n", "state", "",
            (unsigned long long)b->plan.state_bytes, "");
     printf("  %-26s %-16s %12llu %12s  read in place\n", "the packs themselves", "",
@@ -239,6 +243,7 @@ int stage_budget_json(const stage_budget *b)
     json j = json_begin();
     json_integer(&j, "cpu_bytes", b->cpu_bytes);
     json_integer(&j, "gpu_bytes", b->gpu_bytes);
+    if (b->desc->share) json_integer(&j, "shared_bytes", b->plan.shared_bytes);
     json_integer(&j, "state_bytes", b->plan.state_bytes);
     json_integer(&j, "pack_bytes", b->plan.pack_bytes);
     json_integer(&j, "stack_bytes", NOH_STACK_BYTES);

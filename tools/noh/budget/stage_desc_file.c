@@ -181,12 +181,17 @@ static int open_pack(const reader *r, char *path, const noh_pack **out)
     stage_desc_file *f = r->file;
     char subject[512], *real = realpath(path, NULL);
     int status;
+    while (f->reader_of) f = f->reader_of;
     for (uint32_t i = 0; real && i < f->pack_count; i++) {
         if (strcmp(f->pack_paths[i], real) == 0) {
             *out = &f->packs[i].pack;
             free(real);
             return 0;
         }
+    }
+    if (f->pack_count == STAGE_DESC_PACKS_MAX) {
+        free(real);
+        return fail_at(r, r->line, "this file and its peers name more than %u packs", STAGE_DESC_PACKS_MAX);
     }
     (void)snprintf(subject, sizeof subject, "%s:%u: %s", r->path, r->line, path);
     status = pack_file_open_as(&f->packs[f->pack_count], path, subject);
@@ -294,6 +299,8 @@ typedef enum setting_kind {
     SET_FACE,
     SET_RAGDOLLS,
     SET_MATCH,
+    SET_SHARE,
+    SET_PEER,
     SET_LAYER
 } setting_kind;
 
@@ -315,6 +322,8 @@ static const setting settings[] = {
     { "halves", SET_FLAG, 0, 0, offsetof(noh_stage_desc, halves), 0, 1 },
     { "motion", SET_FLAG, 0, 0, offsetof(noh_stage_desc, motion), 0, 1 },
     { "sort_blended", SET_FLAG, 0, 0, offsetof(noh_stage_desc, sort_blended), 0, 1 },
+    { "share", SET_SHARE, 0, 0, 0, 0, 1 },
+    { "peer", SET_PEER, 0, 1, 0, 0, 0 },
     { "mesh", SET_MESH, 1, 0, 0, 0, 0 },
     { "clips", SET_CLIPS, 1, 1, 0, 0, 0 },
     { "actor_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, actor_count), 1, NOH_STAGE_ACTORS_MAX },
@@ -364,6 +373,9 @@ static int set_number(reader *r, const setting *s, const char *text)
     case SET_MATCH:
         if (value) r->kind->match = noh_match_module(NULL);
         break;
+    case SET_SHARE:
+        if (value) r->file->desc.share = &r->file->share;
+        break;
     case SET_BYTES: *(uint64_t *)(void *)(in + s->at) = value; break;
     case SET_FLAG: *(int *)(void *)(in + s->at) = (int)value; break;
     case SET_HELD: *(uint32_t *)(void *)(in + s->at) = value ? (uint32_t)value : NOH_NONE; break;
@@ -409,12 +421,40 @@ static int set_other_of(reader *r, const char *name)
                    hint_of(name, names, count).text);
 }
 
+static int read_file(const char *path, stage_desc_file *reader_of, stage_desc_file **out);
+
+/* Another text, of a stage with which this one shares. */
+static int add_peer(const reader *r, const char *text)
+{
+    stage_desc_file *f = r->file, *of = f;
+    char *path;
+    int status;
+    uint32_t depth = 0;
+    while ((of = of->reader_of) != NULL) depth++;
+    if (f->share.peer_count == STAGE_DESC_PEERS_MAX || depth == STAGE_DESC_PEERS_MAX) {
+        return fail_at(r, r->line, "more than %u peers, or peers of each other", STAGE_DESC_PEERS_MAX);
+    }
+    path = beside(r->path, text);
+    if (!path) return out_of_memory(r->path);
+    status = read_file(path, f, &f->peer_files[f->share.peer_count]);
+    free(path);
+    if (status) return status;
+    of = f->peer_files[f->share.peer_count];
+    of->desc.share = &of->share;
+    f->peers[f->share.peer_count] = (noh_stage_peer){ &of->desc, &f->peer_plans[f->share.peer_count] };
+    f->share.peer_count++;
+    f->share.peers = f->peers;
+    f->desc.share = &f->share;
+    return 0;
+}
+
 static int set(reader *r, const setting *s)
 {
     char *text = r->words[1].text;
     switch (s->kind) {
     case SET_PIXELS: return set_pixels(r, text);
     case SET_ROOT: return root_axes(r, text);
+    case SET_PEER: return add_peer(r, text);
     case SET_MESH: return pack_beside(r, text, &r->kind->mesh);
     case SET_CLIPS: return add_clips(r, text);
     case SET_LAYER: return add_layer(r);
@@ -568,7 +608,7 @@ static int read_all(reader *r)
     return status;
 }
 
-int stage_desc_file_read(const char *path, stage_desc_file **out)
+static int read_file(const char *path, stage_desc_file *reader_of, stage_desc_file **out)
 {
     reader r;
     int status;
@@ -579,6 +619,7 @@ int stage_desc_file_read(const char *path, stage_desc_file **out)
     if (!r.file) {
         return out_of_memory(path);
     }
+    r.file->reader_of = reader_of;
     status = read_all(&r);
     if (status) {
         stage_desc_file_free(r.file);
@@ -588,11 +629,17 @@ int stage_desc_file_read(const char *path, stage_desc_file **out)
     return 0;
 }
 
+int stage_desc_file_read(const char *path, stage_desc_file **out)
+{
+    return read_file(path, NULL, out);
+}
+
 void stage_desc_file_free(stage_desc_file *file)
 {
     if (!file) {
         return;
     }
+    for (uint32_t i = 0; i < file->share.peer_count; i++) stage_desc_file_free(file->peer_files[i]);
     for (uint32_t i = 0; i < file->pack_count; i++) {
         pack_file_close(&file->packs[i]);
         free(file->pack_paths[i]);

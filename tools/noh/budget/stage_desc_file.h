@@ -10,6 +10,7 @@
 
 #define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
 #define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 2u))
+#define STAGE_DESC_PEERS_MAX 4u
 
 /* The desc points into the rest: neither is copied. */
 typedef struct stage_desc_file {
@@ -24,7 +25,12 @@ typedef struct stage_desc_file {
     pack_file packs[STAGE_DESC_PACKS_MAX]; /* each file once, so that kinds share it */
     char *pack_paths[STAGE_DESC_PACKS_MAX];
     uint32_t pack_count;
-    char *text; /* names lie in it */
+    char *text;                                 /* names lie in it */
+    noh_stage_peers share;                      /* of `desc`, where the text says so */
+    noh_stage_peer peers[STAGE_DESC_PEERS_MAX]; /* the caller makes their plans */
+    noh_stage_plan peer_plans[STAGE_DESC_PEERS_MAX];
+    struct stage_desc_file *peer_files[STAGE_DESC_PEERS_MAX];
+    struct stage_desc_file *reader_of; /* whose peer it is; NULL: of none. The first of the row has the packs of all */
 } stage_desc_file;
 
 /* Read the text and open its packs, whose paths are relative to the text's folder. Prints an error, "FILE:LINE: ...",
