@@ -3,7 +3,7 @@
 # must equal the CPU in every bit; so must float16 if the driver's rounding is modelled, else it must stay within the
 # pack's bound. The picture is compared with llvmpipe's: the mean difference is at most 0.25/255, and at most 1 % of the
 # pixels differ by more than 8 (edges and mip levels differ between rasterisers). tests/gl/test_gl_depth.c,
-# test_gl_light.c and test_gl_wrinkles.c run on each driver too. Prints a table of what ran.
+# test_gl_light.c, test_gl_wrinkles.c and a part of test_gl_share.c run on each driver too. Prints a table of what ran.
 . tests/cli/lib.sh
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'the matrix' 'other drivers run no other code of ours: the build without sanitizers compares them'
@@ -54,6 +54,9 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_wrinkles" >"$work/wrinkles" 2>&1
     code=$?
     expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_share" slots_lend_and_borrow >"$work/share" 2>&1
+    code=$?
+    expect 0 "$name: stages that share are drawn as they are alone"
     auto=mrt
     case " $lacking " in *" mrt "*) auto=gather ;; esac
     env "$@" "$build/noh" render "$mask" --light none -o "$work/picture.png" --size 256x256 --weight smile=1 --driver "$driver" \
