@@ -216,6 +216,8 @@ typedef enum noh_half_mode {
 #define NOH_STAGE_GRAPHS_MAX 16u          /* of a kind */
 #define NOH_LAYER_TRACKS_MAX 8u           /* of a layer */
 #define NOH_CONCESSIONS_MAX 32u           /* of a plan */
+#define NOH_WANTED_CLIPS_MAX 16u          /* listed at one time (noh_stage_stats) */
+#define NOH_CLIP_RESERVE_MAX (1u << 30)   /* bytes of a kind */
 #define NOH_BLOBS_MAX 24u                 /* blob shadows of an actor */
 #define NOH_DECALS_MAX 64u                /* of a ring */
 #define NOH_DECAL_TRIANGLES 96u           /* default room for each grown mark, as a mean */

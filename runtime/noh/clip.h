@@ -116,6 +116,7 @@ typedef struct noh_clip_set {
     const uint8_t *masks;                  /* [mask_count][joint_count + float_count], 255 = full weight */
     const struct noh_root_track *roots;    /* [clip_count]; NULL: no root motion, the root joint moves in its pose */
     const noh_root_ends *const *root_ends; /* [clip_count]; NULL: use `sample` at both ends */
+    struct noh_clip_reserve *reserve;      /* private: knows which clips are in memory; NULL: all are */
     noh_clip_sample_fn sample;
     void *user; /* passed to sample */
 } noh_clip_set;
@@ -598,6 +599,7 @@ typedef struct noh_clip_bank_desc {
     /* sample rate, in frames per second, that suffices: clips with at least twice this rate use half the cache and less
      * time (low_motion.h); default (0) the full rate */
     uint32_t sample_rate_needed;
+    uint32_t reserve_bytes; /* private, as noh_kind_desc.clip_reserve (noh.h); 0 */
 } noh_clip_bank_desc;
 
 /* Sizes and counts, known before any memory is allocated. */

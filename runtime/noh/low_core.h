@@ -147,10 +147,6 @@ int noh_mesh_color_offset(const noh_mesh *mesh);
 uint32_t noh_mesh_accumulation_texel(const noh_mesh *mesh, uint32_t vertex);
 uint32_t noh_mesh_palette(const noh_mesh *mesh, uint32_t vertex);
 
-/* The accumulation texel of a vertex's texture coordinates; header->touched_count or more: none, no target moves
- * them. */
-uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex);
-
 /* Get an extra attribute of a vertex (noh build --attributes), for renderers without the library's shaders.
  * index    the place in that list, which mesh->extras describes (format.h)
  * value    components that the attribute does not have are 0

@@ -158,6 +158,10 @@ typedef struct noh_kind_desc {
     const noh_pack *const *clip_packs; /* [clip_pack_count] several packs instead of `clips`; a clip in a later pack
                                         * replaces one of the same name. Must outlive the stage */
     uint32_t clip_pack_count;          /* 0 with `clips`; 0 with clip_packs: no clips at all */
+    /* Bytes of a reserve for clips that are in memory only while they are needed (noh_stage_load_clip), at least the
+     * largest clip's. Plans and init then read the clips' chunks, and nothing reads them later: only the rest of the
+     * packs must outlive the stage. Default (0): clips are read in place */
+    uint32_t clip_reserve;
     const uint32_t *nodes; /* [node_count] draws only these nodes of `mesh`; in a pack without nodes, these meshes.
                             * Default (NULL) all. Read by plans and init */
     uint32_t node_count;
@@ -400,6 +404,13 @@ void noh_stage_delete(noh_stage *stage);
  * errors  GL, MEMORY, DATA. The stage then has no GL objects; restore may be called again */
 noh_result noh_stage_restore(noh_stage *stage, noh_error *error);
 
+/* A clip to be brought: read these bytes of its pack's file, and give them to noh_stage_load_clip. */
+typedef struct noh_wanted_clip {
+    uint32_t kind, clip;    /* of the first kind that has these clips */
+    uint32_t pack;          /* index in clip_packs; 0 with `clips` */
+    uint32_t offset, bytes; /* its chunk */
+} noh_wanted_clip;
+
 /* Counts of the last frame, and high-water marks for planning the next build. Not part of the state. */
 typedef struct noh_stage_stats {
     uint32_t actors, seen, updated, fading, events;
@@ -415,7 +426,9 @@ typedef struct noh_stage_stats {
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
     uint32_t actors_high, events_high, coarser_high;
-    float error_pixels; /* the largest of all visible actors */
+    uint32_t wanted_count;         /* clips that something asked for and that have not come since */
+    const noh_wanted_clip *wanted; /* [wanted_count] in the order of asking; those past the limit are asked again */
+    float error_pixels;            /* the largest of all visible actors */
 } noh_stage_stats;
 
 const noh_stage_stats *noh_stage_stats_of(const noh_stage *stage);
@@ -836,6 +849,22 @@ noh_result noh_stage_frame(noh_stage *stage, uint32_t ticks, const noh_stage_vie
  *         (where: the mesh). Nothing has then changed */
 noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack *pack, noh_error *error);
 
+/* ---- clips loaded later ---- */
+
+/* Bring a clip of a kind with clip_reserve into the reserve, or ask for it. What plays keeps its clips. Others make room
+ * for the new one, the least recently used first, ended or never played. Kinds with the same clips share them. Until a
+ * clip is there, what would start it fails with NOT_FOUND and leaves the actor as it was: noh_actor_play, a graph with
+ * such a clip, walkers; motion matching stays with what it plays, and getting up takes another clip. What failed is in
+ * noh_stage_stats.wanted; durations, keys and names of absent clips are known. Which clips are there depends on the
+ * order of calls alone, not on jobs or time, and is not part of the state.
+ * clip    as noh_stage_find has it
+ * chunk   the whole chunk, as in the pack's file: noh_wanted_clip.bytes, copied. Any alignment. NULL: ask for the clip,
+ *         which puts it into noh_stage_stats.wanted if it is absent
+ * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no clip_reserve; NOT_FOUND no such clip
+ *         (need: their count); DATA the bytes differ from those that the stage was made with; MEMORY what plays
+ *         leaves too little of the reserve (where: bytes that play, need: bytes). Nothing has then changed */
+noh_result noh_stage_load_clip(noh_stage *stage, uint32_t kind, uint32_t clip, const void *chunk, noh_error *error);
+
 /* ---- kinds that change ---- */
 
 /* Put a kind into an empty slot (noh_kind_desc.changes), or empty the slot. Everything else stays where it is, and what
@@ -863,8 +892,9 @@ const void *noh_stage_state(const noh_stage *stage, size_t *bytes);
 /* Restore a copied state, of this stage or another with the same plan, on any processor of the same byte order. The
  * frames that follow have the same bits as those after the copy, if the same levels are loaded (noh_stage_load_level);
  * loaded levels are not part of the state. Without them actors show the finest level there is.
- * errors  ARG called during a frame or a step; DATA the state is of another plan, or a count or index in it is out of
- *         range (where: the actor). Nothing has then changed */
+ * errors  ARG called during a frame or a step; NOT_FOUND it plays clips that are absent here, which are then in
+ *         noh_stage_stats.wanted (where: the kind, need: how many); DATA the state is of another plan, or a count or
+ *         index in it is out of range (where: the actor). Nothing has then changed */
 noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes, noh_error *error);
 
 /* A hash of the state, equal on every processor and for any number of jobs. */

@@ -28,6 +28,10 @@ void noh_wrinkles_color(const noh_wrinkles *wrinkles, const uint8_t cover[4], co
  * source  reoriented normal mapping: Barre-Brisebois, Hill, Blending in Detail, 2012 */
 void noh_wrinkles_normal(const float *base, const float *wrinkle, float weight, float *out);
 
+/* The accumulation texel of a vertex's texture coordinates; header->touched_count or more: none, no target moves
+ * them. */
+uint32_t noh_mesh_uv_texel(const noh_mesh *mesh, uint32_t vertex);
+
 /* The chunk that is about the n-th mesh, whose number is its first word. NULL: there is none. */
 const void *noh_pack_chunk_of_mesh(const noh_pack *pack, noh_chunk_type type, uint32_t mesh);
 

@@ -15,6 +15,7 @@
 #include "deform/morph/morph_accumulate_internal.h"
 #include "deform/morph/morph_finish_internal.h"
 #include "core/base/half_internal.h"
+#include "core/mesh/mesh_internal.h"
 
 void noh_morph_accumulate(const noh_mesh *mesh, const float *weights, const noh_morph_layers *layers)
 {

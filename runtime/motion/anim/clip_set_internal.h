@@ -5,6 +5,33 @@
 
 #include "noh/clip.h"
 
+/* 0 (as in the page's program, which has no use for it): clips are never brought in while a stage runs. */
+#ifndef NOH_CLIPS_COME
+#define NOH_CLIPS_COME 1
+#endif
+
+/* A clip of a reserve. */
+typedef struct noh_reserved_clip {
+    uint32_t at, bytes; /* where in the reserve, and how many, a multiple of 16; 0: none */
+    uint32_t used;      /* the reserve's clock when it was last used */
+    uint32_t absent;    /* 1: its bytes are not in memory */
+} noh_reserved_clip;
+
+/* The bytes of the clips that are in memory, one after another without gaps (bank/clip_bank_reserve.c). */
+typedef struct noh_clip_reserve {
+    uint8_t *bytes; /* [room] */
+    uint32_t room, filled;
+    uint32_t clock, clip_count;
+    noh_reserved_clip *clips; /* [clip_count] of the bank */
+    uint32_t *event_names;    /* [event_count of the set] offsets in the strings of their packs */
+} noh_clip_reserve;
+
+/* Test whether a clip cannot be played. Clips past a bank's own are the caller's. */
+static inline int noh_clip_is_absent(const noh_clip_set *set, uint32_t clip)
+{
+    return NOH_CLIPS_COME && set->reserve && clip < set->reserve->clip_count && set->reserve->clips[clip].absent;
+}
+
 /* Get a mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */
 noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
 

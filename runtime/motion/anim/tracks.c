@@ -4,6 +4,7 @@
  * read, so that passes can be counted, and reduced by whole cycles after each move, so that it never overflows. A track
  * that was just placed has not passed the keys at its position yet: `placed` is 1 until it moves. */
 #include "core/base/assert_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "motion/anim/events_internal.h"
 #include "motion/anim/time_internal.h"
 #include "motion/anim/tracks_internal.h"
@@ -53,6 +54,10 @@ noh_result noh_track_start(noh_track *track, const noh_clip_set *set, const noh_
     what = what ? what : bad_sync(set, desc);
     if (what) {
         return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+    }
+    if (noh_clip_is_absent(set, desc->clip) || (desc->reference && noh_clip_is_absent(set, desc->reference - 1u))) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the clip is not in memory: load it into clip_reserve first",
+                        desc->clip, set->clip_count);
     }
     m = &set->clips[desc->clip];
     track->clip = (uint16_t)desc->clip;

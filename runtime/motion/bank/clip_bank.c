@@ -1,5 +1,6 @@
 #include "core/base/assert_internal.h"
 #include "motion/anim/root_motion_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "motion/bank/clip_bank_internal.h"
 #include "motion/clip/clip_cache_internal.h"
 #include "motion/clip/clip_codec_internal.h"
@@ -32,6 +33,8 @@ typedef struct counts {
     uint32_t cached_segments;
     size_t cache_bytes;
     int roots;
+    uint32_t reserve_bytes; /* 0: none */
+    size_t clip_max;        /* bytes of the largest clip in its pack */
 } counts;
 
 /* The layout. NULL while measuring. */
@@ -49,6 +52,10 @@ typedef struct parts {
     uint32_t *packs, *pack_clips;
     const noh_clip **opened;
     uint8_t *clip_memory, *cache_memory;
+    noh_clip_reserve *reserve;
+    noh_reserved_clip *reserved;
+    uint32_t *event_names;
+    uint8_t *reserve_memory;
 } parts;
 
 /* ---- counting ---- */
@@ -101,6 +108,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
                         noh_bank_where(found->at), (uint64_t)c->shape.clip_count + 1u);
     }
     c->shape.clip_count++;
+    c->clip_max = found->clip.byte_count > c->clip_max ? found->clip.byte_count : c->clip_max;
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;
     c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
@@ -167,6 +175,10 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
                         "a clip bank has more floats (morph weights of all nodes, and named ones) than NOH_FLOATS_MAX",
                         0, c->shape.float_count);
     }
+    c->reserve_bytes = NOH_CLIPS_COME ? (uint32_t)align_up(desc->reserve_bytes) : 0;
+    if (c->reserve_bytes && c->reserve_bytes < align_up(c->clip_max)) {
+        return noh_fail(error, NOH_ERR_ARG, "clip_reserve is smaller than the largest clip", 0, align_up(c->clip_max));
+    }
     c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
     c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, &why);
     return c->cache_bytes ? NOH_OK : noh_fail(error, why.result, why.what, why.where, why.need);
@@ -191,6 +203,12 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     p->runs = noh_arena_carve(arena, c->runs * sizeof *p->runs, 2u);
     p->clip_memory = noh_arena_carve(arena, c->clip_bytes, 16u);
     p->cache_memory = noh_arena_carve(arena, c->cache_bytes, 16u);
+    if (c->reserve_bytes) {
+        p->reserve = noh_arena_carve(arena, sizeof *p->reserve, 16u);
+        p->reserved = noh_arena_carve(arena, n->clip_count * sizeof *p->reserved, 4u);
+        p->event_names = noh_arena_carve(arena, n->event_count * sizeof *p->event_names, 4u);
+        p->reserve_memory = noh_arena_carve(arena, c->reserve_bytes, 16u);
+    }
     return arena->used;
 }
 
@@ -342,7 +360,9 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
     to->first_marker = bank->clips.marker_count;
     to->marker_count = from->header->marker_count;
     for (uint32_t i = 0; i < to->event_count; i++) {
-        noh_event_key *key = &p->events[bank->clips.event_count++];
+        noh_event_key *key = &p->events[bank->clips.event_count];
+        if (p->event_names) p->event_names[bank->clips.event_count] = from->events[i].name;
+        bank->clips.event_count++;
         key->tick = from->events[i].tick;
         key->name_hash = from->events[i].name_hash;
         memcpy(key->payload, from->events[i].payload, sizeof key->payload);
@@ -417,6 +437,20 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     noh_clip_bank_sample_cache(bank);
 }
 
+static void open_reserve(const counts *c, const parts *p)
+{
+    noh_clip_reserve *r = p->reserve;
+    if (!c->reserve_bytes) return;
+    memset(r, 0, sizeof *r);
+    memset(p->reserved, 0, c->shape.clip_count * sizeof *p->reserved);
+    r->clips = p->reserved;
+    r->clip_count = c->shape.clip_count;
+    r->event_names = p->event_names;
+    r->bytes = p->reserve_memory;
+    r->room = c->reserve_bytes;
+    p->bank->clips.reserve = r;
+}
+
 static noh_result open_cache(const counts *c, parts *p, noh_error *error)
 {
     noh_clip_cache_desc cache;
@@ -451,10 +485,12 @@ noh_result noh_clip_bank_init(void *memory, size_t bytes, const noh_clip_bank_de
     noh_result r = measure(desc, &b, &c, &need, error);
     if (!r) r = noh_arena_open(&arena, memory, bytes, need, error);
     if (r) return r;
+    memset(&p, 0, sizeof p);
     (void)carve(&arena, &c, &p);
     memset(p.bank, 0, sizeof *p.bank);
     fill(&b, &p);
     join(&b, &c, &p);
+    open_reserve(&c, &p);
     r = open_cache(&c, &p, error);
     if (r) return r;
     if (noh_clip_set_check(&p.bank->clips, &why)) {

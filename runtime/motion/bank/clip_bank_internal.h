@@ -36,6 +36,22 @@ struct noh_bank_clip {
     uint32_t joint_count;
 };
 
+/* ---- clips that come and go (clip_bank_reserve.c) ---- */
+
+/* From now on the packs' clips are not read: all are absent. */
+void noh_clip_bank_empty(noh_clip_bank *bank);
+/* Time goes on for the reserve: what is not touched from now on was used earlier. */
+void noh_clip_bank_tick(noh_clip_bank *bank);
+/* A clip of the bank is in use. Clips past the bank's own are ignored. */
+void noh_clip_bank_touch(noh_clip_bank *bank, uint32_t clip);
+/* Copy the bytes of an absent clip into the reserve. Clips that were not touched since the last tick make room, the
+ * least recently used first; of equal ones the first.
+ * bytes   [byte_count] those that the bank was made with
+ * errors  DATA byte_count is not the clip's; MEMORY what is in use leaves too little (where: bytes in use, need: bytes).
+ *         Nothing has then changed */
+noh_result noh_clip_bank_bring(noh_clip_bank *bank, uint32_t clip, const uint8_t *bytes, uint32_t byte_count,
+                               noh_error *error);
+
 /* Let bank->clips sample through the bank's cache; sampling then changes the cache. */
 void noh_clip_bank_sample_cache(noh_clip_bank *bank);
 

@@ -6,6 +6,7 @@
  * one whole leg cover the whole clip, and anything later needs no other segment. */
 #include "motion/clip/clip_internal.h"
 #include "core/base/assert_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "motion/anim/time_internal.h"
 #include "motion/clip/clip_cache_internal.h"
 #include "motion/clip/clip_codec_internal.h"
@@ -69,7 +70,7 @@ uint32_t noh_clip_bank_prefetch(noh_clip_bank *bank, const noh_controller *contr
         const noh_track *t = noh_controller_track(controller, i);
         const noh_clip_entry *m;
         if (t->clip >= bank->clips.clip_count || t->mode != NOH_TRACK_ON ||
-            (t->lod_levels && controller->lod >= t->lod_levels)) {
+            (t->lod_levels && controller->lod >= t->lod_levels) || noh_clip_is_absent(&bank->clips, t->clip)) {
             continue; /* clips past the bank's are the caller's own */
         }
         m = &bank->clips.clips[t->clip];

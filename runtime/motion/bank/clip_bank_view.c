@@ -1,6 +1,7 @@
 /* clip_bank_view.c: sampling a bank's clips, through the bank's own cache or through a thread's view of it. */
 #include <string.h>
 
+#include "motion/anim/clip_set_internal.h"
 #include "motion/bank/clip_bank_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/clip/clip_view_internal.h"
@@ -34,11 +35,18 @@ static void check_request(const noh_clip_bank *bank, uint32_t index, uint32_t jo
     (void)bank, (void)index, (void)joint_count, (void)float_count;
 }
 
+/* What to sample: of a clip that is not in memory nothing, so that it is the bind pose. */
+static const struct noh_bank_clip *bound_clip(const noh_clip_bank *bank, uint32_t index)
+{
+    static const struct noh_bank_clip nothing;
+    return noh_clip_is_absent(&bank->clips, index) ? &nothing : &bank->bound[index];
+}
+
 static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
                          uint32_t float_count, float *floats)
 {
     const noh_clip_bank *bank = user;
-    const struct noh_bank_clip *clip = &bank->bound[index];
+    const struct noh_bank_clip *clip = bound_clip(bank, index);
     const int moves_floats = float_count && clip->float_runs;
     check_request(bank, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {
@@ -52,7 +60,7 @@ static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t
                         uint32_t float_count, float *floats)
 {
     const noh_clip_bank_view *view = user;
-    const struct noh_bank_clip *clip = &view->bank->bound[index];
+    const struct noh_bank_clip *clip = bound_clip(view->bank, index);
     const int moves_floats = float_count && clip->float_runs;
     check_request(view->bank, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {

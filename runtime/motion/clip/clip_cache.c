@@ -332,6 +332,17 @@ static void take(noh_clip_cache *cache, uint32_t s, uint32_t clip, uint32_t segm
     cache->cached_of[e->first + segment] = (uint16_t)s;
 }
 
+void noh_clip_cache_forget(noh_clip_cache *cache, uint32_t clip)
+{
+    for (uint32_t s = 0; s < cache->cached_count; s++) {
+        cached *t = &cache->cached[s];
+        if (!t->used || t->clip != clip) continue;
+        cache->cached_of[cache->clips[clip].first + t->cursor.segment] = NOH_CLIP_NOT_CACHED;
+        drop_want(cache, s);
+        t->used = 0;
+    }
+}
+
 static uint32_t decode_cached(noh_clip_cache *cache, uint32_t s, uint32_t track_end)
 {
     cached *t = &cache->cached[s];

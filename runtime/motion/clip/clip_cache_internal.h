@@ -42,6 +42,9 @@ uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache);
  * Linear in the segments; stops at the first one that is missing. */
 int noh_clip_cache_holds_all(const noh_clip_cache *cache);
 
+/* Forget what is decoded of a clip, and what was requested of it. */
+void noh_clip_cache_forget(noh_clip_cache *cache, uint32_t clip);
+
 /* Get the clip at an index of the desc. */
 const noh_clip *noh_clip_cache_clip(const noh_clip_cache *cache, uint32_t clip);
 

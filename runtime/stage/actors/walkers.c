@@ -15,6 +15,7 @@
 
 #include "motion/anim/sync_internal.h"
 #include "core/base/math_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "stage/actors/walkers_internal.h"
 #include "stage/character/character_internal.h"
 
@@ -81,6 +82,12 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
     c->clip = noh_clip_set_find(&k->set, noh_hash_name(name));
     if (!k->bank || c->clip == NOH_NONE || c->clip >= noh_stage_clip_count(k)) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip with the name in noh_walkers_desc", which, 0);
+    }
+    if (noh_clip_is_absent(&k->set, c->clip)) {
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "the clip of a walker is not in memory: bring it with "
+                        "noh_stage_load_clip",
+                        which, c->clip);
     }
     c->ticks = k->set.clips[c->clip].duration_ticks;
     if (k->set.roots && c->ticks) {

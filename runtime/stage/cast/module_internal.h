@@ -125,6 +125,8 @@ typedef struct noh_source_type {
      * ticks before it if `ago` is not 0, in the scratch of the job; no pose where nothing plays. */
     void (*sample)(const noh_stage *s, const struct noh_stage_job_part *job, const struct noh_stage_kind *k,
                    uint32_t index, int64_t ahead, int64_t ago, noh_clip_set *set, noh_stage_sampler *sampler);
+    /* The i-th clip of what it plays as `number`; NOH_NONE: no more. */
+    uint32_t (*clip)(const struct noh_stage_kind *k, uint32_t number, uint32_t i);
     uint32_t (*name_count)(const struct noh_stage_kind *k, noh_name what);
     const char *(*name)(const struct noh_stage_kind *k, noh_name what, uint32_t index);
 } noh_source_type;

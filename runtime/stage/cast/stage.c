@@ -105,6 +105,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     s->todo = b->todo;
     s->by_distance = b->by_distance;
     s->events = b->events;
+    s->stats.wanted = b->wanted;
     s->jobs = b->jobs;
     s->scratch_bytes = b->scratch_bytes;
     s->module_scratch_bytes = b->module_scratch_bytes;
@@ -150,6 +151,7 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     if (result == NOH_OK) result = open_all_views(s, b, error);
     if (result == NOH_OK) noh_stage_open_worn(s, NOH_NONE);
     if (result == NOH_OK && s->slots) result = noh_stage_open_slots(s, desc, error);
+    if (NOH_CLIPS_COME && result == NOH_OK) noh_stage_empty_clips(s, NOH_NONE);
     if (result == NOH_OK) {
         result = noh_schedule_init(b->schedule, noh_schedule_size(s->actor_count), s->actor_count, &s->schedule, error);
     }

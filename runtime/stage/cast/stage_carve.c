@@ -220,6 +220,7 @@ static void add(noh_stage_list *list, const char *what, uint32_t kind, const noh
 typedef struct widest {
     size_t scratch_bytes, module_scratch_bytes, pick_bytes, views_bytes, inertia_bytes;
     uint32_t skin_joints, wearer_joints, actors, slot_count;
+    int reserves; /* 1: clips may come */
 } widest;
 
 static size_t aligned(size_t bytes)
@@ -316,6 +317,7 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     if (most->slot_count) b->slots = CARVE(arena, 1, noh_stage_slots);
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
+    b->wanted = NOH_CLIPS_COME && most->reserves ? CARVE(arena, NOH_WANTED_CLIPS_MAX, noh_wanted_clip) : NULL;
     b->by_distance = CARVE(arena, filled->sort_blended ? most->actors : 0, noh_stage_far);
     b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);
     b->pick_bytes = most->pick_bytes;
@@ -369,6 +371,13 @@ static void list_states(noh_stage_list *list, const noh_stage_desc *desc, uint32
     }
 }
 
+static int has_reserve(const noh_kind_desc *d)
+{
+    int has = d->clip_reserve != 0;
+    for (uint32_t o = 0; d->changes && o < d->other_count; o++) has |= d->others[o].clip_reserve != 0;
+    return has;
+}
+
 /* The first pass: the state, and what it takes to know how large the rest is. */
 static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, const noh_stage_plan *plan,
                                noh_stage_blocks *b, noh_stage_list *list, widest *most, noh_error *error)
@@ -378,6 +387,7 @@ static noh_result carve_states(noh_arena *arena, const noh_stage_desc *desc, con
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         most->actors += desc->kinds[i].changes ? (uint32_t)plan->kinds[i].room.actor_count : desc->kinds[i].actor_count;
         most->slot_count += desc->kinds[i].changes != 0;
+        most->reserves |= has_reserve(&desc->kinds[i]);
     }
     b->head = CARVE(arena, 1, noh_stage_head);
     b->actors = CARVE(arena, most->actors, noh_stage_actor);
@@ -440,6 +450,11 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
         if (m.type->kind_name) add(list, m.type->kind_name, i, arena, &from);
     }
     b->of[i].bank = noh_arena_carve(arena, n->bank_bytes, 16);
+    if (NOH_CLIPS_COME && d.clip_reserve && n->bank_bytes) {
+        const uint32_t reserve = (uint32_t)aligned(d.clip_reserve);
+        noh_stage_add_part(list, "clip reserve", i, reserve, 0);
+        from += reserve;
+    }
     add(list, "clips", i, arena, &from);
     if (*state) point_at_state(desc, n, i, state, k);
 }

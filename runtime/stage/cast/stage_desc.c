@@ -222,6 +222,7 @@ static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
     if (bad_texture_sets(d)) return bad_texture_sets(d);
+    if (d->clip_reserve > NOH_CLIP_RESERVE_MAX) return "clip_reserve of a kind is above NOH_CLIP_RESERVE_MAX";
     if (d->cover_count > 255u) return "cover_count of a kind is above 255";
     if (noh_stage_bad_worn(desc, d)) return noh_stage_bad_worn(desc, d);
     if (noh_stage_bad_finer(d)) return noh_stage_bad_finer(d);
@@ -315,7 +316,7 @@ static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
 static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 {
     return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
-           a->sample_rate_needed == b->sample_rate_needed;
+           a->sample_rate_needed == b->sample_rate_needed && a->clip_reserve == b->clip_reserve;
 }
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
@@ -348,6 +349,7 @@ noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_sta
                                 .root_axes = d.root_axes,
                                 .root_up = d.root_up,
                                 .sample_rate_needed = d.sample_rate_needed,
+                                .reserve_bytes = d.clip_reserve,
                                 .cached_segment_count = plan->kinds[kind].cached_segment_count };
     if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
         bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;

@@ -35,6 +35,7 @@
 #define NOH_STAGE_STAGE_INTERNAL_H
 
 #include "core/base/assert_internal.h"
+#include "motion/anim/clip_set_internal.h"
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
 #include "noh/base.h"
@@ -479,6 +480,7 @@ typedef struct noh_stage_blocks {
     noh_stage_shown *shown;
     uint32_t *todo;
     noh_stage_far *by_distance;
+    noh_wanted_clip *wanted;
     noh_stage_event *events;
     noh_stage_job_part *jobs;
     uint8_t *views;   /* of all jobs, of all banks, one after another */
@@ -584,7 +586,20 @@ void noh_stage_wear_pose(const noh_stage *s, const noh_stage_job_part *job, cons
 void noh_stage_wear_palette(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
 void noh_stage_wear_floats(const noh_stage *s, const noh_stage_kind *k, uint32_t index);
 
-noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out);
+/* ---- clips that come and go (stage_clips.c) ---- */
+
+const noh_pack *noh_stage_clip_pack(const noh_stage_kind *k, uint32_t clip);
+const noh_pack_chunk *noh_stage_clip_chunk(const noh_stage_kind *k, uint32_t clip);
+/* From now on no clip is there: of a kind with a reserve, or NOH_NONE: of all that stay. */
+void noh_stage_empty_clips(noh_stage *s, uint32_t kind);
+void noh_stage_forget_wanted(noh_stage *s, uint32_t kind);
+/* After a step: what plays was used. */
+void noh_stage_use_clips(noh_stage *s);
+/* Whether a clip is there, or all that a source would play as one. Those that are not become wanted. */
+noh_result noh_stage_check_there(noh_stage *s, const noh_stage_kind *k, uint32_t clip, noh_error *error);
+/* Whether all is there that a checked state plays. */
+noh_result noh_stage_check_state_clips(noh_stage *s, const uint8_t *state, noh_error *error);
+
 noh_character *noh_stage_character(const noh_stage_kind *kind, uint32_t index);
 uint32_t noh_stage_index(const noh_stage_kind *kind, const noh_stage_actor *a); /* in its kind */
 void noh_place_matrix(const noh_place *place, float matrix[12]);

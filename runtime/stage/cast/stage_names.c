@@ -21,20 +21,23 @@ static const noh_source_type *source_of(const noh_stage_kind *k)
 
 /* ---- a name by its index ---- */
 
-static const noh_pack *clip_pack(const noh_stage_kind *k, uint32_t clip)
+const noh_pack *noh_stage_clip_pack(const noh_stage_kind *k, uint32_t clip)
 {
     return k->desc->clip_packs ? k->desc->clip_packs[k->bank->packs[clip]] : k->desc->clips;
 }
 
-noh_result noh_stage_pack_clip(const noh_stage_kind *k, uint32_t clip, noh_pack_clip *out)
+/* The chunk itself may not be in memory. */
+const noh_pack_chunk *noh_stage_clip_chunk(const noh_stage_kind *k, uint32_t clip)
 {
-    return noh_pack_clip_at(clip_pack(k, clip), k->bank->pack_clips[clip], out, NULL);
+    const noh_pack *pack = noh_stage_clip_pack(k, clip);
+    return &pack->chunks[pack->runs[NOH_CHUNK_CLIP].first + k->bank->pack_clips[clip]];
 }
 
 static const char *clip_name(const noh_stage_kind *k, uint32_t index)
 {
-    noh_pack_clip clip;
-    return index < noh_stage_clip_count(k) && noh_stage_pack_clip(k, index, &clip) == NOH_OK ? clip.name : NULL;
+    return index < noh_stage_clip_count(k)
+               ? noh_pack_string(noh_stage_clip_pack(k, index), noh_stage_clip_chunk(k, index)->name)
+               : NULL;
 }
 
 static const char *float_name(const noh_stage_kind *k, uint32_t index)

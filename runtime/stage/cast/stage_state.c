@@ -200,6 +200,7 @@ noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes
     noh_result result;
     NOH_ASSERT(stage && state);
     result = check_state(stage, state, bytes, error);
+    if (NOH_CLIPS_COME && result == NOH_OK) result = noh_stage_check_state_clips(stage, state, error);
     if (result == NOH_OK) {
         memcpy(stage->state, state, bytes);
         memset(stage->shown, 0, stage->actor_count * sizeof *stage->shown);

@@ -20,20 +20,28 @@ static uint32_t layer_of(const noh_stage_kind *k, uint32_t track)
     return i;
 }
 
+static const char *event_name(const noh_stage_kind *k, const noh_event *from)
+{
+    const noh_clip_reserve *r = k->bank ? k->bank->clips.reserve : NULL;
+    noh_pack_clip clip;
+    uint32_t name;
+    if (from->clip >= noh_stage_clip_count(k)) return "";
+    if (NOH_CLIPS_COME && r) {
+        name = r->event_names[k->bank->clips.clips[from->clip].first_event + from->index];
+    } else {
+        (void)noh_pack_clip_at(noh_stage_clip_pack(k, from->clip), k->bank->pack_clips[from->clip], &clip, NULL);
+        name = clip.events[from->index].name;
+    }
+    return noh_pack_string(noh_stage_clip_pack(k, from->clip), name);
+}
+
 static void describe(const noh_stage_stepper *t, const noh_event *from, noh_stage_event *out)
 {
-    noh_pack_clip clip;
     memset(out, 0, sizeof *out);
     out->actor = noh_stage_actor_at(t->s, (uint32_t)(t->a - t->s->actors));
     out->layer = layer_of(t->k, from->track);
     out->clip = from->clip;
-    out->name = "";
-    if (t->k->bank && noh_stage_pack_clip(t->k, from->clip, &clip) == NOH_OK &&
-        from->index < clip.header->event_count) {
-        out->name = noh_pack_string(t->k->desc->clip_packs ? t->k->desc->clip_packs[t->k->bank->packs[from->clip]]
-                                                           : t->k->desc->clips,
-                                    clip.events[from->index].name);
-    }
+    out->name = event_name(t->k, from);
     out->name_hash = from->key->name_hash;
     out->index = from->index;
     out->clock = t->s->head->clock + (from->clock - t->before);
@@ -137,6 +145,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
     stage->head->clock += ticks;
     stage->head->step_ticks = ticks;
     stage->phase = NOH_STAGE_IDLE;
+    if (NOH_CLIPS_COME) noh_stage_use_clips(stage);
     if (stage->stats.events > stage->stats.events_high) stage->stats.events_high = stage->stats.events;
     return NOH_OK;
 }

@@ -320,12 +320,19 @@ static const char *name(const noh_stage_kind *k, noh_name what, uint32_t index)
                                       : noh_graph_pack_machine_name(all->graphs[graph], index);
 }
 
+static uint32_t clip_at(const noh_stage_kind *k, uint32_t number, uint32_t i)
+{
+    const noh_graph *g = &noh_stage_graphs_of(k)->graphs[number]->graph;
+    return i < g->clip_count ? g->clips[i].clip : NOH_NONE;
+}
+
 const noh_source_type noh_stage_graph_source = {
     .begin = begin,
     .step_actor = step_actor,
     .root = root,
     .controller = controller,
     .sample = sample,
+    .clip = clip_at,
     .name_count = noh_stage_graph_names,
     .name = name,
 };

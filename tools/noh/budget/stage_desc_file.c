@@ -333,6 +333,7 @@ static const setting settings[] = {
     { "finest_level", SET_COUNT, 1, 0, offsetof(noh_kind_desc, finest_level), 0, NOH_LOD_LEVELS_MAX - 1u },
     { "worn_by", SET_COUNT, 1, 0, offsetof(noh_kind_desc, worn_by), 1, (1u << NOH_STAGE_KINDS_MAX) - 1u },
     { "cover_count", SET_COUNT, 1, 0, offsetof(noh_kind_desc, cover_count), 0, 255 },
+    { "clip_reserve", SET_COUNT, 1, 0, offsetof(noh_kind_desc, clip_reserve), 1, NOH_CLIP_RESERVE_MAX },
     { "inertia", SET_FLAG, 1, 0, offsetof(noh_kind_desc, inertia), 0, 1 },
     { "held_float_count", SET_HELD, 1, 0, offsetof(noh_kind_desc, held_float_count), 0, NOH_FLOATS_MAX },
     { "sample_rate_needed", SET_COUNT, 1, 0, offsetof(noh_kind_desc, sample_rate_needed), 1, 1000 },

@@ -247,6 +247,7 @@ const char *const help_formats_text[] = {
     "     finest_level K                              the finest level that may be used",
     "     worn_by N                                   garments: the sum of 2^k for each kind k, from 0, that may wear them (none)",
     "     cover_count N                               sets of garments whose hidden triangles are left out of this kind (0)",
+    "     clip_reserve N                              bytes for the clips in memory at one time; the others come when needed (0: all stay)",
     "     inertia 0|1                                 transitions may use inertialization (0)",
     "     graphs \"NAME...\"                            animation graphs its actors may play; NAME*: all that start with NAME",
     "     finer PACK                                  the pack with the finer levels, if mesh has only coarse ones",

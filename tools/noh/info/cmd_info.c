@@ -12,6 +12,7 @@
 #include "info_extras.h"
 #include "info_transfer.h"
 #include "cli/args.h"
+#include "core/mesh/mesh_internal.h"
 #include "cli/message.h"
 #include "file/pack_file.h"
 #include "verify/half_bound.h"

@@ -1,0 +1,409 @@
+/* Clips that come into a running stage and go: once a clip is there it plays with the bits of one that was there from
+ * the start, though its chunk in the pack is overwritten; what plays stays; what is absent is reported. */
+#include "support/stage_fixture.h"
+
+#include "stage/cast/stage_internal.h"
+
+#define PLAYERS 4u
+#define CLIPS 5u
+
+static noh_error said;
+static cast files; /* opened once */
+
+/* A stage of puppets. With a reserve the pack is a copy, whose clips are overwritten once the stage is made. */
+typedef struct show {
+    cast c;
+    uint8_t *copy;
+    noh_pack pack;
+} show;
+
+static uint32_t clip_bytes(uint32_t clip)
+{
+    noh_pack_clip found;
+    assert_int_equal(noh_pack_clip_at(&files.packs[PUPPETS], clip, &found, NULL), NOH_OK);
+    return (found.header->clip_bytes + 15u) & ~15u;
+}
+
+static uint32_t largest_clip(void)
+{
+    uint32_t most = 0;
+    for (uint32_t i = 0; i < CLIPS; i++) most = clip_bytes(i) > most ? clip_bytes(i) : most;
+    return most;
+}
+
+static void overwrite_clips(show *w)
+{
+    for (uint32_t i = 0; i < w->pack.runs[NOH_CHUNK_CLIP].count; i++) {
+        const noh_pack_chunk *chunk = &w->pack.chunks[w->pack.runs[NOH_CHUNK_CLIP].first + i];
+        memset(w->copy + chunk->offset, 0xa5, chunk->bytes);
+    }
+}
+
+static void open_show(show *w, uint32_t reserve, uint32_t jobs)
+{
+    const noh_file *file = &files.files[PUPPETS];
+    noh_kind_desc *k = &w->c.kinds[0];
+    w->c = files;
+    w->c.desc.kinds = w->c.kinds;
+    w->copy = test_aligned(file->data, file->bytes);
+    w->pack = test_open(w->copy, file->bytes);
+    k->mesh = &w->pack;
+    k->actor_count = PLAYERS;
+    k->graphs = noh_graph_module("moves");
+    k->inertia = 1;
+    k->clip_reserve = reserve;
+    w->c.desc.kind_count = 1;
+    w->c.desc.job_count = jobs;
+}
+
+/* With as few decoded segments as a plan can have: bytes are read again and again. */
+static void make(show *w)
+{
+    noh_stage_plan plan;
+    w->c.desc.cpu_bytes_max = 1;
+    assert_int_equal(noh_stage_plan_make(&w->c.desc, NULL, &plan, &said), NOH_ERR_MEMORY);
+    w->c.desc.cpu_bytes_max = said.need;
+    cast_make(&w->c, NULL);
+    if (w->c.kinds[0].clip_reserve) overwrite_clips(w);
+}
+
+static void close_show(show *w)
+{
+    cast_close_stage(&w->c);
+    free(w->copy);
+}
+
+/* The bytes of a wanted clip, as read from the pack's file, at an odd address. */
+static noh_result bring(noh_stage *s, noh_wanted_clip w)
+{
+    uint8_t *read = malloc((size_t)w.bytes + 1u);
+    noh_result result;
+    assert_non_null(read);
+    memcpy(read + 1, (const uint8_t *)files.files[PUPPETS].data + w.offset, w.bytes);
+    result = noh_stage_load_clip(s, w.kind, w.clip, read + 1, &said);
+    memset(read, 0x5a, (size_t)w.bytes + 1u);
+    free(read);
+    return result;
+}
+
+static noh_result bring_named(noh_stage *s, const char *name)
+{
+    const uint32_t clip = noh_stage_find(s, 0, NOH_NAME_CLIP, name);
+    const noh_stage_stats *stats = noh_stage_stats_of(s);
+    assert_int_equal(noh_stage_load_clip(s, 0, clip, NULL, &said), NOH_OK);
+    for (uint32_t i = 0; i < stats->wanted_count; i++) {
+        if (stats->wanted[i].clip == clip) return bring(s, stats->wanted[i]);
+    }
+    return NOH_OK; /* it is there */
+}
+
+static int is_there(noh_stage *s, const char *name)
+{
+    const uint32_t clip = noh_stage_find(s, 0, NOH_NAME_CLIP, name), before = noh_stage_stats_of(s)->wanted_count;
+    assert_true(clip != NOH_NONE);
+    return !noh_clip_is_absent(&s->kinds[0].set, clip) && noh_stage_stats_of(s)->wanted_count == before;
+}
+
+static void enter(noh_stage *s, noh_actor *actors)
+{
+    for (uint32_t i = 0; i < PLAYERS; i++) {
+        const noh_place place = { { 1.1f * (float)i - 2.0f, 0.0f, 0.0f }, { 0, 0, 0, 0 }, 0.0f };
+        if (noh_stage_spawn(s, 0, &place, &actors[i], &said) != NOH_OK) fail_msg("%s", said.what);
+    }
+}
+
+static void frame(noh_stage *s, uint32_t number)
+{
+    const noh_stage_view view = cast_view(number % 40u, 6.0f);
+    if (noh_stage_frame(s, 3u * CAST_STEP, &view, NULL, NULL, &said) != NOH_OK) fail_msg("%s", said.what);
+}
+
+static void expect_same(noh_stage *a, const noh_actor *of_a, noh_stage *b, const noh_actor *of_b)
+{
+    uint32_t count[2];
+    const noh_stage_event *told_a = noh_stage_events(a, &count[0]), *told_b = noh_stage_events(b, &count[1]);
+    assert_true(noh_stage_hash(a) == noh_stage_hash(b));
+    assert_int_equal(count[0], count[1]);
+    for (uint32_t i = 0; i < count[0]; i++) assert_string_equal(told_a[i].name, told_b[i].name);
+    for (uint32_t i = 0; i < PLAYERS; i++) {
+        for (uint32_t j = 0; j < a->kinds[0].skeleton.joint_count; j++) {
+            float ma[12], mb[12];
+            const noh_result result = noh_actor_joint(a, of_a[i], j, ma, NULL);
+            assert_int_equal(noh_actor_joint(b, of_b[i], j, mb, NULL), result);
+            if (result == NOH_OK) assert_memory_equal(ma, mb, sizeof ma);
+        }
+    }
+}
+
+/* ---- playing ---- */
+
+static noh_result do_play(noh_stage *s, noh_actor actor, uint32_t what, const char *clip)
+{
+    const noh_play plays[3] = { { 0 }, { .flags = NOH_PLAY_INERTIA }, { .flags = NOH_PLAY_PHASE } };
+    if (what == 3) return noh_actor_stop(s, actor, 0, 0, &said);
+    if (what == 4) return noh_actor_play(s, actor, 2, clip, &plays[0], &said); /* additive */
+    if (what == 5) return noh_actor_play_graph(s, actor, 0, "moves", NULL, &said);
+    return noh_actor_play(s, actor, 0, clip, &plays[what], &said);
+}
+
+static void stop_all(noh_stage *s, noh_actor actor)
+{
+    assert_int_equal(noh_actor_stop(s, actor, 0, 1, &said), NOH_OK);
+    assert_int_equal(noh_actor_stop(s, actor, 2, 1, &said), NOH_OK);
+}
+
+/* In any order, with room for a few clips: the stage that has all clips in place is the oracle. A play fails where a
+ * clip is absent, and the actor plays as before; then the game brings what is wanted, if what plays leaves room. */
+static void any_order_has_the_bits_of_clips_in_place(void **state)
+{
+    test_random r = test_random_from(43u);
+    uint32_t refused = 0, brought = 0, full = 0;
+    (void)state;
+    for (uint32_t jobs = 1; jobs <= 3; jobs += 2) {
+        show a, b;
+        noh_actor of_a[PLAYERS], of_b[PLAYERS];
+        open_show(&a, 0, 1), open_show(&b, largest_clip() + clip_bytes(1) + 64u, jobs);
+        make(&a), make(&b);
+        enter(a.c.stage, of_a), enter(b.c.stage, of_b);
+        for (uint32_t round = 0; round < 160; round++) {
+            const uint32_t who = test_random_below(&r, PLAYERS), what = test_random_below(&r, 6);
+            const char *clip = noh_stage_name(a.c.stage, 0, NOH_NAME_CLIP, test_random_below(&r, CLIPS));
+            const noh_stage_stats *stats = noh_stage_stats_of(b.c.stage);
+            noh_result result = do_play(b.c.stage, of_b[who], what, clip);
+            for (uint32_t i = 0; result == NOH_ERR_NOT_FOUND && stats->wanted_count && i < CLIPS; i++) {
+                refused++;
+                assert_true(noh_stage_hash(a.c.stage) == noh_stage_hash(b.c.stage));
+                result = bring(b.c.stage, stats->wanted[0]);
+                brought += result == NOH_OK;
+                full += result == NOH_ERR_MEMORY;
+                if (result == NOH_OK) result = do_play(b.c.stage, of_b[who], what, clip);
+            }
+            if (result == NOH_OK) assert_int_equal(do_play(a.c.stage, of_a[who], what, clip), NOH_OK);
+            for (uint32_t i = 0; round % 8u == 7u && i < PLAYERS; i++) {
+                stop_all(a.c.stage, of_a[i]), stop_all(b.c.stage, of_b[i]);
+            }
+            for (uint32_t f = 0; f < 3; f++) {
+                frame(a.c.stage, round), frame(b.c.stage, round);
+                expect_same(a.c.stage, of_a, b.c.stage, of_b);
+            }
+        }
+        close_show(&a), close_show(&b);
+    }
+    printf("# %u refused, %u brought, %u without room\n", refused, brought, full);
+    assert_true(refused > 20u && brought > 20u && full > 5u);
+}
+
+static void the_least_recently_used_goes(void **state)
+{
+    noh_actor actors[PLAYERS];
+    show w;
+    noh_stage *s;
+    (void)state;
+    open_show(&w, largest_clip() + clip_bytes(0), 1);
+    make(&w);
+    s = w.c.stage;
+    enter(s, actors);
+    assert_false(is_there(s, "dance") || is_there(s, "idle"));
+    assert_int_equal(noh_actor_play(s, actors[0], 0, "dance", NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "not in memory"));
+    assert_int_equal(noh_stage_stats_of(s)->wanted_count, 1);
+    assert_null(noh_actor_track(s, actors[0], 0));
+    assert_int_equal(bring_named(s, "dance"), NOH_OK);
+    assert_int_equal(noh_stage_stats_of(s)->wanted_count, 0);
+    assert_int_equal(bring_named(s, "idle"), NOH_OK);
+    assert_int_equal(bring_named(s, "walk"), NOH_OK); /* dance came first, and nothing played it */
+    assert_true(is_there(s, "idle") && is_there(s, "walk") && !is_there(s, "dance"));
+    assert_int_equal(noh_actor_play(s, actors[0], 0, "walk", NULL, &said), NOH_OK);
+    frame(s, 0);
+    assert_int_equal(bring_named(s, "dance"), NOH_OK); /* idle goes, walk plays */
+    assert_true(is_there(s, "dance") && is_there(s, "walk") && !is_there(s, "idle"));
+    assert_int_equal(noh_actor_play(s, actors[1], 0, "dance", NULL, &said), NOH_OK);
+    assert_int_equal(bring_named(s, "bow"), NOH_ERR_MEMORY);
+    assert_non_null(strstr(said.what, "reserve"));
+    assert_int_equal(said.where, clip_bytes(1) + largest_clip());
+    assert_int_equal(said.need, said.where + clip_bytes(2));
+    assert_true(is_there(s, "dance") && is_there(s, "walk"));
+    assert_int_equal(noh_actor_stop(s, actors[0], 0, 1, &said), NOH_OK);
+    frame(s, 1);
+    assert_int_equal(bring_named(s, "idle"), NOH_OK);
+    assert_true(is_there(s, "dance") && !is_there(s, "walk"));
+    close_show(&w);
+}
+
+static void a_graph_needs_all_its_clips(void **state)
+{
+    noh_actor actors[PLAYERS];
+    const noh_stage_stats *stats;
+    uint32_t wanted;
+    show w;
+    (void)state;
+    open_show(&w, 1u << 16, 1);
+    make(&w);
+    stats = noh_stage_stats_of(w.c.stage);
+    enter(w.c.stage, actors);
+    assert_int_equal(noh_actor_play_graph(w.c.stage, actors[0], 0, "moves", NULL, &said), NOH_ERR_NOT_FOUND);
+    wanted = stats->wanted_count;
+    assert_true(wanted >= 2u && said.need >= wanted);
+    while (stats->wanted_count) {
+        assert_int_equal(noh_actor_play_graph(w.c.stage, actors[0], 0, "moves", NULL, &said), NOH_ERR_NOT_FOUND);
+        assert_int_equal(bring(w.c.stage, stats->wanted[stats->wanted_count - 1u]), NOH_OK);
+    }
+    assert_int_equal(noh_actor_play_graph(w.c.stage, actors[0], 0, "moves", NULL, &said), NOH_OK);
+    for (uint32_t f = 0; f < 20; f++) frame(w.c.stage, f);
+    close_show(&w);
+}
+
+/* ---- states ---- */
+
+static void a_state_that_plays_what_is_absent_is_refused(void **state)
+{
+    noh_actor of_a[PLAYERS], of_b[PLAYERS];
+    show a, b;
+    const void *own;
+    void *copy;
+    size_t bytes;
+    uint64_t before;
+    (void)state;
+    open_show(&a, 1u << 16, 1), open_show(&b, 1u << 16, 1);
+    make(&a), make(&b);
+    enter(a.c.stage, of_a), enter(b.c.stage, of_b);
+    assert_int_equal(bring_named(a.c.stage, "walk"), NOH_OK);
+    assert_int_equal(bring_named(a.c.stage, "bow"), NOH_OK);
+    assert_int_equal(noh_actor_play(a.c.stage, of_a[1], 0, "walk", NULL, &said), NOH_OK);
+    assert_int_equal(noh_actor_play(a.c.stage, of_a[2], 0, "bow", NULL, &said), NOH_OK);
+    for (uint32_t f = 0; f < 5; f++) frame(a.c.stage, f);
+    own = noh_stage_state(a.c.stage, &bytes);
+    copy = test_aligned(own, bytes);
+    before = noh_stage_hash(b.c.stage);
+    assert_int_equal(noh_stage_set_state(b.c.stage, copy, bytes, &said), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "not in memory"));
+    assert_int_equal(said.need, 2);
+    assert_true(noh_stage_hash(b.c.stage) == before);
+    while (noh_stage_stats_of(b.c.stage)->wanted_count) {
+        assert_int_equal(noh_stage_set_state(b.c.stage, copy, bytes, NULL), NOH_ERR_NOT_FOUND);
+        assert_int_equal(bring(b.c.stage, noh_stage_stats_of(b.c.stage)->wanted[0]), NOH_OK);
+    }
+    assert_int_equal(noh_stage_set_state(b.c.stage, copy, bytes, &said), NOH_OK);
+    for (uint32_t f = 5; f < 12; f++) {
+        frame(a.c.stage, f), frame(b.c.stage, f);
+        expect_same(a.c.stage, of_a, b.c.stage, of_a);
+    }
+    free(copy);
+    close_show(&a), close_show(&b);
+}
+
+/* ---- a slot, bytes and errors ---- */
+
+static void a_slot_has_a_reserve_of_its_own(void **state)
+{
+    noh_kind_desc desc;
+    noh_actor actor;
+    noh_stage *s;
+    show w;
+    (void)state;
+    open_show(&w, 1u << 15, 1);
+    desc = w.c.kinds[0];
+    w.c.kinds[0].changes = 2;
+    cast_make(&w.c, NULL);
+    s = w.c.stage;
+    assert_int_equal(noh_stage_set_kind(s, 0, &desc, &said), NOH_OK);
+    assert_int_equal(noh_stage_spawn(s, 0, NULL, &actor, &said), NOH_OK);
+    assert_int_equal(noh_actor_play(s, actor, 0, "walk", NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(bring_named(s, "walk"), NOH_OK);
+    assert_int_equal(noh_actor_play(s, actor, 0, "walk", NULL, &said), NOH_OK);
+    frame(s, 0);
+    assert_int_equal(noh_actor_play(s, actor, 0, "bow", NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_stage_despawn(s, actor, &said), NOH_OK);
+    assert_int_equal(noh_stage_set_kind(s, 0, NULL, &said), NOH_OK);
+    assert_int_equal(noh_stage_stats_of(s)->wanted_count, 0);
+    close_show(&w);
+}
+
+static void the_plan_states_the_reserve(void **state)
+{
+    noh_stage_bytes parts[32];
+    uint64_t sum = 0, reserve = 0;
+    uint32_t count;
+    show w;
+    (void)state;
+    open_show(&w, largest_clip() + 1u, 1);
+    cast_make(&w.c, NULL);
+    count = noh_stage_plan_parts(&w.c.desc, NULL, &w.c.plan, parts, TEST_COUNT(parts));
+    for (uint32_t i = 0; i < count && i < TEST_COUNT(parts); i++) {
+        sum += parts[i].cpu_bytes;
+        if (strcmp(parts[i].what, "clip reserve") == 0) reserve += parts[i].cpu_bytes;
+    }
+    assert_int_equal(sum, w.c.plan.cpu_bytes);
+    assert_int_equal(reserve, largest_clip() + 16u);
+    close_show(&w);
+}
+
+static void refuse(noh_stage *s, uint32_t kind, uint32_t clip, const void *chunk, noh_result result, const char *what)
+{
+    assert_int_equal(noh_stage_load_clip(s, kind, clip, chunk, &said), result);
+    if (!strstr(said.what, what)) fail_msg("'%s' is not about %s", said.what, what);
+}
+
+static void what_is_wrong_is_refused(void **state)
+{
+    noh_wanted_clip first;
+    uint8_t *bytes;
+    show w, plain;
+    (void)state;
+    open_show(&w, largest_clip() - 16u, 1);
+    assert_int_equal(noh_stage_plan_make(&w.c.desc, NULL, &w.c.plan, &said), NOH_ERR_ARG);
+    assert_non_null(strstr(said.what, "clip_reserve"));
+    assert_int_equal(said.need, largest_clip());
+    w.c.kinds[0].clip_reserve = NOH_CLIP_RESERVE_MAX + 1u;
+    assert_int_equal(noh_stage_plan_make(&w.c.desc, NULL, &w.c.plan, &said), NOH_ERR_ARG);
+    w.c.kinds[0].clip_reserve = largest_clip();
+    make(&w);
+    open_show(&plain, 0, 1);
+    make(&plain);
+    refuse(plain.c.stage, 0, 0, NULL, NOH_ERR_UNSUPPORTED, "clip_reserve");
+    refuse(w.c.stage, 1, 0, NULL, NOH_ERR_ARG, "no such kind");
+    refuse(w.c.stage, 0, CLIPS, NULL, NOH_ERR_NOT_FOUND, "no such clip");
+    assert_int_equal(noh_stage_load_clip(w.c.stage, 0, 0, NULL, &said), NOH_OK);
+    first = noh_stage_stats_of(w.c.stage)->wanted[0];
+    bytes = test_aligned((const uint8_t *)files.files[PUPPETS].data + first.offset, first.bytes);
+    for (uint32_t i = 0; i < first.bytes; i += 97u) {
+        bytes[i] ^= 1u;
+        refuse(w.c.stage, 0, 0, bytes, NOH_ERR_DATA, "not its chunk");
+        bytes[i] ^= 1u;
+    }
+    assert_int_equal(noh_stage_frame_begin(w.c.stage, NULL, 0, NULL), NOH_OK);
+    refuse(w.c.stage, 0, 0, bytes, NOH_ERR_ARG, "during a step or a frame");
+    assert_int_equal(noh_stage_frame_end(w.c.stage, NULL), NOH_OK);
+    assert_int_equal(noh_stage_load_clip(w.c.stage, 0, 0, bytes, &said), NOH_OK);
+    assert_int_equal(noh_stage_load_clip(w.c.stage, 0, 0, bytes, &said), NOH_OK);
+    free(bytes);
+    close_show(&w), close_show(&plain);
+}
+
+static int open_files(void **state)
+{
+    (void)state;
+    cast_open(&files);
+    return 0;
+}
+
+static int close_files(void **state)
+{
+    (void)state;
+    cast_close(&files);
+    return 0;
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_order_has_the_bits_of_clips_in_place),
+        cmocka_unit_test(the_least_recently_used_goes),
+        cmocka_unit_test(a_graph_needs_all_its_clips),
+        cmocka_unit_test(a_state_that_plays_what_is_absent_is_refused),
+        cmocka_unit_test(a_slot_has_a_reserve_of_its_own),
+        cmocka_unit_test(the_plan_states_the_reserve),
+        cmocka_unit_test(what_is_wrong_is_refused),
+    };
+    return cmocka_run_group_tests(tests, open_files, close_files);
+}
