@@ -285,6 +285,11 @@ typedef struct noh_stage_desc {
     /* Reflections and the shadow map (noh_gl.h). Shaders are then lit by noh_stage_set_lighting. Must outlive the
      * stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
+    /* Bytes on the GPU for textures whose finer levels come as the size on screen needs them, in pieces within load_bytes,
+     * and go where the room is needed; until then coarser levels are shown. Levels up to 64 x 64 are always there. Their
+     * packs are read by frames. At least all these small levels, the largest texture whole, and small ones once more.
+     * Textures of kinds that change, masks at vertices and toons' ramps stay whole. Default (0) all textures whole */
+    uint64_t texture_reserve;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of noh_gl.h; default (NULL) nothing is drawn */
     /* With the other stages of the same ledger that share, what a pack has on the GPU exists once (noh_gl.h). Default
      * (NULL) each stage has its own */
@@ -344,7 +349,8 @@ typedef struct noh_stage_plan {
     uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots, at most */
     uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: what its peers have, and it would take if it were alone */
     uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
-    uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer` */
+    uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer`,
+                           * and without the clips of kinds with clip_reserve */
     uint32_t halves;      /* 1: 16-bit accumulators */
     uint32_t sums;        /* 1: sums instead of finished vertices, as with morph_sums */
     uint32_t morph_path;  /* the chosen noh_morph_path; 0 without GPU */
@@ -426,6 +432,8 @@ typedef struct noh_stage_stats {
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
     uint32_t actors_high, events_high, coarser_high;
+    uint32_t textures_coarser;     /* textures whose levels are coarser than needed: they come, or texture_reserve is
+                                    * too small */
     uint32_t wanted_count;         /* clips that something asked for and that have not come since */
     const noh_wanted_clip *wanted; /* [wanted_count] in the order of asking; those past the limit are asked again */
     float error_pixels;            /* the largest of all visible actors */

@@ -37,9 +37,14 @@ void noh_gl_draw_before(noh_gl_renderer *renderer, const noh_gl_before *before);
  * errors  UNSUPPORTED the texture has ASTC blocks and `astc` is 0 */
 noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error *error);
 
+/* The functions of low_gl.h for the levels from `first` on, which are then the object's levels from 0 on. */
+uint64_t noh_gl_picture_bytes_from(const noh_texture *texture, int etc2, uint32_t first);
+noh_result noh_gl_picture_create_from(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                      uint32_t first, noh_gl_texture *out, noh_error *error);
+
 /* A texture without pixels; errors as noh_gl_picture_create. */
 noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                       noh_gl_texture *out, noh_error *error);
+                                       uint32_t first, noh_gl_texture *out, noh_error *error);
 
 /* Make a mesh with the buffers of `of`, which has the same levels. The last mesh that has them deletes them.
  * errors  as noh_gl_mesh_create */
@@ -50,8 +55,8 @@ noh_result noh_gl_mesh_create_on(const noh_gl_api *api, const noh_mesh *mesh, co
  * ranges   *at: initially 0, then as left by the previous call; *bytes: most bytes to send, at least 64 for progress;
  *          the bytes sent are subtracted
  * returns  1 once everything is uploaded */
-int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, const noh_gl_texture *picture, uint32_t *at,
-                        uint32_t *bytes);
+int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, uint32_t first,
+                        const noh_gl_texture *picture, uint32_t *at, uint32_t *bytes);
 
 #ifdef __cplusplus
 }

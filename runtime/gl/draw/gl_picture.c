@@ -47,22 +47,28 @@ static int is_taken(const noh_texture_header *h, int etc2)
     return h->format && (etc2 || h->format >= NOH_TEXTURE_ASTC_4X4);
 }
 
-static noh_gl_texture_desc picture_desc(const noh_texture *texture, int etc2)
+static noh_gl_texture_desc picture_desc(const noh_texture *texture, int etc2, uint32_t first)
 {
     const noh_texture_header *h = texture->header;
+    const noh_texture_level level = noh_texture_level_at(texture, first);
     const noh_gl_texture_desc desc = { .format = is_taken(h, etc2) ? blocks_format(h) : texels_format(h),
-                                       .width = h->width,
-                                       .height = h->height,
-                                       .levels = h->level_count,
+                                       .width = level.width,
+                                       .height = level.height,
+                                       .levels = h->level_count - first,
                                        .filter = h->nearest ? GL_NEAREST : GL_LINEAR };
     return desc;
 }
 
-uint64_t noh_gl_picture_bytes(const noh_texture *texture, int etc2)
+uint64_t noh_gl_picture_bytes_from(const noh_texture *texture, int etc2, uint32_t first)
 {
     NOH_ASSERT(texture && texture->header);
-    noh_gl_texture_desc desc = picture_desc(texture, etc2);
+    noh_gl_texture_desc desc = picture_desc(texture, etc2, first);
     return noh_gl_texture_bytes(&desc);
+}
+
+uint64_t noh_gl_picture_bytes(const noh_texture *texture, int etc2)
+{
+    return noh_gl_picture_bytes_from(texture, etc2, 0);
 }
 
 static GLint wrap_of(uint32_t wrap)
@@ -155,29 +161,29 @@ static uint32_t next_piece(const noh_texture *texture, int etc2, const noh_textu
     return of->columns * of->rows * sent;
 }
 
-int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, const noh_gl_texture *picture, uint32_t *at,
-                        uint32_t *bytes)
+int noh_gl_picture_fill(const noh_gl_api *api, const noh_texture *texture, uint32_t first,
+                        const noh_gl_texture *picture, uint32_t *at, uint32_t *bytes)
 {
-    uint32_t first = 0; /* units of the levels before */
+    uint32_t begin = 0; /* units of the levels before */
     noh_gl_pixels kept;
     int done = 1;
     api->ActiveTexture(GL_TEXTURE0);
     api->BindTexture(GL_TEXTURE_2D, picture->name);
     noh_gl_unpack_begin(api, &kept);
-    for (uint32_t i = 0; i < texture->header->level_count && done; i++) {
+    for (uint32_t i = first; i < texture->header->level_count && done; i++) {
         const noh_texture_level level = noh_texture_level_at(texture, i);
         const uint32_t side = unit_side(texture->header->format);
         const uint32_t units = (level.width + side - 1u) / side * ((level.height + side - 1u) / side);
-        while (*at < first + units) {
+        while (*at < begin + units) {
             piece of;
-            const uint32_t sent = next_piece(texture, api->etc2, &level, *at - first, *bytes, &of);
+            const uint32_t sent = next_piece(texture, api->etc2, &level, *at - begin, *bytes, &of);
             if (!sent) break;
-            send_piece(api, texture, i, &level, of);
+            send_piece(api, texture, i - first, &level, of);
             *at += of.columns * of.rows;
             *bytes -= sent;
         }
-        first += units;
-        done = *at >= first;
+        begin += units;
+        done = *at >= begin;
     }
     noh_gl_unpack_end(api, &kept);
     api->BindTexture(GL_TEXTURE_2D, 0);
@@ -193,7 +199,7 @@ noh_result noh_gl_picture_check(const noh_texture *texture, int astc, noh_error 
 }
 
 noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                       noh_gl_texture *out, noh_error *error)
+                                       uint32_t first, noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture picture;
     noh_result result;
@@ -204,7 +210,7 @@ noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *led
         return noh_fail(error, NOH_ERR_UNSUPPORTED,
                         "the context does not support ETC2: set noh_gl_api.decode to noh_etc2_decode", 0, 0);
     }
-    noh_gl_texture_desc desc = picture_desc(texture, api->etc2);
+    noh_gl_texture_desc desc = picture_desc(texture, api->etc2, first);
     result = noh_gl_texture_create(api, ledger, &desc, &picture, error);
     if (result) {
         return result;
@@ -219,14 +225,14 @@ noh_result noh_gl_picture_create_empty(const noh_gl_api *api, noh_gl_ledger *led
     return NOH_OK;
 }
 
-noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
-                                 noh_gl_texture *out, noh_error *error)
+noh_result noh_gl_picture_create_from(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                      uint32_t first, noh_gl_texture *out, noh_error *error)
 {
     noh_gl_texture picture;
     uint32_t at = 0, bytes = UINT32_MAX;
-    noh_result result = noh_gl_picture_create_empty(api, ledger, texture, &picture, error);
+    noh_result result = noh_gl_picture_create_empty(api, ledger, texture, first, &picture, error);
     if (result) return result;
-    while (!noh_gl_picture_fill(api, texture, &picture, &at, &bytes)) bytes = UINT32_MAX;
+    while (!noh_gl_picture_fill(api, texture, first, &picture, &at, &bytes)) bytes = UINT32_MAX;
     result = noh_gl_error_check(api, "the driver refused the pixels of a texture", picture.bytes, error);
     if (result) {
         noh_gl_texture_delete(api, ledger, &picture);
@@ -234,6 +240,12 @@ noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, c
     }
     *out = picture;
     return NOH_OK;
+}
+
+noh_result noh_gl_picture_create(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,
+                                 noh_gl_texture *out, noh_error *error)
+{
+    return noh_gl_picture_create_from(api, ledger, texture, 0, out, error);
 }
 
 noh_result noh_gl_picture_restore(const noh_gl_api *api, noh_gl_ledger *ledger, const noh_texture *texture,

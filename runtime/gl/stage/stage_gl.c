@@ -183,7 +183,10 @@ static void carve_kind(measure *m, uint32_t i, noh_gl_kind *kind)
     noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
     noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
     noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
+    const int streams_any = NOH_TEXTURES_COME && m->desc->texture_reserve && !m->desc->kinds[i].changes;
+    uint16_t *streams = CARVE(m, streams_any ? count : 0, uint16_t);
     if (!kind) return;
+    if (streams_any) kind->streams = memset(streams, 0, count * sizeof *streams);
     kind->last = last_count ? memset(last, 0, last_count * sizeof *last) : NULL;
     kind->covers = covers;
     memset(indices, 0, cover_count * meshes * sizeof *indices);
@@ -310,6 +313,8 @@ static void carve_head(measure *m)
         gl->renderer_desc = renderer_desc(m->asked, m->plan);
         gl->programs[0] = gl->programs[1] = 0;
         gl->needs_program[0] = gl->needs_program[1] = 0;
+        gl->streamed = NULL;
+        gl->streamed_count = 0;
         gl->renderer = renderer;
         gl->variants = variants;
         gl->variants_bytes = variants_bytes;
@@ -366,6 +371,20 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
     return result == NOH_OK ? visit_item(m, site, item, error) : result;
 }
 
+static noh_result visit_streamed(measure *m, noh_error *error)
+{
+    const size_t from = m->arena.used;
+    uint32_t count;
+    const noh_result result = noh_gl_textures_plan(m->desc, m->caps, &count, error);
+    noh_gl_streamed *streamed = CARVE(m, count, noh_gl_streamed);
+    add(m, "texture reserve", NOH_NONE, from, m->desc->texture_reserve);
+    if (m->gl && result == NOH_OK) {
+        m->gl->streamed = streamed;
+        noh_gl_textures_open(m->desc, m->gl);
+    }
+    return result;
+}
+
 static noh_result count_pictures(measure *m, uint32_t kind, noh_error *error)
 {
     const uint64_t covers = noh_gl_covers_bytes(m->desc, m->plan, kind);
@@ -394,6 +413,7 @@ static noh_result visit(measure *m, noh_error *error)
         if (!m->desc->kinds[i].changes) result = count_pictures(m, i, error);
     }
     carve_slots(m);
+    if (NOH_TEXTURES_COME && m->desc->texture_reserve && result == NOH_OK) result = visit_streamed(m, error);
     if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
     return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, m->gl, error) : result;
 }
@@ -795,11 +815,20 @@ noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, no
     return NOH_OK;
 }
 
-const noh_stage_gpu noh_stage_on_gl = { measure_stage,    list_parts,       init,
-                                        destroy,          restore,          pose,
-                                        upload,           noh_gl_load,      noh_gl_use,
-                                        measure_slot,     noh_gl_slot_come, noh_gl_slot_fill,
-                                        noh_gl_slot_close };
+const noh_stage_gpu noh_stage_on_gl = { measure_stage,
+                                        list_parts,
+                                        init,
+                                        destroy,
+                                        restore,
+                                        pose,
+                                        upload,
+                                        noh_gl_load,
+                                        noh_gl_use,
+                                        measure_slot,
+                                        noh_gl_slot_come,
+                                        noh_gl_slot_fill,
+                                        noh_gl_slot_close,
+                                        NOH_TEXTURES_COME ? noh_gl_textures_stream : NULL };
 
 /* ---- shaders of your own ---- */
 

@@ -106,11 +106,24 @@ typedef struct noh_gl_filling {
     int done;
 } noh_gl_filling;
 
+/* A texture whose levels come by need (stage_gl_textures.c). */
+typedef struct noh_gl_streamed {
+    noh_texture texture;
+    uint32_t kind, picture; /* of its first owner */
+    uint32_t first, tail;   /* the finest level that is there; that is always there */
+    uint32_t wanted;        /* the finest that the last frame needed */
+    float texels;           /* of level 0 in a metre */
+    noh_gl_texture next;    /* another object for it, which frames fill; no name: none */
+    uint32_t next_first, at;
+} noh_gl_streamed;
+
 typedef struct noh_gl_kind {
-    noh_gl_last *last;        /* [actor_count] with motion; else NULL */
-    noh_gl_cover *covers;     /* [cover_count] */
-    noh_gl_item *items;       /* [mesh_count] */
-    noh_gl_texture *pictures; /* [1 + texture_set_count][textures of the pack]: those that others own, too */
+    noh_gl_last *last;         /* [actor_count] with motion; else NULL */
+    noh_gl_cover *covers;      /* [cover_count] */
+    noh_gl_item *items;        /* [mesh_count] */
+    noh_gl_texture *pictures;  /* [1 + texture_set_count][textures of the pack]: those that others own, too */
+    noh_gl_streamed *streamed; /* of the stage */
+    uint16_t *streams;         /* the same: 1 + index of its noh_gl_streamed, 0: whole; NULL: all are */
     /* of a slot; the arrays above are NULL while it is empty */
     uint8_t *slot;        /* [room.drawn_bytes] NULL: the kind stays */
     uint32_t first_model; /* [room.mesh_count] of its own */
@@ -132,6 +145,8 @@ typedef struct noh_stage_gl {
     uint32_t model_count, mesh_count;
     noh_mesh *meshes; /* [mesh_count] full, for renderers: of the models of kinds that stay, then of all kinds that the
                        * slots were planned for */
+    noh_gl_streamed *streamed; /* [streamed_count] */
+    uint32_t streamed_count;
     noh_gl_renderer_desc renderer_desc; /* without meshes and shaders */
     unsigned programs[2];               /* of the sums of slots; 0: none needs it, or its context was lost */
     uint8_t needs_program[2];
@@ -317,6 +332,24 @@ int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uin
                          uint32_t *bytes);
 void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, const noh_stage_gl *gl,
                             uint32_t kind);
+
+/* A texture of a kind's mesh pack, in one of the kind's sets. */
+typedef struct noh_gl_picture_site {
+    uint32_t kind, set, texture;
+} noh_gl_picture_site;
+
+/* Advance to the next one of all kinds before `end`; 0 at the end. Begin with texture UINT32_MAX. */
+int noh_gl_next_picture(const noh_stage_desc *desc, uint32_t end, noh_gl_picture_site *where);
+/* The first site with the same texture; may be the site itself. */
+noh_gl_picture_site noh_gl_picture_owner(const noh_stage_desc *desc, noh_gl_picture_site where);
+int noh_gl_owns_picture(const noh_stage_desc *desc, noh_gl_picture_site where, noh_texture *texture);
+uint32_t noh_gl_picture_index(const noh_stage_desc *desc, noh_gl_picture_site where); /* in noh_gl_kind.pictures */
+int noh_gl_is_streamed(const noh_stage_desc *desc, noh_gl_picture_site where, const noh_texture *texture);
+/* How many are streamed.
+ * errors  ARG texture_reserve is too small (need: the bytes) */
+noh_result noh_gl_textures_plan(const noh_stage_desc *desc, const noh_gl_caps *caps, uint32_t *count, noh_error *error);
+void noh_gl_textures_open(const noh_stage_desc *desc, noh_stage_gl *gl); /* before they are made */
+void noh_gl_textures_stream(noh_stage *stage, uint32_t *bytes);
 
 /* The meshes and slots of all sites that an owner serves. Borrowed by `out`. */
 typedef struct noh_gl_tiles {

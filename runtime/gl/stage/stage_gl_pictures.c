@@ -1,6 +1,6 @@
 /* stage_gl_pictures.c: the textures of all kinds and of their texture sets. The GPU holds each texture of a pack
- * once: the first set that has it owns it, the others copy its name. An owner of a stage that shares takes the name from
- * an owner that has it already (stage_gl_share.c). */
+ * once: the first set that has it owns it, the others copy its name. An owner of a stage that shares takes the name
+ * from an owner that has it already (stage_gl_share.c). */
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "noh/base.h"
@@ -9,10 +9,7 @@
 #include "noh/gl_device.h"
 #include "noh/low_gl.h"
 
-/* A texture of a kind's mesh pack, in one of the kind's sets. */
-typedef struct site {
-    uint32_t kind, set, texture;
-} site;
+typedef noh_gl_picture_site site;
 
 /* 0: an empty slot */
 static uint32_t textures_of(const noh_kind_desc *kind)
@@ -25,10 +22,22 @@ uint32_t noh_gl_pictures_count(const noh_kind_desc *kind)
     return (1u + kind->texture_set_count) * textures_of(kind);
 }
 
+uint32_t noh_gl_picture_index(const noh_stage_desc *desc, site where)
+{
+    return where.set * desc->kinds[where.kind].mesh->runs[NOH_CHUNK_TEXTURE].count + where.texture;
+}
+
 static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
 {
-    return &kinds[where.kind]
-                .pictures[where.set * desc->kinds[where.kind].mesh->runs[NOH_CHUNK_TEXTURE].count + where.texture];
+    return &kinds[where.kind].pictures[noh_gl_picture_index(desc, where)];
+}
+
+/* Of a texture whose levels come by need; NULL: it is whole. */
+static noh_gl_streamed *streamed(const noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
+{
+    const uint16_t *streams = NOH_TEXTURES_COME ? kinds[where.kind].streams : NULL;
+    const uint32_t own = streams ? streams[noh_gl_picture_index(desc, where)] : 0;
+    return own ? &kinds[where.kind].streamed[own - 1u] : NULL;
 }
 
 /* Whether a set has the texture with this index in a pack; *texture is then the one that it replaces. */
@@ -46,8 +55,7 @@ static int has(const noh_kind_desc *kind, uint32_t set, const noh_pack *pack, ui
     return 0;
 }
 
-/* The first site with the same texture as a site; may be the site itself. */
-static site owner_of(const noh_stage_desc *desc, site where)
+site noh_gl_picture_owner(const noh_stage_desc *desc, site where)
 {
     const noh_pack *pack;
     const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
@@ -65,17 +73,16 @@ static site owner_of(const noh_stage_desc *desc, site where)
     return s;
 }
 
-static int owns(const noh_stage_desc *desc, site where, noh_texture *texture)
+int noh_gl_owns_picture(const noh_stage_desc *desc, site where, noh_texture *texture)
 {
-    const site owner = owner_of(desc, where);
+    const site owner = noh_gl_picture_owner(desc, where);
     const noh_pack *pack;
     const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
     (void)noh_pack_texture_at(pack, index, texture, NULL);
     return owner.kind == where.kind && owner.set == where.set && owner.texture == where.texture;
 }
 
-/* Advance to the next site of all kinds before `end`; 0 at the end. Begin with texture UINT32_MAX. */
-static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
+int noh_gl_next_picture(const noh_stage_desc *desc, uint32_t end, site *where)
 {
     where->texture++;
     while (where->kind < end && where->texture >= textures_of(&desc->kinds[where->kind])) {
@@ -90,8 +97,8 @@ static int next_site(const noh_stage_desc *desc, uint32_t end, site *where)
 
 /* ---- stages that share ---- */
 
-/* The next owner of a texture, in all stages of this one's context, and what it has; NULL at the end. `whole`: of kinds
- * that are uploaded. */
+/* The next owner of a texture, in all stages of this one's context, and what it has; NULL at the end. Textures whose
+ * levels come by need are each stage's own. `whole`: of kinds that are uploaded. */
 typedef struct walk {
     const noh_gl_sharing *at;
     site where;
@@ -107,9 +114,10 @@ static const noh_gl_texture *next_owner(const noh_stage_gl *gl, walk *w, int who
     for (; w->at; w->at = w->at->next, w->where = (site){ 0, 0, UINT32_MAX }) {
         const noh_stage *s = w->at->stage;
         const noh_stage_gl *other = s->gpu;
-        while (w->at->context == gl->sharing->context && next_site(&s->desc, s->desc.kind_count, &w->where)) {
+        while (w->at->context == gl->sharing->context && noh_gl_next_picture(&s->desc, s->desc.kind_count, &w->where)) {
             noh_texture texture;
-            if (!other->kinds[w->where.kind].pictures || !owns(&s->desc, w->where, &texture)) continue;
+            if (!other->kinds[w->where.kind].pictures || !noh_gl_owns_picture(&s->desc, w->where, &texture)) continue;
+            if (streamed(other->kinds, &s->desc, w->where)) continue;
             if (!whole || !s->kinds[w->where.kind].finer.hidden) return at(other->kinds, &s->desc, w->where);
         }
     }
@@ -140,7 +148,7 @@ static int others_have(const noh_stage_gl *gl, const noh_gl_texture *own)
     return 0;
 }
 
-static int peers_have(const noh_stage_desc *desc, site where)
+static int peers_have(const noh_stage_desc *desc, site where, const noh_texture *of)
 {
     const noh_pack *pack;
     const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
@@ -150,7 +158,8 @@ static int peers_have(const noh_stage_desc *desc, site where)
         for (uint32_t k = 0; k < peer->kind_count; k++) {
             uint32_t texture;
             for (uint32_t set = 0; set <= peer->kinds[k].texture_set_count; set++) {
-                if (!peer->kinds[k].changes && has(&peer->kinds[k], set, pack, index, &texture)) return 1;
+                if (peer->kinds[k].changes || !has(&peer->kinds[k], set, pack, index, &texture)) continue;
+                if (!NOH_TEXTURES_COME || !noh_gl_is_streamed(peer, (site){ k, set, texture }, of)) return 1;
             }
         }
     }
@@ -165,11 +174,13 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
     site where = { kind, 0, UINT32_MAX };
     noh_result result = NOH_OK;
     *bytes = *shared = 0;
-    while (result == NOH_OK && next_site(desc, kind + 1u, &where)) {
+    while (result == NOH_OK && noh_gl_next_picture(desc, kind + 1u, &where)) {
         noh_texture texture;
-        if (!owns(desc, where, &texture)) continue;
+        if (!noh_gl_owns_picture(desc, where, &texture)) continue;
         result = noh_gl_picture_check(&texture, caps->astc, error);
-        *(NOH_STAGES_SHARE && peers_have(desc, where) ? shared : bytes) += noh_gl_picture_bytes(&texture, caps->etc2);
+        if (NOH_TEXTURES_COME && noh_gl_is_streamed(desc, where, &texture)) continue;
+        *(NOH_STAGES_SHARE && peers_have(desc, where, &texture) ? shared : bytes) += noh_gl_picture_bytes(&texture,
+                                                                                                          caps->etc2);
     }
     return result;
 }
@@ -177,34 +188,34 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
 typedef enum making { CREATE, CREATE_EMPTY, RESTORE } making;
 
 /* kind: NOH_NONE: of all kinds that have room for them. */
-static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, making how,
-                       noh_error *error)
+static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, making how, noh_error *error)
 {
     const noh_gl_device *d = &gl->device;
     noh_gl_kind *kinds = gl->kinds;
     site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
     const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
     noh_result result = NOH_OK;
-    while (result == NOH_OK && next_site(desc, end, &where)) {
+    while (result == NOH_OK && noh_gl_next_picture(desc, end, &where)) {
         const noh_gl_texture *shared = NULL;
+        noh_gl_streamed *r;
         noh_gl_texture *to;
         noh_texture texture;
         int is_owner;
         if (!kinds[where.kind].pictures) continue;
         to = at(kinds, desc, where);
-        is_owner = owns(desc, where, &texture);
-        if (is_owner && noh_gl_shares(gl)) shared = find_shared(desc, gl, where);
+        r = streamed(kinds, desc, where);
+        is_owner = noh_gl_owns_picture(desc, where, &texture);
+        if (how == RESTORE && is_owner && r) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, &r->next);
+        if (is_owner && !r && noh_gl_shares(gl)) shared = find_shared(desc, gl, where);
         if (!is_owner) {
-            *to = *at(kinds, desc, owner_of(desc, where));
+            *to = *at(kinds, desc, noh_gl_picture_owner(desc, where));
         } else if (shared) {
             *to = *shared;
-        } else if (how == RESTORE && !kinds[where.kind].slot) {
-            result = noh_gl_picture_restore(d->api, d->ledger, &texture, to, error);
-        } else if (how != CREATE) {
-            if (how == RESTORE) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, to);
-            result = noh_gl_picture_create_empty(d->api, d->ledger, &texture, to, error);
         } else {
-            result = noh_gl_picture_create(d->api, d->ledger, &texture, to, error);
+            if (how == RESTORE) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, to);
+            result = how == CREATE || (how == RESTORE && !kinds[where.kind].slot)
+                         ? noh_gl_picture_create_from(d->api, d->ledger, &texture, r ? r->first : 0, to, error)
+                         : noh_gl_picture_create_empty(d->api, d->ledger, &texture, 0, to, error);
         }
     }
     return result;
@@ -231,12 +242,13 @@ int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uin
 {
     site where = { kind, 0, UINT32_MAX };
     uint32_t index = 0;
-    for (; next_site(desc, kind + 1u, &where); index++) {
+    for (; noh_gl_next_picture(desc, kind + 1u, &where); index++) {
         const noh_gl_texture *to = at(gl->kinds, desc, where);
         noh_texture texture;
         if (index < f->picture) continue;
-        if (owns(desc, where, &texture) && !(noh_gl_shares(gl) && others_have(gl, to)) && /* theirs are filled */
-            !noh_gl_picture_fill(gl->device.api, &texture, to, &f->at, bytes))
+        if (noh_gl_owns_picture(desc, where, &texture) &&
+            !(noh_gl_shares(gl) && others_have(gl, to)) && /* theirs are filled */
+            !noh_gl_picture_fill(gl->device.api, &texture, 0, to, &f->at, bytes))
             return 0;
         f->at = 0;
         f->picture = index + 1u;
@@ -249,12 +261,15 @@ void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *dev
 {
     site where = { kind == NOH_NONE ? 0 : kind, 0, UINT32_MAX };
     const uint32_t end = kind == NOH_NONE ? desc->kind_count : kind + 1u;
-    while (next_site(desc, end, &where)) {
+    while (noh_gl_next_picture(desc, end, &where)) {
+        noh_gl_streamed *r;
         noh_gl_texture *of;
         noh_texture texture;
-        if (!gl->kinds[where.kind].pictures || !owns(desc, where, &texture)) continue;
+        if (!gl->kinds[where.kind].pictures || !noh_gl_owns_picture(desc, where, &texture)) continue;
         of = at(gl->kinds, desc, where);
         if (noh_gl_shares(gl) && others_have(gl, of)) of->name = 0;
         noh_gl_texture_delete(device->api, device->ledger, of);
+        r = streamed(gl->kinds, desc, where);
+        if (r) noh_gl_texture_delete(device->api, device->ledger, &r->next);
     }
 }

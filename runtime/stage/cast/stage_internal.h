@@ -395,7 +395,14 @@ struct noh_stage_gpu {
     noh_result (*open)(noh_stage *stage, uint32_t kind, noh_error *error);
     int (*fill)(noh_stage *stage, uint32_t kind, uint32_t *bytes);
     void (*close)(noh_stage *stage, uint32_t kind);
+    /* After a frame: a piece of the levels of textures that it needs; subtracts the bytes sent. */
+    void (*stream)(noh_stage *stage, uint32_t *bytes);
 };
+
+/* 0 (as in the page's program, which has no use for it): textures are always whole. */
+#ifndef NOH_TEXTURES_COME
+#define NOH_TEXTURES_COME 1
+#endif
 
 /* ---- private calls ---- */
 
@@ -590,7 +597,7 @@ void noh_stage_wear_floats(const noh_stage *s, const noh_stage_kind *k, uint32_t
 
 const noh_pack *noh_stage_clip_pack(const noh_stage_kind *k, uint32_t clip);
 const noh_pack_chunk *noh_stage_clip_chunk(const noh_stage_kind *k, uint32_t clip);
-/* From now on no clip is there: of a kind with a reserve, or NOH_NONE: of all that stay. */
+/* From now on no clip is there: of a kind with a reserve, or NOH_NONE: of all. */
 void noh_stage_empty_clips(noh_stage *s, uint32_t kind);
 void noh_stage_forget_wanted(noh_stage *s, uint32_t kind);
 /* After a step: what plays was used. */

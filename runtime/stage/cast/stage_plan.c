@@ -472,6 +472,17 @@ static uint64_t count_set_packs(const noh_kind_desc *d)
     return bytes;
 }
 
+/* Without the clips that are not read in place. */
+static uint64_t pack_bytes(const noh_kind_desc *d, const noh_pack *pack)
+{
+    const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
+    uint64_t bytes = pack->byte_count;
+    for (uint32_t i = 0; NOH_CLIPS_COME && d->clip_reserve && i < run.count; i++) {
+        bytes -= pack->chunks[run.first + i].bytes;
+    }
+    return bytes;
+}
+
 static uint64_t count_packs(const noh_stage_desc *desc)
 {
     uint64_t bytes = 0;
@@ -481,11 +492,11 @@ static uint64_t count_packs(const noh_stage_desc *desc)
         for (uint32_t k = 0; k < i; k++) {
             seen |= desc->kinds[k].mesh->bytes == d.mesh->bytes;
         }
-        bytes += seen ? 0 : d.mesh->byte_count;
+        bytes += seen ? 0 : d.clips == d.mesh ? pack_bytes(&d, d.mesh) : d.mesh->byte_count;
         bytes += seen ? 0 : count_set_packs(&d);
-        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += d.clips->byte_count;
+        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += pack_bytes(&d, d.clips);
         for (uint32_t c = 0; !seen && d.clip_packs && c < d.clip_pack_count; c++) {
-            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? d.clip_packs[c]->byte_count : 0;
+            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? pack_bytes(&d, d.clip_packs[c]) : 0;
         }
     }
     return bytes;

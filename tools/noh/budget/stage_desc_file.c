@@ -322,6 +322,7 @@ static const setting settings[] = {
     { "halves", SET_FLAG, 0, 0, offsetof(noh_stage_desc, halves), 0, 1 },
     { "motion", SET_FLAG, 0, 0, offsetof(noh_stage_desc, motion), 0, 1 },
     { "sort_blended", SET_FLAG, 0, 0, offsetof(noh_stage_desc, sort_blended), 0, 1 },
+    { "texture_reserve", SET_BYTES, 0, 0, offsetof(noh_stage_desc, texture_reserve), 1, UINT64_MAX },
     { "share", SET_SHARE, 0, 0, 0, 0, 1 },
     { "peer", SET_PEER, 0, 1, 0, 0, 0 },
     { "mesh", SET_MESH, 1, 0, 0, 0, 0 },

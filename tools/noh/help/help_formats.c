@@ -234,6 +234,7 @@ const char *const help_formats_text[] = {
     "   halves 0|1                                  16-bit accumulation texels",
     "   motion 0|1                                  shaders see the last frame: motion vectors (0)",
     "   sort_blended 0|1                            blended meshes of all actors from far to near (0)",
+    "   texture_reserve N                           bytes on the GPU for textures whose levels come by need (0: all whole)",
     "   share 0|1                                   packs are on the GPU once for all stages that share (0)",
     "   peer PATH                                   the file of a stage that shares and is there, too; may repeat, up to 4:",
     "                                               what it has on the GPU is not counted",

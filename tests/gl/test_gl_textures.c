@@ -1,0 +1,275 @@
+/* Mip levels of textures by need: until finer levels are there a picture shows the coarser ones, and nothing else; with
+ * them it equals the picture of textures that are whole. The reserve and the bytes of a frame keep their bounds. */
+#include "support/counted_gl.h"
+#include "support/gl_fixture.h"
+#include "support/stage_fixture.h"
+
+#include "convert/model/model_build.h"
+#include "gl/stage/stage_gl_internal.h"
+#include "gpu/canvas.h"
+#include "noh/format.h"
+#include "null.h"
+
+#define SIDE 96u /* of the picture */
+#define PIXELS (SIDE * SIDE)
+#define TEXELS 256u /* of each texture's side */
+#define BOUND 30000u
+#define KINDS 2u
+
+static char shader_log[4096];
+static noh_error said;
+
+/* ---- two kinds of quads, each with a texture of its own ---- */
+
+static uint8_t *quad_pack(uint32_t which, size_t *count)
+{
+    const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
+    test_random r = test_random_from(7u + which);
+    model *m = test_model(&desc);
+    model_material *material = m->materials = test_zeros(sizeof *m->materials);
+    model_texture *to = m->textures = test_zeros(sizeof *m->textures);
+    uint8_t *bytes;
+    *material = model_material_default();
+    material->base_color_texture = 0;
+    m->material_count = m->texture_count = 1;
+    material->name = model_string("cloth");
+    for (int i = 0; i < 4; i++) material->base_color[i] = 1.0f;
+    material->unlit = material->double_sided = 1;
+    to->name = model_string("cloth");
+    to->width = to->height = TEXELS;
+    to->wrap_s = to->wrap_t = 33071;
+    to->rgba = test_zeros(4u * TEXELS * TEXELS);
+    for (uint32_t i = 0; i < TEXELS * TEXELS; i++) { /* bright everywhere: black would be what was never written */
+        for (uint32_t c = 0; c < 3; c++) to->rgba[4u * i + c] = (uint8_t)(150u + test_random_below(&r, 100));
+        to->rgba[4u * i + 3u] = 255;
+    }
+    m->meshes[0].submeshes[0].material = 0;
+    for (uint32_t v = 0; v < 4; v++) {
+        m->meshes[0].position[3 * v] = v % 2 ? 0.4f : -0.4f;
+        m->meshes[0].position[3 * v + 1] = v / 2 ? 0.4f : -0.4f;
+        m->meshes[0].position[3 * v + 2] = 0.0f;
+        m->meshes[0].uv[2 * v] = v % 2 ? 1.0f : 0.0f;
+        m->meshes[0].uv[2 * v + 1] = v / 2 ? 1.0f : 0.0f;
+    }
+    bytes = test_pack_of(m, count, NULL);
+    model_free(m);
+    return bytes;
+}
+
+typedef struct show {
+    uint8_t *bytes[KINDS];
+    noh_pack packs[KINDS];
+    noh_kind_desc kinds[KINDS];
+    noh_stage_desc desc;
+    noh_stage_plan plan;
+    noh_stage *stage;
+    void *memory;
+    noh_actor actors[KINDS];
+    noh_gl_ledger ledger;
+    noh_gl_device device;
+} show;
+
+static void open_show(show *w, gpu *g, uint64_t reserve)
+{
+    memset(w, 0, sizeof *w);
+    for (uint32_t i = 0; i < KINDS; i++) {
+        size_t count;
+        w->bytes[i] = quad_pack(i, &count);
+        w->packs[i] = test_open(w->bytes[i], count);
+        w->kinds[i].mesh = &w->packs[i];
+        w->kinds[i].actor_count = 1;
+    }
+    w->desc.kinds = w->kinds;
+    w->desc.kind_count = KINDS;
+    w->desc.gpu = &noh_stage_on_gl;
+    w->desc.load_bytes = BOUND;
+    w->desc.texture_reserve = reserve;
+    w->device = (noh_gl_device){ &g->gl, &g->caps, &w->ledger, shader_log, sizeof shader_log };
+}
+
+static void make(show *w)
+{
+    if (noh_stage_plan_make(&w->desc, w->device.caps, &w->plan, &said) != NOH_OK) fail_msg("plan: %s", said.what);
+    w->memory = test_aligned(NULL, (size_t)w->plan.cpu_bytes);
+    if (noh_stage_init(w->memory, (size_t)w->plan.cpu_bytes, &w->device, &w->desc, &w->plan, &w->stage, &said) !=
+        NOH_OK)
+        fail_msg("stage: %s", said.what);
+    for (uint32_t i = 0; i < KINDS; i++) {
+        const noh_place place = { .position = { 100.0f * (float)i, 0.0f, 0.0f } }; /* a picture shows one of them */
+        assert_int_equal(noh_stage_spawn(w->stage, i, &place, &w->actors[i], &said), NOH_OK);
+    }
+}
+
+static void close_show(show *w)
+{
+    static const noh_gl_ledger nothing;
+    if (w->stage) noh_stage_delete(w->stage);
+    assert_memory_equal(&nothing, &w->ledger, sizeof nothing);
+    free(w->memory);
+    for (uint32_t i = 0; i < KINDS; i++) free(w->bytes[i]);
+}
+
+/* The bytes of a texture from a level on. */
+static uint64_t bytes_from(const show *w, uint32_t kind, uint32_t level)
+{
+    noh_texture texture;
+    assert_int_equal(noh_pack_texture_at(&w->packs[kind], 0, &texture, NULL), NOH_OK);
+    return noh_gl_picture_bytes_from(&texture, w->device.caps->etc2, level);
+}
+
+/* One texture is whole, the other has its small levels, and there is room to change. */
+static uint64_t least_reserve(const show *w)
+{
+    return bytes_from(w, 0, 0) + 3u * bytes_from(w, 0, 2);
+}
+
+static uint32_t first_of(const show *w, uint32_t kind)
+{
+    return ((const noh_stage_gl *)w->stage->gpu)->streamed[kind].first;
+}
+
+static void frame(show *w, uint32_t kind, float distance)
+{
+    const float middle[3] = { 100.0f * (float)kind, 0.0f, 0.0f };
+    noh_stage_view view;
+    noh_view_orbit(&view, middle, 0.0f, 0.0f, distance, SIDE, SIDE);
+    if (noh_stage_frame(w->stage, CAST_STEP, &view, NULL, NULL, &said) != NOH_OK) fail_msg("%s", said.what);
+    assert_true(noh_stage_stats_of(w->stage)->load_bytes <= BOUND);
+    assert_true(noh_gl_ledger_bytes(&w->ledger) <= w->plan.gpu_bytes);
+}
+
+static const noh_stage_stats *stats_of(const show *w)
+{
+    return noh_stage_stats_of(w->stage);
+}
+
+/* ---- pictures ---- */
+
+static void draw(const show *w, canvas *to, uint32_t *rgba)
+{
+    canvas_begin(to);
+    assert_int_equal(noh_stage_draw(w->stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
+    canvas_resolve(to);
+    assert_int_equal(canvas_read(to, (uint8_t *)rgba), 0);
+}
+
+/* How many pixels differ. Each pixel that the whole texture's picture covers is bright in the other, too. */
+static uint32_t apart(const show *whole, const show *part, canvas *to)
+{
+    static uint32_t one[PIXELS], other[PIXELS];
+    uint32_t count = 0, drawn = 0;
+    draw(whole, to, one);
+    draw(part, to, other);
+    for (uint32_t i = 0; i < PIXELS; i++) {
+        const uint8_t *a = (const uint8_t *)&one[i], *b = (const uint8_t *)&other[i];
+        count += one[i] != other[i];
+        if (a[0] < 140 || a[1] < 140 || a[2] < 140) continue;
+        drawn++;
+        if (b[0] < 140 || b[1] < 140 || b[2] < 140) fail_msg("pixel %u is dark", (unsigned)i);
+    }
+    assert_true(drawn > PIXELS / 200u);
+    return count;
+}
+
+/* From afar the small levels are all that the whole texture shows. Near, frames show them until finer ones are there. */
+static void coarser_levels_are_shown_until_the_finer_come(void **state)
+{
+    gpu *g = fixture_gpu();
+    show whole, part;
+    uint32_t waited = 0;
+    canvas to;
+    (void)state;
+    assert_int_equal(canvas_open(&to, g, SIDE, SIDE), 0);
+    open_show(&whole, g, 0), open_show(&part, g, 0);
+    part.desc.texture_reserve = least_reserve(&part);
+    make(&whole), make(&part);
+    assert_true(noh_gl_ledger_bytes(&part.ledger) < noh_gl_ledger_bytes(&whole.ledger));
+    for (uint32_t kind = 0; kind < 3; kind++) { /* the first one again: its fine levels were dropped for the second's */
+        frame(&whole, kind % KINDS, 12.0f), frame(&part, kind % KINDS, 12.0f);
+        assert_int_equal(apart(&whole, &part, &to), 0);
+        frame(&whole, kind % KINDS, 0.7f), frame(&part, kind % KINDS, 0.7f);
+        assert_int_equal(stats_of(&part)->textures_coarser, 1);
+        while (stats_of(&part)->textures_coarser) {
+            assert_true(apart(&whole, &part, &to) > PIXELS / 10u);
+            frame(&whole, kind % KINDS, 0.7f), frame(&part, kind % KINDS, 0.7f);
+            assert_true(++waited < 200u);
+        }
+        assert_int_equal(first_of(&part, kind % KINDS), 0);
+        assert_int_equal(apart(&whole, &part, &to), 0);
+    }
+    assert_int_equal(first_of(&part, 1), 2);
+    assert_true(waited > 10u);
+    fixture_expect_no_errors();
+    close_show(&whole), close_show(&part);
+    canvas_close(&to);
+}
+
+/* ---- bounds ---- */
+
+/* Any cameras, a lost context in between: `frame` compares ledger and plan. */
+static void the_reserve_holds_in_any_order(void **state)
+{
+    test_random r = test_random_from(43u);
+    uint32_t finer = 0, coarser = 0, before[KINDS] = { 2, 2 };
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_show(&w, &g, 0);
+    w.desc.texture_reserve = least_reserve(&w);
+    make(&w);
+    for (uint32_t f = 0; f < 600; f++) {
+        const uint32_t kind = f / 60u % KINDS;
+        frame(&w, kind, f % 20u < 10u ? 0.6f : 0.5f + 0.1f * (float)test_random_below(&r, 150));
+        for (uint32_t k = 0; k < KINDS; k++) {
+            finer += first_of(&w, k) < before[k];
+            coarser += first_of(&w, k) > before[k];
+            before[k] = first_of(&w, k);
+        }
+        if (f % 97u == 96u) {
+            const uint64_t bytes = noh_gl_ledger_bytes(&w.ledger);
+            assert_int_equal(noh_stage_restore(w.stage, &said), NOH_OK);
+            assert_true(noh_gl_ledger_bytes(&w.ledger) <= bytes); /* what was under way begins again */
+        }
+    }
+    assert_true(finer > 6u && coarser > 6u);
+    close_show(&w);
+    gpu_close(&g);
+}
+
+static void a_reserve_that_is_too_small_is_refused(void **state)
+{
+    noh_stage_bytes parts[64];
+    uint64_t sum = 0, stated = 0;
+    uint32_t count;
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_show(&w, &g, 0);
+    w.desc.texture_reserve = least_reserve(&w) - 1u;
+    assert_int_equal(noh_stage_plan_make(&w.desc, w.device.caps, &w.plan, &said), NOH_ERR_ARG);
+    assert_non_null(strstr(said.what, "texture_reserve"));
+    assert_int_equal(said.need, least_reserve(&w));
+    w.desc.texture_reserve = said.need;
+    make(&w);
+    count = noh_stage_plan_parts(&w.desc, w.device.caps, &w.plan, parts, TEST_COUNT(parts));
+    for (uint32_t i = 0; i < count; i++) {
+        sum += parts[i].gpu_bytes;
+        if (strcmp(parts[i].what, "texture reserve") == 0) stated += parts[i].gpu_bytes;
+    }
+    assert_int_equal(sum, w.plan.gpu_bytes);
+    assert_int_equal(stated, w.desc.texture_reserve);
+    close_show(&w);
+    gpu_close(&g);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(coarser_levels_are_shown_until_the_finer_come),
+        cmocka_unit_test(the_reserve_holds_in_any_order),
+        cmocka_unit_test(a_reserve_that_is_too_small_is_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
+}
