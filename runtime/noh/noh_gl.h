@@ -313,13 +313,14 @@ typedef struct noh_gl_mesh {
  * call for each submesh; actors that fade between two levels are drawn one by one.
  *
  * Stages that share. Stages with noh_stage_desc.share and the same noh_gl_ledger hold the vertices, indices, delta
- * texels and textures of a pack once: a stage takes what another one has, without an upload, where the bytes of the pack
- * in memory are the same and, for meshes, the finest level; for delta texels also the finest level with slots, and a
- * path that orders them alike (gather and direct, or the blended paths). The last stage that lets an object go deletes
- * it, in whatever order stages end and kinds leave their slots. A kind that comes into a slot takes what is there, also
- * from its own stage, and lends it once it is drawn. Each stage has its own meshes with levels that are loaded later
- * (`finer`), covers, light and programs. Pictures and states are the same as without. After a lost context count
- * noh_gl_ledger.contexts first, then restore each stage: the ledger is as before once all are restored.
+ * texels and textures of a pack once: a stage takes what another one has, without an upload, where the bytes of the
+ * pack in memory are the same and, for meshes, the finest level and whether a transfer is used; for delta texels also
+ * the finest level with slots, and a path that orders them alike (gather and direct, or the blended paths). The last
+ * stage that lets an object go deletes it, in whatever order stages end and kinds leave their slots. A kind that comes
+ * into a slot takes what is there, also from its own stage, and lends it once it is drawn. Each stage has its own
+ * meshes with levels that are loaded later (`finer`), covers, light and programs. Pictures and states are the same as
+ * without. After a lost context count noh_gl_ledger.contexts first, then restore each stage: the ledger is as before
+ * once all are restored.
  *
  * Threads: the context's own thread. */
 
