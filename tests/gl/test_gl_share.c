@@ -5,6 +5,7 @@
 #include "support/gl_fixture.h"
 #include "support/stage_fixture.h"
 
+#include "convert/pack/pack_strip.h"
 #include "gl/stage/stage_gl_internal.h"
 #include "gpu/canvas.h"
 #include "null.h"
@@ -17,8 +18,11 @@
 static char shader_log[4096];
 static noh_error said;
 
-/* Opened once for all tests. */
+/* Opened once for all tests: the cast, but with faces that have textures in place of tubes. */
+#define FACES TUBES
 static cast packs;
+static noh_file face_file;
+static noh_pack face_pack;
 
 typedef struct show {
     cast c; /* of `packs` */
@@ -101,11 +105,9 @@ static void enter_kind(show *s, uint32_t kind, noh_actor actors[3])
 {
     for (uint32_t i = 0; i < 3; i++) {
         const noh_place place = { { 1.1f * (float)i - 1.0f, 0.5f, -1.2f * (float)kind }, { 0, 0, 0, 0 }, 0.0f };
-        const noh_pack *mesh = s->c.kinds[kind].mesh;
-        const int speaks = mesh == packs.kinds[MASKS].mesh;
+        const int speaks = s->c.kinds[kind].mesh != packs.kinds[PUPPETS].mesh;
         const noh_play play = { .start_ticks = 5000 * (int64_t)i };
         if (noh_stage_spawn(s->c.stage, kind, &place, &actors[i], &said)) fail_msg("%s", said.what);
-        if (mesh == packs.kinds[TUBES].mesh) continue;
         assert_int_equal(noh_actor_play(s->c.stage, actors[i], speaks ? 1 : 0, speaks ? "speak" : "walk", &play, &said),
                          NOH_OK);
     }
@@ -183,7 +185,7 @@ static int stages_on(gpu *g, fixture_way way, int loses)
 {
     static show level, room, alone[2];
     static noh_gl_ledger own;
-    const uint32_t most = getenv("NOH_LONG") ? ALL_KINDS : 1u << MASKS | 1u << TUBES, some = 1u << MASKS;
+    const uint32_t most = getenv("NOH_LONG") ? ALL_KINDS : 1u << MASKS | 1u << FACES, some = 1u << FACES;
     canvas to;
     memset(&own, 0, sizeof own);
     open_show(&level, g, NULL, way, most), open_show(&room, g, NULL, akin(way), some);
@@ -262,15 +264,15 @@ static void slots_lend_and_borrow(void **state)
     canvas to;
     (void)state;
     memset(&own, 0, sizeof own);
-    open_show(&slots, g, NULL, way, ALL_KINDS), open_show(&room, g, NULL, way, 1u << MASKS);
-    open_show(&alone, g, &own, way, 1u << MASKS);
+    open_show(&slots, g, NULL, way, ALL_KINDS), open_show(&room, g, NULL, way, 1u << FACES);
+    open_show(&alone, g, &own, way, 1u << FACES);
     with_slots(&slots, 2);
     slots.c.desc.load_bytes = 50000;
     with_peers(&slots, NULL, NULL), with_peers(&room, NULL, NULL);
     assert_true(make(&slots) && make(&alone));
     assert_int_equal(canvas_open(&to, g, WIDTH, HEIGHT), 0);
     before = bytes_of(g);
-    assert_int_equal(noh_stage_set_kind(slots.c.stage, MASKS, &slots.others[MASKS], &said), NOH_OK);
+    assert_int_equal(noh_stage_set_kind(slots.c.stage, 1, &slots.others[FACES], &said), NOH_OK);
     frame(&slots, 0);
     assert_true(noh_stage_stats_of(slots.c.stage)->coming);
     assert_true(make(&room)); /* has its own, for the other one's are not filled */
@@ -281,14 +283,14 @@ static void slots_lend_and_borrow(void **state)
     assert_true(make(&room));
     assert_true(bytes_of(g) < before + room.c.plan.gpu_bytes - 100000u);
     enter(&room), enter(&alone);
-    enter_kind(&slots, MASKS, actors);
+    enter_kind(&slots, 1, actors);
     frame(&slots, 1);
     expect_same(&room, &alone, &to, 1, "a room that borrows from a slot");
     for (uint32_t i = 0; i < 3; i++) assert_int_equal(noh_stage_despawn(slots.c.stage, actors[i], &said), NOH_OK);
-    assert_int_equal(noh_stage_set_kind(slots.c.stage, MASKS, NULL, &said), NOH_OK);
+    assert_int_equal(noh_stage_set_kind(slots.c.stage, 1, NULL, &said), NOH_OK);
     expect_same(&room, &alone, &to, 2, "the kind left its slot");
     before = bytes_of(g);
-    assert_int_equal(noh_stage_set_kind(slots.c.stage, TUBES, &slots.others[MASKS], &said), NOH_OK);
+    assert_int_equal(noh_stage_set_kind(slots.c.stage, 2, &slots.others[FACES], &said), NOH_OK);
     frame(&slots, 2);
     assert_int_equal(noh_stage_stats_of(slots.c.stage)->load_bytes, 0); /* all is there */
     frame(&slots, 3);
@@ -375,6 +377,50 @@ static void plans_have_every_byte(void **state)
         expect_nothing(&g.ledger);
     }
     gpu_close(&g);
+}
+
+/* Each stage has its own meshes where finer levels are loaded later: one stage loads its levels and drops them while the
+ * other one waits, is drawn and ends. */
+static void levels_that_are_loaded_later_are_not_shared(void **state)
+{
+    static gpu g;
+    static show level, room;
+    noh_pack coarse, finer = packs.packs[MASKS];
+    byte_buffer out = { NULL, 0, 0, 0 };
+    model_error error;
+    uint32_t first[64], frames = 0;
+    noh_null_report report;
+    uint8_t *bytes;
+    (void)state;
+    for (uint32_t i = 0; i < TEST_COUNT(first); i++) first[i] = 2;
+    assert_true(finer.runs[NOH_CHUNK_MESH].count <= TEST_COUNT(first));
+    if (pack_strip(&finer, first, &out, &error)) fail_msg("%s", error.what);
+    bytes = test_aligned(out.bytes, out.count);
+    coarse = test_open(bytes, out.count);
+    buffer_free(&out);
+    counted_open(&g);
+    open_show(&level, &g, NULL, counted_ways[0], 1u << MASKS), open_show(&room, &g, NULL, counted_ways[0], 1u << MASKS);
+    level.c.kinds[0].mesh = room.c.kinds[0].mesh = &coarse;
+    level.c.kinds[0].finer = room.c.kinds[0].finer = &finer;
+    with_peers(&level, NULL, NULL), with_peers(&room, &level, NULL);
+    assert_true(make(&level) && make(&room));
+    assert_int_equal(room.c.plan.shared_bytes, 0);
+    assert_true(bytes_of(&g) == level.c.plan.gpu_bytes + room.c.plan.gpu_bytes);
+    assert_int_equal(noh_stage_load_level(level.c.stage, 0, &finer, &said), NOH_OK);
+    do {
+        frame(&level, frames), frame(&room, frames);
+        assert_true(noh_stage_draw(room.c.stage, NOH_PASS_COLOR, 0, NULL, NULL) == NOH_OK && frames++ < 200u);
+    } while (noh_stage_stats_of(level.c.stage)->loading);
+    end(&room);
+    assert_int_equal(noh_stage_load_level(level.c.stage, 0, NULL, &said), NOH_OK);
+    frame(&level, frames);
+    assert_int_equal(noh_stage_draw(level.c.stage, NOH_PASS_COLOR, 0, NULL, NULL), NOH_OK);
+    noh_null_report_of(g.context, &report);
+    assert_true(frames > 1u && report.bytes == level.c.plan.gpu_bytes && !report.violations);
+    end(&level);
+    expect_nothing(&g.ledger);
+    gpu_close(&g);
+    free(bytes);
 }
 
 /* ---- a driver that fails ---- */
@@ -580,13 +626,20 @@ static void wrong_peers_have_a_message(void **state)
 static int open_packs(void **state)
 {
     (void)state;
+    const char *build = getenv("NOH_BUILD");
+    char path[1024];
+    snprintf(path, sizeof path, "%s/mask.noh", build ? build : "build");
+    if (noh_file_map(path, &face_file, &said)) fail_msg("%s: %s", path, said.what);
     cast_open(&packs);
+    face_pack = test_open(face_file.data, face_file.bytes);
+    packs.kinds[FACES].mesh = &face_pack;
     return 0;
 }
 
 static int close_packs(void **state)
 {
     cast_close(&packs);
+    noh_file_unmap(&face_file);
     return fixture_tear_down(state);
 }
 
@@ -597,6 +650,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(slots_lend_and_borrow),
         cmocka_unit_test(the_second_stage_sends_nothing),
         cmocka_unit_test(plans_have_every_byte),
+        cmocka_unit_test(levels_that_are_loaded_later_are_not_shared),
         cmocka_unit_test(a_stage_that_fails_leaves_the_others_what_they_have),
         cmocka_unit_test(a_restore_that_fails_is_tried_again),
         cmocka_unit_test(stages_and_kinds_come_and_go_in_any_order),
