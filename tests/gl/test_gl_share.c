@@ -475,7 +475,7 @@ static void a_stage_that_fails_leaves_the_others_what_they_have(void **state)
     (void)state;
     for (uint32_t w = 0; w < 2; w++) {
         counted_open(&g);
-        open_show(&level, &g, NULL, counted_ways[w], ALL_KINDS), open_show(&room, &g, NULL, counted_ways[w], 3);
+        open_show(&level, &g, NULL, counted_ways[w], ALL_KINDS), open_show(&room, &g, NULL, counted_ways[w], 6);
         with_peers(&level, NULL, NULL), with_peers(&room, NULL, NULL);
         assert_true(make(&level) && make(&room));
         noh_stage_delete(room.c.stage);
@@ -500,7 +500,7 @@ static void a_restore_that_fails_is_tried_again(void **state)
     uint32_t violations;
     (void)state;
     counted_open(&g);
-    open_show(&level, &g, NULL, counted_ways[1], ALL_KINDS), open_show(&room, &g, NULL, counted_ways[1], 3);
+    open_show(&level, &g, NULL, counted_ways[1], ALL_KINDS), open_show(&room, &g, NULL, counted_ways[1], 6);
     with_peers(&level, NULL, NULL), with_peers(&room, NULL, NULL);
     assert_true(make(&level));
     one = bytes_of(&g);
