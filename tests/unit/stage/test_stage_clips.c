@@ -2,6 +2,7 @@
  * the start, though its chunk in the pack is overwritten; what plays stays; what is absent is reported. */
 #include "support/stage_fixture.h"
 
+#include "noh/crowd.h"
 #include "stage/cast/stage_internal.h"
 
 #define PLAYERS 4u
@@ -253,6 +254,28 @@ static void a_graph_needs_all_its_clips(void **state)
     close_show(&w);
 }
 
+/* Walkers measure their clips, and start them by themselves. */
+static void walkers_need_their_clips(void **state)
+{
+    const noh_walkers_desc desc = { .walk = "walk", .walker_max = 2, .walk_speed = 1.0f };
+    noh_walkers *walkers;
+    void *memory;
+    show w;
+    (void)state;
+    open_show(&w, 1u << 16, 1);
+    w.c.kinds[0].root_by_game = 1;
+    make(&w);
+    memory = test_aligned(NULL, noh_walkers_size(&desc));
+    assert_int_equal(noh_walkers_init(memory, noh_walkers_size(&desc), &desc, w.c.stage, &walkers, &said),
+                     NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "not in memory"));
+    assert_int_equal(bring_named(w.c.stage, "walk"), NOH_OK);
+    if (noh_walkers_init(memory, noh_walkers_size(&desc), &desc, w.c.stage, &walkers, &said) != NOH_OK)
+        fail_msg("%s", said.what);
+    free(memory);
+    close_show(&w);
+}
+
 /* ---- states ---- */
 
 static void a_state_that_plays_what_is_absent_is_refused(void **state)
@@ -400,6 +423,7 @@ int main(void)
         cmocka_unit_test(any_order_has_the_bits_of_clips_in_place),
         cmocka_unit_test(the_least_recently_used_goes),
         cmocka_unit_test(a_graph_needs_all_its_clips),
+        cmocka_unit_test(walkers_need_their_clips),
         cmocka_unit_test(a_state_that_plays_what_is_absent_is_refused),
         cmocka_unit_test(a_slot_has_a_reserve_of_its_own),
         cmocka_unit_test(the_plan_states_the_reserve),

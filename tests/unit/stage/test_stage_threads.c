@@ -66,6 +66,18 @@ static void run_phases(pool *p)
 
 /* ---- the show ---- */
 
+/* Puppets play from a reserve. */
+static void bring_clips(cast *c)
+{
+    const noh_chunk_run run = c->packs[PUPPETS].runs[NOH_CHUNK_CLIP];
+    for (uint32_t i = 0; i < run.count; i++) {
+        const void *chunk = noh_pack_chunk_at(&c->packs[PUPPETS], NOH_CHUNK_CLIP, i);
+        const char *name = noh_pack_chunk_name(&c->packs[PUPPETS], run.first + i);
+        const uint32_t clip = noh_stage_find(c->stage, PUPPETS, NOH_NAME_CLIP, name);
+        assert_int_equal(noh_stage_load_clip(c->stage, PUPPETS, clip, chunk, NULL), NOH_OK);
+    }
+}
+
 static void open_cast(cast *c)
 {
     static look_joint joint;
@@ -82,6 +94,7 @@ static void open_cast(cast *c)
     }
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
     c->kinds[PUPPETS].root_up = 1;
+    c->kinds[PUPPETS].clip_reserve = 1u << 16;
     c->kinds[PUPPETS].graphs = noh_graph_module("moves");
     joint = look_joint_of(&c->packs[PUPPETS], "head");
     c->kinds[PUPPETS].modifiers = &gaze;
@@ -90,6 +103,7 @@ static void open_cast(cast *c)
     c->desc.kind_count = KINDS;
     c->desc.job_count = THREADS;
     cast_make(c, NULL);
+    bring_clips(c);
 }
 
 static void close_cast(cast *c)
