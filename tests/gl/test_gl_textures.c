@@ -60,6 +60,7 @@ typedef struct show {
     uint8_t *bytes[KINDS];
     noh_pack packs[KINDS];
     noh_kind_desc kinds[KINDS];
+    noh_texture_set sets; /* the second kind may wear the first one's texture */
     noh_stage_desc desc;
     noh_stage_plan plan;
     noh_stage *stage;
@@ -79,6 +80,9 @@ static void open_show(show *w, gpu *g, uint64_t reserve)
         w->kinds[i].mesh = &w->packs[i];
         w->kinds[i].actor_count = 1;
     }
+    w->sets = (noh_texture_set){ .name = "other", .pack = &w->packs[0] };
+    w->kinds[1].texture_sets = &w->sets;
+    w->kinds[1].texture_set_count = 1;
     w->desc.kinds = w->kinds;
     w->desc.kind_count = KINDS;
     w->desc.gpu = &noh_stage_on_gl;
@@ -171,6 +175,12 @@ static uint32_t apart(const show *whole, const show *part, canvas *to)
     return count;
 }
 
+static void wear_the_other(const show *w)
+{
+    const noh_appearance look = { .texture_set = 1 };
+    assert_int_equal(noh_actor_set_appearance(w->stage, w->actors[1], &look, &said), NOH_OK);
+}
+
 /* From afar the small levels are all that the whole texture shows. Near, frames show them until finer ones are there. */
 static void coarser_levels_are_shown_until_the_finer_come(void **state)
 {
@@ -199,6 +209,10 @@ static void coarser_levels_are_shown_until_the_finer_come(void **state)
     }
     assert_int_equal(first_of(&part, 1), 2);
     assert_true(waited > 10u);
+    wear_the_other(&whole), wear_the_other(&part);
+    for (waited = 0; waited < 60u; waited++) frame(&whole, 1, 0.7f), frame(&part, 1, 0.7f);
+    assert_int_equal(first_of(&part, 0), 0);
+    assert_int_equal(apart(&whole, &part, &to), 0);
     fixture_expect_no_errors();
     close_show(&whole), close_show(&part);
     canvas_close(&to);
@@ -237,6 +251,53 @@ static void the_reserve_holds_in_any_order(void **state)
     gpu_close(&g);
 }
 
+/* Out of memory now and then: what is shown stays, and a later frame begins again. */
+static void a_driver_that_fails_shows_what_was_there(void **state)
+{
+    static const char *const functions[] = { "glGenTextures", "glTexStorage2D", "glTexSubImage2D",
+                                             "glCompressedTexSubImage2D" };
+    test_random r = test_random_from(44u);
+    uint32_t failed = 0, whole = 0;
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_show(&w, &g, 0);
+    w.desc.texture_reserve = least_reserve(&w);
+    make(&w);
+    for (uint32_t f = 0; f < 400; f++) {
+        const uint32_t kind = f / 40u % KINDS, before = first_of(&w, kind);
+        if (f % 40u < 25u)
+            noh_null_refuse(g.context, functions[test_random_below(&r, TEST_COUNT(functions))], 0, GL_OUT_OF_MEMORY);
+        frame(&w, kind, 0.6f);
+        if (noh_null_refused(g.context)) assert_int_equal(first_of(&w, kind), before);
+        failed += noh_null_refused(g.context) != 0;
+        noh_null_refuse(g.context, NULL, 0, 0);
+        whole += before && !first_of(&w, kind);
+    }
+    assert_true(failed > 20u && whole > 2u);
+    close_show(&w);
+    gpu_close(&g);
+}
+
+/* A slot has its textures whole; the other kind's come by need. */
+static void textures_of_slots_are_whole(void **state)
+{
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_show(&w, &g, 0);
+    w.kinds[1].changes = 1;
+    w.desc.texture_reserve = bytes_from(&w, 0, 0) + 2u * bytes_from(&w, 0, 2);
+    make(&w);
+    assert_int_equal(((const noh_stage_gl *)w.stage->gpu)->streamed_count, 1);
+    for (uint32_t f = 0; f < 40; f++) frame(&w, 0, 0.6f);
+    assert_int_equal(first_of(&w, 0), 0);
+    close_show(&w);
+    gpu_close(&g);
+}
+
 static void a_reserve_that_is_too_small_is_refused(void **state)
 {
     noh_stage_bytes parts[64];
@@ -269,6 +330,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(coarser_levels_are_shown_until_the_finer_come),
         cmocka_unit_test(the_reserve_holds_in_any_order),
+        cmocka_unit_test(a_driver_that_fails_shows_what_was_there),
+        cmocka_unit_test(textures_of_slots_are_whole),
         cmocka_unit_test(a_reserve_that_is_too_small_is_refused),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

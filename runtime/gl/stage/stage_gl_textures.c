@@ -296,6 +296,18 @@ static noh_gl_streamed *under_way(noh_stage_gl *gl)
     return NULL;
 }
 
+/* Send a piece. Without memory for it in the driver a later frame begins again. Returns 1 once all is there. */
+static int fill(const noh_stage_gl *gl, noh_gl_streamed *r, uint32_t *bytes)
+{
+    const noh_gl_api *api = gl->device.api;
+    int done;
+    noh_gl_error_take(api);
+    done = noh_gl_picture_fill(api, &r->texture, r->next_first, &r->next, &r->at, bytes);
+    if (noh_gl_error_check(api, "the driver refused the pixels of a texture", 0, NULL) == NOH_OK) return done;
+    noh_gl_texture_delete(api, gl->device.ledger, &r->next);
+    return 0;
+}
+
 void noh_gl_textures_stream(noh_stage *s, uint32_t *bytes)
 {
     noh_stage_gl *gl = s->gpu;
@@ -304,7 +316,7 @@ void noh_gl_textures_stream(noh_stage *s, uint32_t *bytes)
     choose_wanted(s, gl);
     r = under_way(gl);
     if (!r) r = begin(s, gl);
-    if (r && noh_gl_picture_fill(gl->device.api, &r->texture, r->next_first, &r->next, &r->at, bytes)) put(s, gl, r);
+    if (r && fill(gl, r, bytes)) put(s, gl, r);
     s->stats.textures_coarser = 0;
     for (uint32_t i = 0; i < gl->streamed_count; i++) {
         s->stats.textures_coarser += gl->streamed[i].wanted < gl->streamed[i].first;
