@@ -2,6 +2,7 @@
 #include "convert/model/eye_paint.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/model_build.h"
@@ -105,6 +106,41 @@ static void other_eyes_stay(void **state)
     }
 }
 
+/* What is grey around eyes that were painted becomes skin, unless its name says another thing, or it has a colour. */
+static void grey_faces_become_skin(void **state)
+{
+    static const struct {
+        const char *name;
+        float red;
+        int has_texture, is_skin;
+    } cases[] = { { "M_Face", 0.6f, 0, 1 },       { "M_BackHead", 0.6f, 0, 1 }, { "Kopf", 0.8f, 0, 1 },
+                  { "M_Shirt", 0.6f, 0, 0 },      { "M_Face", 0.9f, 0, 0 },     { "M_Face", 0.6f, 1, 0 },
+                  { "Headband hair", 0.6f, 0, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model *m = eyes_of(0.062f);
+        model_material *materials = test_zeros(2 * sizeof *materials), *face = &materials[1];
+        materials[0] = m->materials[0];
+        *face = model_material_default();
+        face->name = model_string(cases[i].name);
+        face->metallic = 0.0f;
+        face->base_color[0] = face->base_color[1] = face->base_color[2] = cases[i].red == 0.8f ? 0.8f : 0.6f;
+        face->base_color[0] = cases[i].red;
+        free(m->materials);
+        m->materials = materials;
+        m->material_count = 2;
+        if (cases[i].has_texture) {
+            m->textures = test_zeros(sizeof *m->textures);
+            m->texture_count = 1;
+        }
+        assert_int_equal(eye_paint(m), 0);
+        assert_int_equal(face->surface, cases[i].is_skin ? NOH_SURFACE_SKIN : NOH_SURFACE_PLAIN);
+        assert_int_equal(face->base_color[0] > 1.3f * face->base_color[1], cases[i].red == 0.9f || cases[i].is_skin);
+        assert_int_equal(m->warning_count, 1 + cases[i].is_skin);
+        model_free(m);
+    }
+}
+
 /* A strip of 32 triangles is hidden; as 32 lashes it stays. */
 static void slabs_of_lashes_are_hidden(void **state)
 {
@@ -126,6 +162,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(blank_eyes_get_an_iris),
         cmocka_unit_test(other_eyes_stay),
+        cmocka_unit_test(grey_faces_become_skin),
         cmocka_unit_test(slabs_of_lashes_are_hidden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -101,7 +101,8 @@ const char *const names_table[] = {
     "strip head_facs_bs blendShape1 blendShape",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
-     * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through. */
+     * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through. bare: what
+     * is skin where it has no more than a grey. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
     "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
@@ -117,6 +118,8 @@ const char *const names_table[] = {
     "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",
     "material beside-eye eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas",
     "material beside-eye eyeshell edge eyeedge blend eyeblend saliva",
+    "material bare face head neck gesicht kopf hals visage tête cou cara cabeza cuello rosto cabeça pescoço viso testa",
+    "material bare collo gezicht hoofd nek twarz głowa szyja лицо голова шея *顔 *頭 *首 *脸 *头 *얼굴 *머리",
     "material lashes lash lashes eyelash eyelashes wimper wimpern cil cils pestaña pestañas ciglia ресницы *睫",
     "material occlusion-shell occlusion eyeocclusion shell eyeshell",
     "material tear-shell tear tears tearline lacrimal eyemoisture edge eyeedge blend eyeblend saliva",

@@ -20,6 +20,8 @@
 #define IRIS 0.42f  /* radius, in radii of the ball: 5.2 mm of 12.4 */
 #define PUPIL 0.36f /* of the iris */
 #define WET 0.1f
+#define GREY_HUE 0.02f
+#define SKIN_ROUGHNESS 0.5f
 #define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
 
 typedef struct balls {
@@ -263,14 +265,42 @@ static int finish(model *m, const balls *b)
     return failed;
 }
 
+/* ---- skin around them ---- */
+
+static int is_grey(const model_material *m)
+{
+    const float *c = m->base_color, least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
+    return m->surface == NOH_SURFACE_PLAIN && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE && m->metallic < 0.5f &&
+           most - least < GREY_HUE && least > PALE_MIN;
+}
+
+static int make_skin(model *m)
+{
+    static const float skin[3] = { 0.62f, 0.37f, 0.27f };
+    int failed = 0;
+    for (uint32_t i = 0; i < m->material_count && !failed; i++) {
+        model_material *bare = &m->materials[i];
+        if (!is_grey(bare) || !surface_is_bare(bare->name)) continue;
+        memcpy(bare->base_color, skin, sizeof skin);
+        surface_kind_set(bare, NOH_SURFACE_SKIN);
+        bare->roughness = SKIN_ROUGHNESS;
+        failed = model_warn(m,
+                            "material '%s': a grey face with living eyes looks like plaster, so it became skin; "
+                            "rename the material to keep the grey",
+                            bare->name);
+    }
+    return failed;
+}
+
 int eye_paint(model *m)
 {
+    const int is_blank = m->texture_count == 0;
     balls b = { .count = 0 };
     if (visit_balls(m, collect, &b)) return 1;
     keep_pairs(&b);
     if (b.count == 0) return 0;
     whiten(m, &b);
-    return visit_balls(m, project, &b) || finish(m, &b);
+    return visit_balls(m, project, &b) || finish(m, &b) || (is_blank && make_skin(m));
 }
 
 /* ---- lashes ---- */

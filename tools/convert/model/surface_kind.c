@@ -102,6 +102,11 @@ int surface_is_lashes(const char *name)
     return is_of(name, "lashes");
 }
 
+int surface_is_bare(const char *name)
+{
+    return !is_of(name, "beside-eye") && !is_of(name, "hair") && is_of(name, "bare");
+}
+
 /* Each capital of the pattern stands for one, each 0 for a digit. */
 static int begins_as(const char *name, const char *pattern)
 {

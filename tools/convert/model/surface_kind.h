@@ -19,8 +19,9 @@ uint32_t surface_kind_of_name(const char *name);
 /* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
 uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
-/* Whether a material's name means lashes. */
+/* Whether a material's name means lashes, or a part of the body that is skin unless it has a colour. */
 int surface_is_lashes(const char *name);
+int surface_is_bare(const char *name);
 
 /* 1 for the materials of VRoid Studio ("N00_000_00_Face_00_SKIN"), whose characters are drawn as toons, also where an
  * exporter dropped their MToon. */
