@@ -551,8 +551,8 @@ static void a_highlight_is_seen_from_its_point(void **state)
     scene_close(&s);
 }
 
-/* A ball lit from the right, and from above: in shade it has one tone, in light another, and between them the edge is as
- * hard and as far as the material says. The lamp is lower than the key, and nearer to the viewer. */
+/* A ball lit from the right, and from above: in shade it has one tone, in light another, and the edge between them is
+ * as hard and as far as the material says. The lamp is lower than the key, and nearer to the viewer. */
 static void a_toon_has_two_tones(void **state)
 {
     static const float values[4] = { 1.0f, 1.0f, 0.0f, 0.0f },

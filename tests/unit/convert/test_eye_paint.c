@@ -1,4 +1,4 @@
-/* Eyes of one colour get an iris, which is then found; other eyes stay. Strips of lashes without a picture are hidden. */
+/* Eyes of one colour get an iris, which is then found; other eyes stay. Strips of lashes are hidden. */
 #include "convert/model/eye_paint.h"
 
 #include <math.h>

@@ -101,10 +101,11 @@ const char *const names_table[] = {
     "strip head_facs_bs blendShape1 blendShape",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
-     * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through. bare: what
-     * is skin where it has no more than a grey. */
+     * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through.
+     * bare: what is skin where it has no more than a grey. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
-    "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras cornea corneas",
+    "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras",
+    "material eye cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
     "material eye глаз глаза *目 *瞳 *眼 *눈",
     "material teeth tooth teeth gum gums tongue mouth zahn zähne zaehne zunge zahnfleisch dent dents gencive",

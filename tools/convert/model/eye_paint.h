@@ -7,8 +7,8 @@
 /* Paint pale eyes that have no texture, glow not, and have one vertex colour: two balls of one size, side by side, get
  * a texture that is made here and texture coordinates about +z, where they look. The outermost is the one that is seen.
  * Such materials become white and wet, and add a warning. Meshes without texture coordinates are left as they are.
- * Surfaces of materials are known. If the model has no texture of its own, grey materials that are named as a face, head
- * or neck become skin, each with a warning: a living eye in plaster looks uncanny.
+ * Surfaces of materials are known. If the model has no texture of its own, grey materials named as a face, head or neck
+ * become skin, each with a warning: a living eye in plaster looks uncanny.
  * returns  1: out of memory */
 int eye_paint(model *m);
 

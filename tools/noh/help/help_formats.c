@@ -140,7 +140,8 @@ const char *const help_formats_text[] = {
     "   target WHAT NAME...                         WHAT: a channel of a recipe, or one of ARKit's 52 targets",
     "   joint WHAT NAME...                          WHAT: a bone of a person by VRM's name, such as *UpperArm, *Eye, head",
     "   material KIND WORD...                       KIND: skin, eye, teeth, hair, toon or plain; beside-eye: no eye, though a word",
-    "                                               says so; occlusion-shell, tear-shell: in front of an eye; a word in",
+    "                                               says so; occlusion-shell, tear-shell: in front of an eye; lashes; bare:",
+    "                                               skin where it is grey around eyes of one colour; a word in",
     "                                               small letters, *PART anywhere in the name",
     "   strip NAME...                               what programs put in front of names, or behind them",
     "Targets become rows of the face's recipe, joints of a face rows too; clips of other files find joints by bones, where both rest at the "
