@@ -108,6 +108,7 @@ check 'the sound is a RIFF file' sh -c 'test "$(head -c 4 "$1")" = RIFF && test 
 } >"$work/silent.wav"
 noh speak "$work/silent.wav" --face "$build/mask.noh" -o "$work/silent.noh"
 expect 0 'a silent recording'
+says 'bytes of sound, and 44100 are there: it was cut off'
 check 'stresses nothing' grep -q '^face: 0 stresses' "$work/out"
 noh info "$work/line.noh"
 check 'one clip, a key for each word' grep -q "clip 'speech': .* 63 floats, .* 5 callback keys" "$work/out"

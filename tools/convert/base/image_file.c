@@ -5,6 +5,7 @@
 
 #include <stb/stb_image.h>
 
+#include "convert/base/image_whole.h"
 #include "convert/base/input_file.h"
 
 /* stb_image's other decoders are kept from files of unknown origin. */
@@ -37,7 +38,7 @@ static int decode(const unsigned char *bytes, size_t count, uint64_t *pixels_lef
                   model_error *error)
 {
     int width = 0, height = 0, channels = 0;
-    if (check_size(bytes, count, pixels_left, error)) return 1;
+    if (check_size(bytes, count, pixels_left, error) || image_is_cut(bytes, count, error)) return 1;
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
     image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
     if (!image->rgba) {
@@ -74,7 +75,7 @@ static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2
 {
     int width = 0, height = 0, channels = 0;
     uint64_t pixels_left = IMAGE_PIXELS;
-    if (check_size(bytes, count, &pixels_left, error)) return 1;
+    if (check_size(bytes, count, &pixels_left, error) || image_is_cut(bytes, count, error)) return 1;
     *grey = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
     if (!*grey) return model_fail(error, "", "the image data is damaged, or there is not enough memory");
     size[0] = (uint32_t)width;

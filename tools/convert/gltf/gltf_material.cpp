@@ -9,6 +9,7 @@
 
 #include "noh/base.h"
 #include "noh/format.h"
+#include "convert/base/image_whole.h"
 #include "convert/base/webp_file.h"
 #include "convert/model/surface_kind.h"
 
@@ -96,6 +97,8 @@ static void decode_image(file &f, const image &source, model_texture &out, const
     }
     if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG, JPEG nor WebP");
     check_image_size(f, data, where);
+    model_error cut = { "", "" };
+    if (image_is_cut(data.data(), data.size(), &cut)) fail(where, cut.what);
     tinygltf::Image decoded;
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()),

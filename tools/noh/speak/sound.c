@@ -2,10 +2,12 @@
 
 #include <dlfcn.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "cli/message.h"
+#include "platform.h"
 
 /* ---- the part of libsndfile's interface that is used ---- */
 
@@ -156,6 +158,35 @@ static int read_file(const sndfile *s, const char *path, size_t only, sound *out
     return status;
 }
 
+static uint32_t word_at(const uint8_t *b)
+{
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* A WAV whose header counts more bytes than there are was cut off: libsndfile takes what is there. Programs that do not
+ * know a length beforehand write 0 or almost 2^32. */
+static void warn_if_cut(const char *path)
+{
+    noh_file file;
+    if (noh_file_map(path, &file, NULL) != NOH_OK) return;
+    const uint8_t *b = file.data;
+    if (file.bytes >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WAVE", 4) == 0) {
+        size_t at = 12;
+        while (file.bytes - at >= 8 && memcmp(b + at, "data", 4) != 0) {
+            const uint64_t next = at + 8u + (uint64_t)word_at(b + at + 4) + (word_at(b + at + 4) & 1u);
+            at = next < file.bytes ? (size_t)next : file.bytes;
+        }
+        const uint32_t told = file.bytes - at >= 8 ? word_at(b + at + 4) : 0;
+        if (told > file.bytes - at - 8u && told < 0xffff0000u) {
+            fprintf(stderr,
+                    "noh: %s: warning: its header at byte %zu counts %u bytes of sound, and %zu are there: it was cut "
+                    "off; copy it again\n",
+                    path, at, told, file.bytes - at - 8u);
+        }
+    }
+    noh_file_unmap(&file);
+}
+
 int sound_read(const char *path, sound *out)
 {
     size_t only, ignored;
@@ -164,6 +195,7 @@ int sound_read(const char *path, sound *out)
     memset(&s, 0, sizeof s);
     status = load(&s);
     if (!status) status = read_file(&s, path, CHANNELS_MAX, out, &only);
+    if (!status) warn_if_cut(path);
     if (status || only == CHANNELS_MAX) return status;
     sound_free(out);
     status = read_file(&s, path, only, out, &ignored);
