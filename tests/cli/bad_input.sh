@@ -1,6 +1,6 @@
 #!/bin/sh
 # Missing, truncated, damaged files and files of another kind: exit code 1, a one-line message with the error and its
-# place, and no output file, not even a partial one.
+# place, and no output file, not even a partial one. A file that changes nothing is warned of.
 . "$(dirname "$0")/lib.sh"
 
 pack=$build/mask.noh
@@ -100,6 +100,23 @@ echo old >"$work/folder/out.noh"
 noh build "$work/cut.glb" -o "$work/folder/out.noh" --quiet
 expect 1 'a failed build over an older file'
 check 'the older file is untouched' sh -c 'test "$(cat "$1/out.noh")" = old && test "$(ls -A "$1")" = out.noh' - "$work/folder"
+
+# ---- files of options ----
+
+sh tests/support/small_glb.sh >"$work/small.glb"
+mkdir "$work/odd" "$work/odd/folder"
+: >"$work/odd/empty"
+printf 'a\0b\n' >"$work/odd/binary"
+printf '\377\376a\0' >"$work/odd/utf16"
+printf '\357\273\277nobody nothing\r\n' >"$work/odd/bom"
+# Of no use, as a rule: that is an error or a warning, and never silence.
+for option in --rename --retarget --events --names --springs --graph --recipe; do
+    for odd in missing folder empty binary utf16 bom; do
+        noh build "$work/small.glb" -o "$work/odd.noh" $option "$work/odd/$odd"
+        check "$option: $odd" sh -c 'grep -q -e "^noh: .*odd/$2" -e "^warning: $3 .*/$2 changes nothing" "$1/out" "$1/err"' \
+            - "$work" $odd "$option"
+    done
+done
 
 # ---- names ----
 

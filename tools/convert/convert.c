@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "choices.h"
+#include "convert/base/input_file.h"
 #include "convert/base/names.h"
+#include "convert/base/text_scan.h"
 #include "convert/clips/events_read.h"
 #include "convert/chunks/chunk_maker.h"
 #include "convert/clips/joint_order.h"
@@ -291,8 +293,9 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     settings.m = s->m;
     failed = make_wrinkles(s, chunks[NOH_CHUNK_RECIPE], options, error);
     failed = failed || set_textures(s, options, error);
+    if (!failed && options->only != CONVERT_CLIPS && extent_warn(s->m)) failed = out_of_memory(error);
     if (!failed && options->only != CONVERT_MESH &&
-        (size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm) ||
+        (weights_warn(s->m, s->sets, s->set_count) || size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm) ||
          clips_mirror_warn(s->m, s->sets, s->set_count))) {
         failed = out_of_memory(error);
     }
@@ -381,6 +384,45 @@ static int join_all(const char *const *inputs, int count, int base, const conver
     return 0;
 }
 
+static int has_rows(const char *text, size_t bytes)
+{
+    model_error unused;
+    text_scan scan;
+    text_word word = { 0 };
+    text_start(&scan, text, bytes, &unused);
+    do {
+        if (text_take_on_line(&scan, &word)) return 1;
+    } while (!word.size && text_next_line(&scan));
+    return word.size != 0;
+}
+
+/* A file of an option that changes nothing is read all the same, so that a wrong path is told, and warned of. */
+static int check_rows(const char *option, const char *path, int is_used, model *m, convert_failure *failure)
+{
+    const int is_file = path && strcmp(path, "auto") != 0;
+    int rows = 1;
+    if (is_file) {
+        size_t bytes;
+        char *text = input_read_text(path, &bytes, &failure->error);
+        if (!text) return input_fail_at(path, &failure->error);
+        rows = has_rows(text, bytes);
+        free(text);
+    }
+    if (!path || (is_used && rows)) return 0;
+    return model_warn(m, "%s %.200s changes nothing: %s", option, path,
+                      is_used ? "the file has no rows"
+                              : "it is for clips of other files; name such a file after the model")
+               ? out_of_memory(&failure->error)
+               : 0;
+}
+
+static int check_all_rows(const convert_options *o, int input_count, model *m, convert_failure *failure)
+{
+    return check_rows("--names", o->names, 1, m, failure) || check_rows("--events", o->events, 1, m, failure) ||
+           check_rows("--rename", o->joints.names, input_count > 1, m, failure) ||
+           check_rows("--retarget", o->joints.retarget, input_count > 1, m, failure);
+}
+
 /* Of the makers that read once joints are in their last order, or of the others. */
 static int read_chunks(const convert_options *options, const source *s, int in_joint_order, void **made,
                        convert_failure *failure)
@@ -421,7 +463,8 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     failed = use_names(options, failure) || read_all(inputs, input_count, options, all, failure);
     if (!failed) {
         base = base_of(all, input_count);
-        failed = join_all(inputs, input_count, base, options, all, failure) ||
+        failed = check_all_rows(options, input_count, all[base].m, failure) ||
+                 join_all(inputs, input_count, base, options, all, failure) ||
                  make_surfaces(options, &all[base], &failure->error) ||
                  apply_events(options, &all[base], &failure->error) ||
                  read_chunks(options, &all[base], 0, chunks, failure) ||

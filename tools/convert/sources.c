@@ -237,34 +237,46 @@ static const char *joint_name(const raw_skeleton *s, uint32_t joint)
     return joint == MODEL_NONE ? "none" : s->joints[joint].name ? s->joints[joint].name : "";
 }
 
-static int fail_skeletons(const raw_skeleton *base, const char *base_path, const raw_skeleton *other,
-                          model_error *error)
+/* " --partial ...", where --partial fits the set, which is then changed: it is refused anyway. */
+static const char *partial_advice(raw_set *set, const raw_skeleton *to)
 {
-    uint32_t least = base->joint_count < other->joint_count ? base->joint_count : other->joint_count;
+    const joint_match_options in_part = { .partial = 1 };
+    model_error unused;
+    char *report;
+    const int fits = joint_match_set(set, to, &in_part, &report, &unused) == JOINTS_MATCHED;
+    free(report);
+    return fits ? " --partial uses the joints that both have;" : "";
+}
+
+static int fail_skeletons(const raw_skeleton *base, const char *base_path, raw_set *set, model_error *error)
+{
+    const raw_skeleton *other = &set->skeleton;
+    const uint32_t count = other->joint_count;
+    uint32_t least = base->joint_count < count ? base->joint_count : count;
     for (uint32_t j = 0; j < least; j++) {
-        const char *here = joint_name(other, j), *there = joint_name(base, j);
-        if (strcmp(here, there) != 0) {
-            return model_fail(
-                error, "",
-                "its skeleton differs from %.80s: joint %u is '%.40s' here and '%.40s' there; --partial uses the "
-                "joints that both have, --rename FILE maps names, --retarget auto moves clips to another humanoid",
-                base_path, j, here, there);
+        const char *there = joint_name(base, j);
+        if (strcmp(joint_name(other, j), there) != 0) {
+            char here[41];
+            (void)snprintf(here, sizeof here, "%s", joint_name(other, j));
+            return model_fail(error, "",
+                              "its skeleton differs from %.80s: joint %u is '%s' here and '%.40s' there;%s "
+                              "--rename FILE maps names, --retarget auto moves clips between humanoids",
+                              base_path, j, here, there, partial_advice(set, base));
         }
         if (other->joints[j].parent != base->joints[j].parent) {
             return model_fail(
                 error, "",
                 "its skeleton differs from %.80s: the parent of joint '%.30s' is '%.30s' here and '%.30s' there",
-                base_path, here, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
+                base_path, there, joint_name(other, other->joints[j].parent), joint_name(base, base->joints[j].parent));
         }
     }
-    return model_fail(
-        error, "",
-        "its skeleton differs from %.80s: it has %u joints here and %u there; --partial uses the joints that both have",
-        base_path, other->joint_count, base->joint_count);
+    return model_fail(error, "",
+                      "its skeleton differs from %.80s: it has %u joints here and %u there;%s --rename FILE maps names",
+                      base_path, count, base->joint_count, partial_advice(set, base));
 }
 
 /* Find the base's set that has the same joints as `from`. */
-static int find_set(const source *base, const char *base_path, const raw_set *from, raw_set **to, model_error *error)
+static int find_set(const source *base, const char *base_path, raw_set *from, raw_set **to, model_error *error)
 {
     const raw_skeleton *first = NULL;
     for (uint32_t i = 0; i < base->set_count; i++) {
@@ -275,7 +287,7 @@ static int find_set(const source *base, const char *base_path, const raw_set *fr
         }
         first = !first && s->joint_count ? s : first;
     }
-    return first ? fail_skeletons(first, base_path, &from->skeleton, error)
+    return first ? fail_skeletons(first, base_path, from, error)
                  : model_fail(error, "",
                               "it animates a skeleton, and %.150s has none: give a model with a skeleton first",
                               base_path);
@@ -397,7 +409,7 @@ static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
     return 0;
 }
 
-static int join_clip(source *base, const char *base_path, const raw_set *from, raw_clip *clip, const char *path,
+static int join_clip(source *base, const char *base_path, raw_set *from, raw_clip *clip, const char *path,
                      uint32_t *joined, model_error *error)
 {
     raw_set *to = NULL;

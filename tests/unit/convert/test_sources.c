@@ -41,15 +41,22 @@ static source source_of_model(model *m)
     return s;
 }
 
-static void expect_refused(source *base, source *other, const char *what)
+/* A message advises --partial where it helps. */
+static void expect_refused_in_full(source *base, source *other, const char *what, int advises)
 {
     model_error error = { "", "" };
     assert_int_equal(source_join(base, "base.glb", other, "other.bvh", &by_name, &error), 1);
+    assert_int_equal(strstr(error.what, "--partial") != NULL, advises);
     if (!strstr(error.what, what)) {
         fail_msg("'%s' does not say '%s'", error.what, what);
     }
     source_free(base);
     source_free(other);
+}
+
+static void expect_refused(source *base, source *other, const char *what)
+{
+    expect_refused_in_full(base, other, what, 0);
 }
 
 static int has_warning(const model *m, const char *text)
@@ -109,10 +116,10 @@ static void the_first_difference_is_told(void **state)
 {
     source base = source_of(clip_bvh("walk", "abcd", FRAMES)), other = source_of(clip_bvh("run", "abxd", FRAMES));
     (void)state;
-    expect_refused(&base, &other, "its skeleton differs from base.glb: joint 2 is 'x' here and 'c' there");
+    expect_refused_in_full(&base, &other, "its skeleton differs from base.glb: joint 2 is 'x' here and 'c' there", 1);
     base = source_of(clip_bvh("walk", "abcd", FRAMES));
     other = source_of(clip_bvh("run", "abc", FRAMES));
-    expect_refused(&base, &other, "it has 3 joints here and 4 there");
+    expect_refused_in_full(&base, &other, "it has 3 joints here and 4 there", 1);
     base = source_of(clip_bvh("walk", "abcd", FRAMES));
     other = source_of(clip_bvh("run", "abcd", FRAMES));
     other.sets[0]->skeleton.joints[3].parent = 1;
@@ -365,7 +372,7 @@ static void a_joint_that_the_file_lacks_keeps_the_bind_pose(void **state)
     source_free(&base);
     source_free(&other);
     source_free(&same);
-    expect_refused(&more, &again, "--partial uses the joints that both have");
+    expect_refused_in_full(&more, &again, "--partial uses the joints that both have", 1);
 }
 
 static void strangers_are_refused_in_part_too(void **state)

@@ -159,6 +159,13 @@ char *input_read_text(const char *path, size_t *bytes, model_error *error)
         model_fail(error, "", "this is a text in UTF-16: save it as UTF-8");
         return NULL;
     }
+    while (*bytes && !text[*bytes - 1]) --*bytes; /* some exporters fill up a block */
+    const char *zero = *bytes ? memchr(text, 0, *bytes) : NULL;
+    if (zero) {
+        model_fail(error, "", "this is not a text: byte %zu is 0", (size_t)(zero - text));
+        free(text);
+        return NULL;
+    }
     for (size_t i = 0; i < *bytes; i++) {
         if (text[i] == '\r' && text[i + 1] != '\n') text[i] = '\n';
     }

@@ -14,7 +14,8 @@ extern "C" {
 /* The bytes of a file and a zero after them, to be freed. NULL and *error where it cannot be read. */
 char *input_read(const char *path, size_t *bytes, model_error *error);
 
-/* The same for a text: lines end with LF or CRLF, and UTF-16 is an error. */
+/* The same for a text: lines end with LF or CRLF, and UTF-16 and a binary file are
+ * errors. */
 char *input_read_text(const char *path, size_t *bytes, model_error *error);
 /* Name an input file in an error: the message begins with the input's name. Returns 1. */
 int input_fail_at(const char *path, model_error *error);

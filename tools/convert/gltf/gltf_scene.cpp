@@ -85,7 +85,11 @@ static void visit_below(file &f, const std::vector<size_t> &roots, std::vector<v
         visit v = open.back();
         open.pop_back();
         if (f.node_of[v.node] != MODEL_NONE) {
-            leave_out(f, where_of(f, v.node), " is listed in the scene, and there already");
+            leave_out(f, where_of(f, v.node),
+                      v.parent == MODEL_NONE
+                          ? " is listed in the scene, and there already"
+                          : " is below itself, or listed in the scene before its parent: it was left where it "
+                            "came first");
             continue;
         }
         uint32_t index = static_cast<uint32_t>(order.size());

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/base/input_file.h"
 #include "target_append.h"
 
 /* ---- which mesh ---- */
@@ -70,9 +71,7 @@ int identity_join(model *m, const char *path, model_error *error)
 {
     model *other = NULL;
     int failed;
-    if (model_read_gltf(path, &other, error)) {
-        return 1;
-    }
+    if (model_read_gltf(path, &other, error)) return input_fail_at(path, error);
     failed = join(m, other, path, error);
     model_free(other);
     return failed;

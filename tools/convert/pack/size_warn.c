@@ -33,6 +33,73 @@ double meshes_cm(const model *m)
     return size;
 }
 
+/* Floats of four bytes hold seven digits: a figure that is a millionth of its distance is a few of them wide. */
+#define NEAREST_MM 1e-3
+#define FARTHEST 1e5 /* times its size */
+
+/* A picture of it would be empty, or its vertices would lie on each other. */
+int extent_warn(model *m)
+{
+    const double size = meshes_cm(m);
+    double away = 0.0;
+    if (!m->mesh_count) return 0;
+    for (uint32_t n = 0; n < m->node_count; n++) {
+        const model_node *node = &m->nodes[n];
+        if (node->mesh == MODEL_NONE || node->skin != MODEL_NONE) continue;
+        const double *x = node->world;
+        if (fmax(fmax(vec_dot(x, x), vec_dot(x + 4, x + 4)), vec_dot(x + 8, x + 8)) < 1e-24 &&
+            model_warn(m, "node '%.60s': a scale of 0 hides its mesh: remove the node, or set its scale to 1",
+                       node->name ? node->name : "")) {
+            return 1;
+        }
+        away = fmax(away, 100.0 * sqrt(vec_dot(x + 12, x + 12)));
+    }
+    if (size < NEAREST_MM / 10.0) {
+        return model_warn(m, "all meshes are %.3g cm large, too small to be seen: export them scaled by %.0e", size,
+                          size > 0.0 ? PERSON_CM / size : 1.0);
+    }
+    if (away > FARTHEST * size) {
+        return model_warn(
+            m,
+            "its meshes are %.3g cm large and lie %.3g cm from the origin, where floats are too coarse for "
+            "them: move it to the origin before it is exported",
+            size, away);
+    }
+    return 0;
+}
+
+#define WEIGHT_MOST 100.0
+
+static double largest_of(const raw_clip *clip, const raw_floats *floats)
+{
+    double most = 0.0;
+    for (size_t i = 0; i < (size_t)clip->frame_count * floats->width; i++) {
+        most = fmax(most, fabs((double)floats->values[i]));
+    }
+    return most;
+}
+
+int weights_warn(model *m, raw_set *const *sets, uint32_t set_count)
+{
+    for (uint32_t i = 0; i < set_count; i++) {
+        for (uint32_t c = 0; c < sets[i]->clip_count; c++) {
+            const raw_clip *clip = &sets[i]->clips[c];
+            for (uint32_t f = 0; f < clip->float_count; f++) {
+                const double most = clip->floats[f].node == MODEL_NONE ? 0.0 : largest_of(clip, &clip->floats[f]);
+                if (most <= WEIGHT_MOST) continue;
+                if (model_warn(
+                        m,
+                        "clip '%.60s': a target's weight reaches %.3g, which moves vertices %.3g times as far as "
+                        "the target: 1 is all of it; if these are percents, divide them by 100",
+                        clip->name, most, most)) {
+                    return 1;
+                }
+            }
+        }
+    }
+    return 0;
+}
+
 /* The longest side of a box about joints in the bind pose and what each moves; 0: there is nothing to measure. */
 static double size_cm(const model *m, const raw_set *set, uint32_t index, int *failed)
 {

@@ -1,4 +1,5 @@
-/* size_warn.h: a warning if a clip's tolerance does not fit the size of its figure. */
+/* size_warn.h: warnings of sizes: of a figure that cannot be seen, of a clip's tolerance that does not fit its figure, of
+ * weights. */
 #ifndef NOH_CONVERT_PACK_SIZE_WARN_H
 #define NOH_CONVERT_PACK_SIZE_WARN_H
 
@@ -6,6 +7,12 @@
 
 /* The longest side of a box about a mesh, in the world; 0: there are none. */
 double meshes_cm(const model *m);
+
+/* Warn of meshes that are too small, or too far from the origin, to be drawn. Returns 1 when out of memory, as below. */
+int extent_warn(model *m);
+
+/* Warn of clips whose targets' weights are far beyond what a target is for. */
+int weights_warn(model *m, raw_set *const *sets, uint32_t set_count);
 
 /* Distances in centimetres: of points around joints, as clips are encoded to them. The default tolerance is right for
  * people. On a coin it is visible, and on a ship it wastes bytes; the suggestion is the same share of the size. If the
