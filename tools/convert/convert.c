@@ -396,7 +396,7 @@ static int has_rows(const char *text, size_t bytes)
     return word.size != 0;
 }
 
-/* A file of an option that changes nothing is read all the same, so that a wrong path is told, and warned of. */
+/* A file of an option that changes nothing is read all the same, so that a wrong path is an error; and warned of. */
 static int check_rows(const char *option, const char *path, int is_used, model *m, convert_failure *failure)
 {
     const int is_file = path && strcmp(path, "auto") != 0;

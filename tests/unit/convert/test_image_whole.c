@@ -1,4 +1,5 @@
-/* Pictures that were cut off: at each byte of a PNG and a JPEG it is told what is missing and where; whole ones pass. */
+/* Pictures that were cut off: at each byte of a PNG and a JPEG the message says what is missing and where; whole ones
+ * pass. */
 #include "support/support.h"
 
 #include <string.h>

@@ -144,7 +144,7 @@ static void play(scene *s)
     }
 }
 
-/* What is shown is numbers. Returns the first that is none, or NULL. */
+/* What is shown is numbers. Returns what is not, or NULL. */
 static const char *bad_number(const scene *s)
 {
     for (uint32_t i = 0; i < ACTORS; i++) {
