@@ -3,7 +3,9 @@
 # must equal the CPU in every bit; so must float16 if the driver's rounding is modelled, else it must stay within the
 # pack's bound. The picture is compared with llvmpipe's: the mean difference is at most 0.25/255, and at most 1 % of the
 # pixels differ by more than 8 (edges and mip levels differ between rasterisers). tests/gl/test_gl_depth.c,
-# test_gl_light.c, test_gl_wrinkles.c and a part of test_gl_share.c run on each driver too. Prints a table of what ran.
+# test_gl_light.c, test_gl_wrinkles.c and a part of test_gl_share.c run on each other rasteriser too, and on llvmpipe with
+# the fewest capabilities; with all of them they are tests of their own, and OSMesa is llvmpipe without EGL (NOH_LONG:
+# everywhere). Prints a table of what ran.
 . tests/cli/lib.sh
 if [ -n "${NOH_SAN:-}" ]; then
     skip 'the matrix' 'other drivers run no other code of ours: the build without sanitizers compares them'
@@ -19,9 +21,24 @@ if [ $code != 0 ]; then
     finish
 fi
 
-row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there ('' none)
-    name=$1 driver=$2 lacking=$3
-    shift 3
+programs() { # ENVIRONMENT...
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_depth" >"$work/depth" 2>&1
+    code=$?
+    expect 0 "$name: depth without colour is equal in every bit"
+    check "$name: all of that ran" sh -c '! grep -q "SKIP\|skipped" "$1" || grep -q RGBA32UI "$1"' - "$work/depth"
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_light" >"$work/light" 2>&1
+    code=$?
+    expect 0 "$name: light is the closed forms'"
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_wrinkles" >"$work/wrinkles" 2>&1
+    code=$?
+    expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
+    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_share" slots_lend_and_borrow >"$work/share" 2>&1
+    code=$?
+    expect 0 "$name: stages that share are drawn as they are alone"
+}
+row() { # NAME DRIVER LACKING programs|verify-alone ENVIRONMENT...: LACKING paths cannot run there ('' none)
+    name=$1 driver=$2 lacking=$3 more=$4
+    shift 4
     env "$@" "$build/noh" verify "$mask" --driver "$driver" --json >"$work/out" 2>"$work/err"
     code=$?
     if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
@@ -44,19 +61,7 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
         *) check "$name: $path runs" test $here = 1 ;;
         esac
     done
-    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_depth" >"$work/depth" 2>&1
-    code=$?
-    expect 0 "$name: depth without colour is equal in every bit"
-    check "$name: all of that ran" sh -c '! grep -q "SKIP\|skipped" "$1" || grep -q RGBA32UI "$1"' - "$work/depth"
-    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_light" >"$work/light" 2>&1
-    code=$?
-    expect 0 "$name: light is the closed forms'"
-    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_wrinkles" >"$work/wrinkles" 2>&1
-    code=$?
-    expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
-    env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_share" slots_lend_and_borrow >"$work/share" 2>&1
-    code=$?
-    expect 0 "$name: stages that share are drawn as they are alone"
+    [ "$more" = verify-alone ] && [ -z "${NOH_LONG:-}" ] || programs "$@"
     auto=mrt
     case " $lacking " in *" mrt "*) auto=gather ;; esac
     env "$@" "$build/noh" render "$mask" --light none -o "$work/picture.png" --size 256x256 --weight smile=1 --driver "$driver" \
@@ -71,27 +76,27 @@ row() { # NAME DRIVER LACKING ENVIRONMENT...: LACKING paths cannot run there (''
 }
 
 none='NOH_MATRIX=1'
-row 'EGL' egl '' $none
+row 'EGL' egl '' verify-alone $none
 if grep -q 'llvmpipe' "$table"; then
     no_geometry='-GL_EXT_geometry_shader -GL_OES_geometry_shader'
     no_blend="$no_geometry -GL_EXT_float_blend"
     no_floats="$no_blend -GL_EXT_color_buffer_float -GL_EXT_color_buffer_half_float"
-    row 'ES 3.1 without geometry shaders' egl layered "MESA_GLES_VERSION_OVERRIDE=3.1" "MESA_EXTENSION_OVERRIDE=$no_geometry"
-    row 'ES 3.0 without float blending' egl 'layered mrt per-layer' MESA_GLES_VERSION_OVERRIDE=3.0 "MESA_EXTENSION_OVERRIDE=$no_blend"
-    row 'ES 3.0 without float targets' egl 'layered mrt per-layer' MESA_GLES_VERSION_OVERRIDE=3.0 "MESA_EXTENSION_OVERRIDE=$no_floats"
+    row 'ES 3.1 without geometry shaders' egl layered verify-alone "MESA_GLES_VERSION_OVERRIDE=3.1" "MESA_EXTENSION_OVERRIDE=$no_geometry"
+    row 'ES 3.0 without float blending' egl 'layered mrt per-layer' verify-alone MESA_GLES_VERSION_OVERRIDE=3.0 "MESA_EXTENSION_OVERRIDE=$no_blend"
+    row 'ES 3.0 without float targets' egl 'layered mrt per-layer' programs MESA_GLES_VERSION_OVERRIDE=3.0 "MESA_EXTENSION_OVERRIDE=$no_floats"
 else
     skip 'lesser devices' 'this GL is not llvmpipe, whose capabilities can be taken away'
 fi
 # libOSMesa and ANGLE keep what they allocated
-row 'OSMesa' osmesa '' "ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}"
-row 'ANGLE on SwiftShader' angle layered "ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}"
+row 'OSMesa' osmesa '' verify-alone "ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}"
+row 'ANGLE on SwiftShader' angle layered programs "ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}"
 lavapipe=$(ls /usr/share/vulkan/icd.d/lvp_icd.*.json 2>/dev/null | head -n 1)
 if [ -z "$lavapipe" ]; then
     skip 'zink on lavapipe' 'no lavapipe here (mesa-vulkan-drivers)'
     printf '%-34s not here\n' 'zink on lavapipe' >>"$table"
 else
     mkdir -m 700 "$work/runtime"
-    row 'zink on lavapipe' egl '' GALLIUM_DRIVER=zink LIBGL_ALWAYS_SOFTWARE=1 "VK_ICD_FILENAMES=$lavapipe" \
+    row 'zink on lavapipe' egl '' programs GALLIUM_DRIVER=zink LIBGL_ALWAYS_SOFTWARE=1 "VK_ICD_FILENAMES=$lavapipe" \
         "XDG_RUNTIME_DIR=$work/runtime" "ASAN_OPTIONS=detect_leaks=0:${ASAN_OPTIONS:-}"
 fi
 
