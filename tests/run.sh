@@ -40,6 +40,9 @@ fi
 export LSAN_OPTIONS="suppressions=$PWD/tests/leaks.supp:print_suppressions=0:${LSAN_OPTIONS:-}"
 export ASAN_OPTIONS="allocator_may_return_null=1:${ASAN_OPTIONS:-}"
 export UBSAN_OPTIONS="print_stacktrace=1:${UBSAN_OPTIONS:-}"
+# LLVM compiles the shaders of Mesa's software rasteriser in half the time without optimisation, and the pictures that tests
+# draw are small. The bits are equal.
+export GALLIVM_PERF="${GALLIVM_PERF-nopt}"
 # The first GL error reported by a driver ends the program (tools/noh/gpu/gpu.c).
 export NOH_GL_DEBUG=1
 
