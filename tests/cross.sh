@@ -144,7 +144,9 @@ fi
 target aarch64 aarch64-linux-gnu-gcc aarch64-linux-gnu-ar '' -static qemu-aarch64-static
 target armv7 'arm-linux-gnueabihf-gcc -mfpu=neon' arm-linux-gnueabihf-ar '' -static qemu-arm-static
 # node's fetch does not read files, and emscripten's older loader asks it to
-target wasm emcc emar '' '--pre-js tests/cross/environment.js -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
+wasm_cc=emcc
+! has emcc >/dev/null || ! sh tools/web_cc.sh "$build/wasm-cc" || wasm_cc=$build/wasm-cc
+target wasm "$wasm_cc" emar '' '--pre-js tests/cross/environment.js -s NODERAWFS=1 -s EXIT_RUNTIME=1 -s ALLOW_MEMORY_GROWTH=1 -s TOTAL_STACK=1MB' node --no-experimental-fetch
 # The tests' %zu is right there, and isfinite() of a double, but not to that compiler's warnings.
 WINEPREFIX=$(cd "$build" && pwd)/wine
 export WINEPREFIX

@@ -109,7 +109,7 @@ WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
 $(BUILD)/web-cc: tools/web_cc.sh
 	@mkdir -p $(@D)
-	$(Q)sh tools/web_cc.sh $@
+	$(Q)sh tools/web_cc.sh $@ -fwasm-exceptions -msimd128 -msse2
 $(WEB_OBJECTS)/%.o: %.c | $(BUILD)/web-cc
 	@mkdir -p $(@D)
 	$(call say,EMCC,$@)
