@@ -231,10 +231,7 @@ END
         printf 'cmake_minimum_required(VERSION 3.18)\nproject(game C)\n%s\nadd_executable(smile smile.c)\ntarget_link_libraries(smile noh::noh)\n' \
             "$3" >"$folder/CMakeLists.txt"
         shift 3
-        check "CMake from source: $what builds" sh -c '
-            folder=$1
-            shift
-            cmake -S "$folder" -B "$folder/build" "$@" && cmake --build "$folder/build" -j2' - "$folder" \
+        check "CMake from source: $what configures" cmake -S "$folder" -B "$folder/build" \
             -DCMAKE_EXPORT_COMPILE_COMMANDS=ON "-DCMAKE_C_COMPILER_LAUNCHER=$work/quickly" "$@"
         sed -n 's|^ *"command": "\(.*\)",*$|\1|p' "$folder/build/compile_commands.json" | grep -F " $PWD/runtime/" >"$work/commands"
         sed "s|.* $PWD/\(runtime/[^ ]*\).*|\1|" "$work/commands" | sort | comm -13 - "$work/sources" >"$work/absent"
@@ -242,14 +239,20 @@ END
             for flag in -O2 -std=c99 -ffp-contract=off -fno-math-errno -ffunction-sections -fdata-sections; do
                 ! grep -v -e " $flag " "$1" || exit 1
             done' - "$work/commands"
-        runs "CMake from source, $what" smile "$folder/build/smile"
+    }
+    builds() { # WHAT FOLDER
+        check "CMake from source: $1 builds" cmake --build "$work/$2/build" -j2
+        runs "CMake from source, $1" smile "$work/$2/build/smile"
     }
     from_source 'add_subdirectory' cmake_subdirectory "add_subdirectory($PWD/runtime noh)"
     check 'CMake from source: every file' cmp /dev/null "$work/absent"
+    builds 'add_subdirectory' cmake_subdirectory
     from_source 'FetchContent, without GL' cmake_fetch "include(FetchContent)
 FetchContent_Declare(noh SOURCE_DIR $PWD SOURCE_SUBDIR runtime)
 FetchContent_MakeAvailable(noh)" -DNOH_GL=OFF
     check 'CMake from source: without what draws alone' sh -c 'test -s "$1" && ! grep -v "^runtime/gl/" "$1"' - "$work/absent"
+    # cli/release.sh builds the library without GL by CMake, too
+    [ -z "${NOH_LONG:-}" ] || builds 'FetchContent, without GL' cmake_fetch
 else
     skip 'CMake' 'no cmake here'
 fi

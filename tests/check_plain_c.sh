@@ -20,7 +20,7 @@ plain_make() {
 }
 # The tests below compare bits of these rooms; the rest is only compiled. Tests and tools are as they are.
 check 'the library compiles as plain C' "${CC:-gcc}" -std=c99 -w -DNOH_PLAIN_C -fsyntax-only "$build/amalgam/noh.c"
-check 'core, motion, deform and stage build as plain C' plain_make BUILD="$plain" OPT='-O1 -DNOH_PLAIN_C' ROOMS='core motion deform stage' lib
+check 'core, motion and deform build as plain C' plain_make BUILD="$plain" OPT='-O1 -DNOH_PLAIN_C' ROOMS='core motion deform' lib
 names=
 for name in hash math quat trig mesh bounds blend clip_codec; do
     names="$names $(echo "$build"/tests/unit/*/test_$name.o | sed "s|^$build/tests/unit/|$plain/tests/|; s|\.o$||")"
