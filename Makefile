@@ -206,10 +206,12 @@ $(BUILD)/gen/tool_shaders.gen.c: $(TOOL_SHADERS) $(BUILD)/embed
 	$(Q)$(BUILD)/embed -o $@ -d $(BUILD)/gen/tool_shaders.embed.d $(TOOL_SHADERS)
 $(BUILD)/gen/tool_shaders.gen.h: $(BUILD)/gen/tool_shaders.gen.c ;
 
+# Installed, too: where it is compiled for this machine, with the caller's flags.
+HOST_FLAGS = $(if $(filter $(CC),$(HOSTCC)),$(CPPFLAGS) $(CFLAGS) $(LDFLAGS))
 $(BUILD)/embed: tools/embed/embed.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
-	$(Q)$(HOSTCC) -std=c99 -O2 -g1 $(WARN) $(SANFLAGS) $< -o $@
+	$(Q)$(HOSTCC) -std=c99 -O2 -g1 $(WARN) $(SANFLAGS) $(HOST_FLAGS) $< -o $@
 
 include tools/mk/tools.mk
 include tools/mk/checks.mk
