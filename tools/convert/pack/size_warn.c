@@ -54,9 +54,10 @@ int extent_warn(model *m)
         }
         away = fmax(away, 100.0 * sqrt(vec_dot(x + 12, x + 12)));
     }
+    if (!(size > 0.0)) return model_warn(m, "all vertices of a mesh lie on one point: nothing of it can be seen");
     if (size < NEAREST_MM / 10.0) {
         return model_warn(m, "all meshes are %.3g cm large, too small to be seen: export them scaled by %.0e", size,
-                          size > 0.0 ? PERSON_CM / size : 1.0);
+                          PERSON_CM / size);
     }
     if (away > FARTHEST * size) {
         return model_warn(
