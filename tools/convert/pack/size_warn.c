@@ -54,7 +54,7 @@ int extent_warn(model *m)
         }
         away = fmax(away, 100.0 * sqrt(vec_dot(x + 12, x + 12)));
     }
-    if (!(size > 0.0)) return model_warn(m, "all vertices of a mesh lie on one point: nothing of it can be seen");
+    if (!(size > 0.0)) return model_warn(m, "all vertices of a mesh lie on one point: it cannot be seen");
     if (size < NEAREST_MM / 10.0) {
         return model_warn(m, "all meshes are %.3g cm large, too small to be seen: export them scaled by %.0e", size,
                           PERSON_CM / size);
