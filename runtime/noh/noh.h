@@ -229,7 +229,6 @@ typedef struct noh_stage_gpu noh_stage_gpu; /* noh_gl.h has the only one */
  * phones a lit pixel takes about 0.6 of the time. Shaders of your own that call noh_light get the same. */
 typedef enum noh_shading { NOH_SHADING_FULL, NOH_SHADING_PHONE } noh_shading;
 
-/* Zero is a good default for every field except kinds and kind_count. */
 /* Another stage, planned before. */
 typedef struct noh_stage_peer {
     const struct noh_stage_desc *desc;
@@ -243,6 +242,7 @@ typedef struct noh_stage_peers {
     uint32_t peer_count;
 } noh_stage_peers;
 
+/* Zero is a good default for every field except kinds and kind_count. */
 typedef struct noh_stage_desc {
     const noh_kind_desc *kinds; /* [kind_count]; required */
     uint32_t kind_count;        /* 1..NOH_STAGE_KINDS_MAX */
