@@ -6,7 +6,7 @@
 WEB_PACK    ?= $(BUILD)/page/nell.noh
 WEB_WIRE    ?= --error-um 10# of `noh pack`; empty: nothing is rounded
 WEB         := $(BUILD)/web/$(basename $(notdir $(WEB_PACK)))
-WEB_FLAGS   := -std=c99 -Oz -msimd128 -mnontrapping-fptoint -mbulk-memory $(WARN) $(FP) -Wno-sign-conversion -DNOH_SPRINGS_MEET=0 -DNOH_STATE_CHECKS=0 -DNOH_STAGES_SHARE=0 -DNOH_CLIPS_COME=0 -DNOH_TEXTURES_COME=0 $(INCLUDES) -Iplatform/web
+WEB_FLAGS   := -std=c99 -Oz -msimd128 -mnontrapping-fptoint -mbulk-memory $(WARN) $(FP) -Wno-sign-conversion -DNOH_PAGE=1 $(INCLUDES) -Iplatform/web
 WEB_STACK   := 65536
 WEB_STATIC  := 1048576
 WEB_LINK    := -msse2 -s STANDALONE_WASM=1 --no-entry -s IMPORTED_MEMORY=1 -s ALLOW_MEMORY_GROWTH=1 -s MAXIMUM_MEMORY=2147483648 -s MALLOC=none \

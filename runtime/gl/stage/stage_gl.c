@@ -183,7 +183,7 @@ static void carve_kind(measure *m, uint32_t i, noh_gl_kind *kind)
     noh_gl_cover *covers = CARVE(m, cover_count, noh_gl_cover);
     noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
     noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
-    const int streams_any = NOH_TEXTURES_COME && m->desc->texture_reserve && !m->desc->kinds[i].changes;
+    const int streams_any = !NOH_PAGE && m->desc->texture_reserve && !m->desc->kinds[i].changes;
     uint16_t *streams = CARVE(m, streams_any ? count : 0, uint16_t);
     if (!kind) return;
     if (streams_any) kind->streams = memset(streams, 0, count * sizeof *streams);
@@ -296,13 +296,13 @@ static void carve_head(measure *m)
     noh_gl_renderer *renderer = CARVE(m, 1, noh_gl_renderer);
     void *variants = noh_arena_carve(&m->arena, m->desc->without_shader ? 0 : variants_bytes, 16);
     noh_gl_views *views = CARVE(m, m->desc->motion ? 2u : 0, noh_gl_views);
-    noh_gl_sharing *sharing = CARVE(m, NOH_STAGES_SHARE && m->desc->share, noh_gl_sharing);
+    noh_gl_sharing *sharing = CARVE(m, !NOH_PAGE && m->desc->share, noh_gl_sharing);
     if (m->gl) { /* a real stage: init put the device into a copy */
         gl->device = m->gl->device;
         m->gl = gl;
         gl->models = of;
         gl->sharing = NULL;
-        if (NOH_STAGES_SHARE && m->desc->share) {
+        if (!NOH_PAGE && m->desc->share) {
             gl->sharing = memset(sharing, 0, sizeof *sharing);
             sharing->context = gl->device.ledger->contexts;
         }
@@ -358,7 +358,7 @@ static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
     noh_result result = NOH_OK;
     if (owner.kind == site.kind && owner.item == site.item) {
         unsigned peers = 0;
-        if (NOH_STAGES_SHARE && m->desc->share) {
+        if (!NOH_PAGE && m->desc->share) {
             peers = noh_gl_peers_have(m->desc, m->plan, m->caps, site, m->direct);
         }
         result = visit_model(m, site, peers, model, error);
@@ -413,7 +413,7 @@ static noh_result visit(measure *m, noh_error *error)
         if (!m->desc->kinds[i].changes) result = count_pictures(m, i, error);
     }
     carve_slots(m);
-    if (NOH_TEXTURES_COME && m->desc->texture_reserve && result == NOH_OK) result = visit_streamed(m, error);
+    if (!NOH_PAGE && m->desc->texture_reserve && result == NOH_OK) result = visit_streamed(m, error);
     if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
     return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, m->gl, error) : result;
 }
@@ -423,7 +423,8 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
                              noh_error *error)
 {
     measure m = { desc, desc, plan, caps, memory ? noh_arena_over(memory, SIZE_MAX) : noh_arena_measure(),
-                  gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps), 0 };
+                  gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps),
+                  0 };
     noh_gl_site site = { kind, 0 };
     noh_result result = NOH_OK;
     carve_kind(&m, kind, gl ? &gl->kinds[kind] : NULL);
@@ -828,7 +829,7 @@ const noh_stage_gpu noh_stage_on_gl = { measure_stage,
                                         noh_gl_slot_come,
                                         noh_gl_slot_fill,
                                         noh_gl_slot_close,
-                                        NOH_TEXTURES_COME ? noh_gl_textures_stream : NULL };
+                                        NOH_PAGE ? NULL : noh_gl_textures_stream };
 
 /* ---- shaders of your own ---- */
 

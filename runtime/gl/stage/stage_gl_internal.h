@@ -279,7 +279,7 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
 
 static inline int noh_gl_shares(const noh_stage_gl *gl)
 {
-    return NOH_STAGES_SHARE && gl->sharing;
+    return !NOH_PAGE && gl->sharing;
 }
 
 /* All but the last only where a stage shares. In and out; errors  ARG it has objects of the ledger's context */

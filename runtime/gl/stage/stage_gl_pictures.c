@@ -35,7 +35,7 @@ static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site w
 /* Of a texture whose levels come by need; NULL: it is whole. */
 static noh_gl_streamed *streamed(const noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
 {
-    const uint16_t *streams = NOH_TEXTURES_COME ? kinds[where.kind].streams : NULL;
+    const uint16_t *streams = NOH_PAGE ? NULL : kinds[where.kind].streams;
     const uint32_t own = streams ? streams[noh_gl_picture_index(desc, where)] : 0;
     return own ? &kinds[where.kind].streamed[own - 1u] : NULL;
 }
@@ -159,7 +159,7 @@ static int peers_have(const noh_stage_desc *desc, site where, const noh_texture 
             uint32_t texture;
             for (uint32_t set = 0; set <= peer->kinds[k].texture_set_count; set++) {
                 if (peer->kinds[k].changes || !has(&peer->kinds[k], set, pack, index, &texture)) continue;
-                if (!NOH_TEXTURES_COME || !noh_gl_is_streamed(peer, (site){ k, set, texture }, of)) return 1;
+                if (NOH_PAGE || !noh_gl_is_streamed(peer, (site){ k, set, texture }, of)) return 1;
             }
         }
     }
@@ -178,9 +178,9 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
         noh_texture texture;
         if (!noh_gl_owns_picture(desc, where, &texture)) continue;
         result = noh_gl_picture_check(&texture, caps->astc, error);
-        if (NOH_TEXTURES_COME && noh_gl_is_streamed(desc, where, &texture)) continue;
-        *(NOH_STAGES_SHARE && peers_have(desc, where, &texture) ? shared : bytes) += noh_gl_picture_bytes(&texture,
-                                                                                                          caps->etc2);
+        if (!NOH_PAGE && noh_gl_is_streamed(desc, where, &texture)) continue;
+        *(!NOH_PAGE && peers_have(desc, where, &texture) ? shared : bytes) += noh_gl_picture_bytes(&texture,
+                                                                                                   caps->etc2);
     }
     return result;
 }

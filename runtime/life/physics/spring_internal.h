@@ -8,10 +8,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-/* 0: springs meet no world, whatever a desc says, and what asks it is not linked: for the page, which has none. */
-#ifndef NOH_SPRINGS_MEET
-#define NOH_SPRINGS_MEET 1
-#endif
+#include "core/base/compiler_internal.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -364,7 +364,7 @@ static void step_joints(const group *g, moment *m, const obstacle *obstacles)
                 tail = push_out(&obstacles[k], head, j.radius, length, tail);
             }
         }
-        if (NOH_SPRINGS_MEET && g->touches) {
+        if (!NOH_PAGE && g->touches) {
             tail = stay_in_front(g, i, lane3_add(m->ahead, head), NULL, head, j.radius, length, tail);
         }
         if (g->bounces) {
@@ -513,7 +513,7 @@ static void show_group(const group *g)
         const lane3 tail = lane3_mix(lane3_add(lane3_of(p + 3), lane3_of(was)), lane3_of(p), left.v);
         const lane4 rest = lane4_normalize(lane4_of(j + 3));
         lane3 way = lane3_sub(tail, head);
-        if (NOH_SPRINGS_MEET && g->touches) {
+        if (!NOH_PAGE && g->touches) {
             const lanes square = lane3_dot(way, way), is_long = lanes_less(lanes_set(1e-30f), square);
             const lane3 free = lane3_madd(end, lanes_mul(p[6], lanes_inverse_root(is_long, square)), way);
             lanes_gather(joint_rows, 6, more);

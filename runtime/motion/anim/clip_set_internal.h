@@ -3,12 +3,8 @@
 #ifndef NOH_ANIM_CLIP_SET_INTERNAL_H
 #define NOH_ANIM_CLIP_SET_INTERNAL_H
 
+#include "core/base/compiler_internal.h"
 #include "noh/clip.h"
-
-/* 0 (as in the page's program, which has no use for it): clips are never brought in while a stage runs. */
-#ifndef NOH_CLIPS_COME
-#define NOH_CLIPS_COME 1
-#endif
 
 /* A clip of a reserve. */
 typedef struct noh_reserved_clip {
@@ -29,7 +25,7 @@ typedef struct noh_clip_reserve {
 /* Test whether a clip cannot be played. Clips past a bank's own are the caller's. */
 static inline int noh_clip_is_absent(const noh_clip_set *set, uint32_t clip)
 {
-    return NOH_CLIPS_COME && set->reserve && clip < set->reserve->clip_count && set->reserve->clips[clip].absent;
+    return !NOH_PAGE && set->reserve && clip < set->reserve->clip_count && set->reserve->clips[clip].absent;
 }
 
 /* Get a mask of a set as blending takes it: index 0 is no mask, n is the set's mask n - 1. */

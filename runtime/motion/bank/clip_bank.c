@@ -108,7 +108,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
                         noh_bank_where(found->at), (uint64_t)c->shape.clip_count + 1u);
     }
     c->shape.clip_count++;
-    if (NOH_CLIPS_COME && found->clip.byte_count > c->clip_max) c->clip_max = found->clip.byte_count;
+    if (!NOH_PAGE && found->clip.byte_count > c->clip_max) c->clip_max = found->clip.byte_count;
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;
     c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
@@ -176,7 +176,7 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
                         0, c->shape.float_count);
     }
     c->reserve_bytes = (uint32_t)align_up(desc->reserve_bytes);
-    if (NOH_CLIPS_COME && c->reserve_bytes && c->reserve_bytes < align_up(c->clip_max)) {
+    if (!NOH_PAGE && c->reserve_bytes && c->reserve_bytes < align_up(c->clip_max)) {
         return noh_fail(error, NOH_ERR_ARG, "clip_reserve is smaller than the largest clip", 0, align_up(c->clip_max));
     }
     c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
@@ -203,7 +203,7 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     p->runs = noh_arena_carve(arena, c->runs * sizeof *p->runs, 2u);
     p->clip_memory = noh_arena_carve(arena, c->clip_bytes, 16u);
     p->cache_memory = noh_arena_carve(arena, c->cache_bytes, 16u);
-    if (NOH_CLIPS_COME && c->reserve_bytes) {
+    if (!NOH_PAGE && c->reserve_bytes) {
         p->reserve = noh_arena_carve(arena, sizeof *p->reserve, 16u);
         p->reserved = noh_arena_carve(arena, n->clip_count * sizeof *p->reserved, 4u);
         p->event_names = noh_arena_carve(arena, n->event_count * sizeof *p->event_names, 4u);
@@ -361,7 +361,7 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
     to->marker_count = from->header->marker_count;
     for (uint32_t i = 0; i < to->event_count; i++) {
         noh_event_key *key = &p->events[bank->clips.event_count];
-        if (NOH_CLIPS_COME && p->event_names) p->event_names[bank->clips.event_count] = from->events[i].name;
+        if (!NOH_PAGE && p->event_names) p->event_names[bank->clips.event_count] = from->events[i].name;
         bank->clips.event_count++;
         key->tick = from->events[i].tick;
         key->name_hash = from->events[i].name_hash;
@@ -440,7 +440,7 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
 static void open_reserve(const counts *c, const parts *p)
 {
     noh_clip_reserve *r = p->reserve;
-    if (!NOH_CLIPS_COME || !c->reserve_bytes) return;
+    if (NOH_PAGE || !c->reserve_bytes) return;
     memset(r, 0, sizeof *r);
     memset(p->reserved, 0, c->shape.clip_count * sizeof *p->reserved);
     r->clips = p->reserved;

@@ -40,7 +40,7 @@ static void leave(noh_clip_bank *bank, uint32_t clip)
 
 void noh_clip_bank_empty(noh_clip_bank *bank)
 {
-    if (!NOH_CLIPS_COME || !bank->clips.reserve) return;
+    if (NOH_PAGE || !bank->clips.reserve) return;
     for (uint32_t i = 0; i < bank->clips.clip_count; i++) leave(bank, i);
     bank->clips.root_ends = NULL;
 }

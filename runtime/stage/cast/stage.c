@@ -88,7 +88,7 @@ static void adopt(const noh_stage_desc *desc, const noh_stage_plan *plan, const 
     noh_stage *s = b->stage;
     memset(s, 0, sizeof *s);
     s->desc = noh_stage_desc_filled(desc);
-    if (NOH_STAGES_SHARE && desc->share) s->desc.share = &without_peers; /* only plans read them */
+    if (!NOH_PAGE && desc->share) s->desc.share = &without_peers; /* only plans read them */
     noh_stage_desc_by_plan(&s->desc, plan);
     s->slots = b->slots;
     if (s->slots) s->slots->plan = *plan;
@@ -151,7 +151,7 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
     if (result == NOH_OK) result = open_all_views(s, b, error);
     if (result == NOH_OK) noh_stage_open_worn(s, NOH_NONE);
     if (result == NOH_OK && s->slots) result = noh_stage_open_slots(s, desc, error);
-    if (NOH_CLIPS_COME && result == NOH_OK) noh_stage_empty_clips(s, NOH_NONE);
+    if (!NOH_PAGE && result == NOH_OK) noh_stage_empty_clips(s, NOH_NONE);
     if (result == NOH_OK) {
         result = noh_schedule_init(b->schedule, noh_schedule_size(s->actor_count), s->actor_count, &s->schedule, error);
     }

@@ -317,7 +317,7 @@ static void carve_stage(noh_arena *arena, const noh_stage_desc *filled, const wi
     if (most->slot_count) b->slots = CARVE(arena, 1, noh_stage_slots);
     b->shown = CARVE(arena, most->actors, noh_stage_shown);
     b->todo = CARVE(arena, most->actors, uint32_t);
-    b->wanted = NOH_CLIPS_COME && most->reserves ? CARVE(arena, NOH_WANTED_CLIPS_MAX, noh_wanted_clip) : NULL;
+    b->wanted = !NOH_PAGE && most->reserves ? CARVE(arena, NOH_WANTED_CLIPS_MAX, noh_wanted_clip) : NULL;
     b->by_distance = CARVE(arena, filled->sort_blended ? most->actors : 0, noh_stage_far);
     b->schedule = noh_arena_carve(arena, noh_schedule_size(most->actors), 16);
     b->pick_bytes = most->pick_bytes;
@@ -450,7 +450,7 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
         if (m.type->kind_name) add(list, m.type->kind_name, i, arena, &from);
     }
     b->of[i].bank = noh_arena_carve(arena, n->bank_bytes, 16);
-    if (NOH_CLIPS_COME && d.clip_reserve && n->bank_bytes) {
+    if (!NOH_PAGE && d.clip_reserve && n->bank_bytes) {
         const uint32_t reserve = (uint32_t)aligned(d.clip_reserve);
         noh_stage_add_part(list, "clip reserve", i, reserve, 0);
         from += reserve;

@@ -34,6 +34,7 @@
 #ifndef NOH_STAGE_STAGE_INTERNAL_H
 #define NOH_STAGE_STAGE_INTERNAL_H
 
+#include "core/base/compiler_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/anim/clip_set_internal.h"
 #include "stage/character/lod_pools_internal.h"
@@ -51,10 +52,6 @@
 
 #ifdef __cplusplus
 extern "C" {
-#endif
-
-#ifndef NOH_STAGES_SHARE
-#define NOH_STAGES_SHARE 1 /* 0: a page that has one stage is built without noh_stage_desc.share */
 #endif
 
 /* ---- state ---- */
@@ -84,11 +81,6 @@ typedef struct noh_stage_actor {
 } noh_stage_actor;
 
 #define NOH_STAGE_WORN NOH_NONE
-
-/* 0: a program that takes no states but its own, and saves the bytes of their checks: the page. */
-#ifndef NOH_STATE_CHECKS
-#define NOH_STATE_CHECKS 1
-#endif
 
 /* Such that it, its inverse and their cubes are floats in full precision. */
 static inline int noh_is_scale(float scale)
@@ -398,11 +390,6 @@ struct noh_stage_gpu {
     /* After a frame: a piece of the levels of textures that it needs; subtracts the bytes sent. */
     void (*stream)(noh_stage *stage, uint32_t *bytes);
 };
-
-/* 0 (as in the page's program, which has no use for it): textures are always whole. */
-#ifndef NOH_TEXTURES_COME
-#define NOH_TEXTURES_COME 1
-#endif
 
 /* ---- private calls ---- */
 

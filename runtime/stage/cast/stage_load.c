@@ -141,7 +141,7 @@ void noh_stage_load_piece(noh_stage *s)
             s->stats.loading++;
         }
     }
-    if (NOH_TEXTURES_COME && s->gpu) s->desc.gpu->stream(s, &bytes);
+    if (!NOH_PAGE && s->gpu) s->desc.gpu->stream(s, &bytes);
     s->stats.load_bytes = s->desc.load_bytes - bytes;
 }
 

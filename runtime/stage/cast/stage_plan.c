@@ -477,7 +477,7 @@ static uint64_t pack_bytes(const noh_kind_desc *d, const noh_pack *pack)
 {
     const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
     uint64_t bytes = pack->byte_count;
-    for (uint32_t i = 0; NOH_CLIPS_COME && d->clip_reserve && i < run.count; i++) {
+    for (uint32_t i = 0; !NOH_PAGE && d->clip_reserve && i < run.count; i++) {
         bytes -= pack->chunks[run.first + i].bytes;
     }
     return bytes;
@@ -582,7 +582,7 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
     if (desc->gpu && !caps) {
         return noh_fail(error, NOH_ERR_ARG, "a stage that draws needs the capabilities of a GPU", 0, 0);
     }
-    for (uint32_t i = 0; NOH_STAGES_SHARE && desc->share && i < desc->share->peer_count; i++) {
+    for (uint32_t i = 0; !NOH_PAGE && desc->share && i < desc->share->peer_count; i++) {
         const noh_stage_peer *peer = desc->share->peers ? &desc->share->peers[i] : NULL;
         if (!peer || !peer->desc || !peer->plan || !peer->desc->share || peer->desc->gpu != desc->gpu) {
             return noh_fail(error, NOH_ERR_ARG,

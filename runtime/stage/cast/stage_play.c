@@ -375,7 +375,7 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
     noh_inertia_joint *left;
     player p;
     noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
-    if (NOH_CLIPS_COME && result == NOH_OK) result = noh_stage_check_there(stage, p.k, clip, error);
+    if (!NOH_PAGE && result == NOH_OK) result = noh_stage_check_there(stage, p.k, clip, error);
     if (result != NOH_OK) return result;
     if (!p.k->desc->inertia) return begin(&p, clip, &play, error);
     play.fade_ticks = ticks;
@@ -409,7 +409,7 @@ noh_result noh_stage_play_clip(player *p, uint32_t clip, const noh_play *play, n
         return noh_fail(error, NOH_ERR_ARG, "the kind has no room for inertia: set noh_kind_desc.inertia",
                         (uint64_t)(p->k - p->s->kinds), 0);
     }
-    if (NOH_CLIPS_COME) {
+    if (!NOH_PAGE) {
         noh_result result = noh_stage_check_there(p->s, p->k, clip, error);
         if (result == NOH_OK && p->reference) result = noh_stage_check_there(p->s, p->k, p->reference - 1u, error);
         if (result != NOH_OK) return result;

@@ -131,7 +131,7 @@ static void empty(noh_stage *s, uint32_t kind)
     noh_kind_plan *plan = &s->slots->plan.kinds[kind];
     const noh_kind_room room = plan->room;
     if (s->gpu) s->desc.gpu->close(s, kind);
-    if (NOH_CLIPS_COME) noh_stage_forget_wanted(s, kind);
+    if (!NOH_PAGE) noh_stage_forget_wanted(s, kind);
     memset(&cleared, 0, sizeof cleared);
     cleared.desc = k->desc;
     cleared.plan = plan;
@@ -194,7 +194,7 @@ static noh_result open_slot(noh_stage *s, uint32_t kind, noh_error *error)
     if (result == NOH_OK)
         result = noh_stage_open_views(s, kind, s->slots->of[kind].views, s->slots->views_bytes, error);
     if (result == NOH_OK) noh_stage_open_worn(s, kind);
-    if (NOH_CLIPS_COME && result == NOH_OK) noh_stage_empty_clips(s, kind);
+    if (!NOH_PAGE && result == NOH_OK) noh_stage_empty_clips(s, kind);
     return result;
 }
 

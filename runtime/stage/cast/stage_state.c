@@ -189,7 +189,7 @@ static noh_result check_state(const noh_stage *s, const void *state, size_t byte
         return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan and these kinds in its slots", 0,
                         s->state_bytes);
     }
-    for (uint32_t i = 0; NOH_STATE_CHECKS && i < s->desc.kind_count && result == NOH_OK; i++) {
+    for (uint32_t i = 0; !NOH_PAGE && i < s->desc.kind_count && result == NOH_OK; i++) {
         result = check_kind(&r, i, error);
     }
     return result;
@@ -200,7 +200,7 @@ noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes
     noh_result result;
     NOH_ASSERT(stage && state);
     result = check_state(stage, state, bytes, error);
-    if (NOH_CLIPS_COME && result == NOH_OK) result = noh_stage_check_state_clips(stage, state, error);
+    if (!NOH_PAGE && result == NOH_OK) result = noh_stage_check_state_clips(stage, state, error);
     if (result == NOH_OK) {
         memcpy(stage->state, state, bytes);
         memset(stage->shown, 0, stage->actor_count * sizeof *stage->shown);

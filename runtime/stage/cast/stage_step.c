@@ -26,7 +26,7 @@ static const char *event_name(const noh_stage_kind *k, const noh_event *from)
     noh_pack_clip clip;
     uint32_t name;
     if (from->clip >= noh_stage_clip_count(k)) return "";
-    if (NOH_CLIPS_COME && r) {
+    if (!NOH_PAGE && r) {
         name = r->event_names[k->bank->clips.clips[from->clip].first_event + from->index];
     } else {
         (void)noh_pack_clip_at(noh_stage_clip_pack(k, from->clip), k->bank->pack_clips[from->clip], &clip, NULL);
@@ -145,7 +145,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
     stage->head->clock += ticks;
     stage->head->step_ticks = ticks;
     stage->phase = NOH_STAGE_IDLE;
-    if (NOH_CLIPS_COME) noh_stage_use_clips(stage);
+    if (!NOH_PAGE) noh_stage_use_clips(stage);
     if (stage->stats.events > stage->stats.events_high) stage->stats.events_high = stage->stats.events;
     return NOH_OK;
 }

@@ -431,7 +431,7 @@ static void rest(const noh_modifier_work *w, const noh_springs *s, const swing *
 static void swing_together(const noh_modifier_work *w, const noh_springs *s, const workspace *space)
 {
     together *t = space->chains;
-    if (NOH_SPRINGS_MEET && space->asks.world) noh_springs_ask(w, &space->asks, t->moves, t->count);
+    if (!NOH_PAGE && space->asks.world) noh_springs_ask(w, &space->asks, t->moves, t->count);
     (void)noh_spring_step(t->moves, t->count, w->ticks, space->scratch);
     noh_spring_rotations(t->moves, t->count);
     for (uint32_t i = 0; i < t->count; i++) {
@@ -495,7 +495,7 @@ static void modify(noh_modifier_work *w)
     (void)carve_workspace(&arena, s->collider_count, s->longest, s->world != NULL, &space);
     space.chains->count = 0;
     space.asks.metres = s->metres;
-    const int asks = NOH_SPRINGS_MEET && s->world && noh_world_may_ask(s->world, w->stage->desc.job_count);
+    const int asks = !NOH_PAGE && s->world && noh_world_may_ask(s->world, w->stage->desc.job_count);
     space.asks.world = asks ? s->world : NULL;
     if (noh_modifier_home_moved(w)) follow_home(w, s);
     for (uint32_t i = 0; i < s->collider_count; i++) pose_capsule(w, &s->capsules[i], &space.all[i]);
@@ -536,8 +536,7 @@ static int is_there(const noh_kind_desc *d, const void *desc)
 static const char *bad(const noh_kind_desc *d, const void *desc)
 {
     noh_springs_desc springs;
-    if (NOH_SPRINGS_MEET && desc && noh_world_check(desc, NULL))
-        return "world of a kind's springs: see noh_world_check";
+    if (!NOH_PAGE && desc && noh_world_check(desc, NULL)) return "world of a kind's springs: see noh_world_check";
     return noh_springs_of_pack(d->mesh, d->skeleton, &springs) &&
                    state_bytes_of(&springs, springs.chain_count) > NOH_MODIFIER_BYTES_MAX
                ? "springs of a kind: the springs of its mesh's pack have more bytes than NOH_MODIFIER_BYTES_MAX"
@@ -546,7 +545,7 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
 
 static const char *refuse(const void *desc, uint32_t job_count)
 {
-    if (!NOH_SPRINGS_MEET || noh_world_may_ask(desc, job_count)) return NULL;
+    if (NOH_PAGE || noh_world_may_ask(desc, job_count)) return NULL;
     return "springs of a kind: the physics of their world answers one thread, and the stage has several jobs: set its "
            "`threads`, or job_count to 1";
 }
