@@ -1,10 +1,10 @@
 /* main.c: teaches the ear out of synthetic speech, and writes ear_tables.c.
  *
- *   train_ear SENTENCES.txt PHONES.txt [espeak|flite|festival] >ear_tables.c
+ *   train_ear SENTENCES.txt PHONES.txt [four|espeak|flite|festival] >ear_tables.c
  *
  * Every sentence is heard as it was said, and four times more as bad rooms and microphones have it, always the same. No
- * recording of a person's speech is used: those are there to judge what has been learnt. Four speakers are kept back,
- * and how well they are read is printed; or a whole synthesiser, with its name as the last argument. */
+ * recording of a person's speech is used: those are there to judge what has been learnt. With a last argument four
+ * speakers, or a whole synthesiser, are kept back, and how well they are read is printed. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -140,7 +140,8 @@ static void learn_prior(void)
 static int is_kept_back(int voice, const char *synthesiser)
 {
     const char *of = voice < VOICE_FLITE ? "espeak" : voice < VOICE_FESTIVAL ? "flite" : "festival";
-    if (synthesiser) return !strcmp(synthesiser, of);
+    if (!synthesiser) return 0;
+    if (strcmp(synthesiser, "four") != 0) return !strcmp(synthesiser, of);
     for (size_t i = 0; i < sizeof kept_back / sizeof kept_back[0]; i++) {
         if (kept_back[i] == voice) return 1;
     }
@@ -249,7 +250,7 @@ int main(int argc, char **argv)
     const char *synthesiser = argc == 4 ? argv[3] : NULL;
     uint64_t hash = 14695981039346656037u;
     lesson l;
-    if (argc != 3 && argc != 4) voices_die("SENTENCES.txt PHONES.txt [espeak|flite|festival] >ear_tables.c", "usage");
+    if (argc != 3 && argc != 4) voices_die("SENTENCES.txt PHONES.txt [four|espeak|flite|festival] >ear_tables.c", "usage");
     make_tables();
     voices_say(argv[1], argv[2], hear_often, &hash);
     fprintf(stderr, "%d sentences, %d frames\n", utterances, first_frame[utterances]);
@@ -258,7 +259,7 @@ int main(int argc, char **argv)
     learn_prior();
     l = (lesson){ (const int8_t(*)[N])features, shapes, (const int(*)[2])spans, choose_spans(0, synthesiser) };
     learn(&l, ROUNDS, &tables);
-    judge(choose_spans(1, synthesiser));
+    if (synthesiser) judge(choose_spans(1, synthesiser));
     write_tables(hash);
     return 0;
 }

@@ -25,6 +25,11 @@ static voice_phone phones[VOICE_PHONES_MAX];
 static utterance said;
 static uint64_t seed = 1;
 
+void voices_seed(uint64_t from)
+{
+    seed = from;
+}
+
 double voices_random(double low, double high)
 {
     seed = seed * 6364136223846793005u + 1442695040888963407u;

@@ -29,7 +29,8 @@ typedef struct utterance {
  */
 void voices_say(const char *sentences, const char *phones, void (*take)(const utterance *said), uint64_t *hash);
 
-/* From `low` to `high`, the same numbers in every run. */
+/* From `low` to `high`, the same numbers in every run after the same seed. */
+void voices_seed(uint64_t seed);
 double voices_random(double low, double high);
 void voices_die(const char *what, const char *which);
 

@@ -254,8 +254,8 @@ static void every_processor_has_the_same_bits(void **state)
 {
     (void)state;
     make_voice(SECOND * 4, 16000);
-    assert_int_equal(hash_frames(hear_late(16000, 40, SECOND * 4)), 0xb8ba5e9du);
-    assert_int_equal(hash_frames(hear_late(16000, 80, SECOND * 4)), 0x84e8f6fdu);
+    assert_int_equal(hash_frames(hear_late(16000, 40, SECOND * 4)), 0x47db929du);
+    assert_int_equal(hash_frames(hear_late(16000, 80, SECOND * 4)), 0xaeee02fdu);
 }
 
 /* ---- people ---- */
@@ -394,7 +394,7 @@ static void people_are_read_as_well_as_measured(void **state)
     static const struct {
         uint32_t latency_ms;
         double five, opening, shut, shut_vowels, changes;
-    } limits[] = { { 40, .63, .74, .75, .055, 9 }, { 80, .695, .77, .85, .05, 8.1 } };
+    } limits[] = { { 40, .675, .74, .8, .057, 8.8 }, { 80, .705, .77, .95, .05, 8.1 } };
     (void)state;
     for (int i = 0; i < 2; i++) {
         score s;
