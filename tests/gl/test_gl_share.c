@@ -345,6 +345,42 @@ static void the_second_stage_sends_nothing(void **state)
     }
 }
 
+/* In a new context kinds of slots share with each other, and with kinds that stay, after these in the desc: what is
+ * there is sent once, and no texture stays empty. */
+static void restored_slots_send_all_once(void **state)
+{
+    static gpu g;
+    static show s;
+    (void)state;
+    for (uint32_t slots = 1; slots <= 2; slots++) {
+        noh_actor actors[3];
+        noh_gl_ledger before;
+        uint64_t sent;
+        counted_open(&g);
+        g.gl.BufferData = count_contents;
+        open_show(&s, &g, NULL, counted_ways[3], 1u << MASKS | 1u << FACES);
+        s.c.kinds[0] = s.others[FACES];
+        for (uint32_t i = 0; i < slots; i++) s.c.kinds[i].changes = 1;
+        with_peers(&s, NULL, NULL);
+        assert_true(make(&s));
+        sent = counted.bytes;
+        enter_kind(&s, 0, actors), enter_kind(&s, 1, actors);
+        frame(&s, 0);
+        before = g.ledger;
+        counted.bytes = 0;
+        g.ledger.contexts++;
+        assert_int_equal(noh_stage_restore(s.c.stage, &said), NOH_OK);
+        if (counted.bytes != sent || before.textures != g.ledger.textures ||
+            bytes_of(&g) != noh_gl_ledger_bytes(&before))
+            fail_msg("%u slots: %u textures, %llu bytes, then %u, %llu", (unsigned)slots, (unsigned)before.textures,
+                     (unsigned long long)sent, (unsigned)g.ledger.textures, (unsigned long long)counted.bytes);
+        frame(&s, 1);
+        end(&s);
+        expect_nothing(&g.ledger);
+        gpu_close(&g);
+    }
+}
+
 /* Every part of a plan, with peers that have all of it, some, or none. */
 static void plans_have_every_byte(void **state)
 {
@@ -649,6 +685,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(pictures_are_those_of_stages_alone),
         cmocka_unit_test(slots_lend_and_borrow),
         cmocka_unit_test(the_second_stage_sends_nothing),
+        cmocka_unit_test(restored_slots_send_all_once),
         cmocka_unit_test(plans_have_every_byte),
         cmocka_unit_test(levels_that_are_loaded_later_are_not_shared),
         cmocka_unit_test(a_stage_that_fails_leaves_the_others_what_they_have),

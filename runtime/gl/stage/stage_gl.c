@@ -620,6 +620,21 @@ static int is_of_slot(const noh_stage *stage, uint32_t model)
     return is;
 }
 
+/* Each is filled before the next one is made: only textures that are filled may be taken. */
+static noh_result restore_slots(noh_stage *stage, int hidden, noh_error *error)
+{
+    const noh_stage_gl *gl = stage->gpu;
+    noh_result result = NOH_OK;
+    for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
+        noh_gl_kind *k = &gl->kinds[i];
+        if (!k->slot || !k->items || stage->kinds[i].finer.hidden != hidden) continue;
+        memset(&k->filling, 0, sizeof k->filling);
+        result = noh_gl_pictures_create_empty(&stage->desc, gl, i, error);
+        if (result == NOH_OK && !hidden) result = noh_gl_slot_fill_all(stage, i, error);
+    }
+    return result;
+}
+
 static noh_result restore_all(noh_stage *stage, noh_error *error)
 {
     noh_stage_gl *gl = stage->gpu;
@@ -633,13 +648,9 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
         result = restore_kind(stage, i, error);
     }
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
-    if (result == NOH_OK) result = noh_gl_pictures_restore(&stage->desc, gl, error);
+    if (result == NOH_OK) result = noh_gl_pictures_create(&stage->desc, gl, error);
     if (result == NOH_OK) result = noh_gl_covers_create(&stage->desc, stage->plan, &gl->device, gl->kinds, error);
-    for (uint32_t i = 0; i < stage->desc.kind_count && result == NOH_OK; i++) {
-        if (!gl->kinds[i].slot || !gl->kinds[i].items) continue;
-        memset(&gl->kinds[i].filling, 0, sizeof gl->kinds[i].filling);
-        if (!stage->kinds[i].finer.hidden) result = noh_gl_slot_fill_all(stage, i, error);
-    }
+    for (int hidden = 0; hidden < 2 && result == NOH_OK; hidden++) result = restore_slots(stage, hidden, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;
 }
 

@@ -185,10 +185,8 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
     return result;
 }
 
-typedef enum making { CREATE, CREATE_EMPTY, RESTORE } making;
-
-/* kind: NOH_NONE: of all kinds that have room for them. */
-static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, making how, noh_error *error)
+/* kind: of a slot: without pixels; NOH_NONE: of all kinds that stay. */
+static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_error *error)
 {
     const noh_gl_device *d = &gl->device;
     noh_gl_kind *kinds = gl->kinds;
@@ -197,23 +195,21 @@ static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint3
     noh_result result = NOH_OK;
     while (result == NOH_OK && noh_gl_next_picture(desc, end, &where)) {
         const noh_gl_texture *shared = NULL;
-        noh_gl_streamed *r;
+        const noh_gl_streamed *r;
         noh_gl_texture *to;
         noh_texture texture;
         int is_owner;
-        if (!kinds[where.kind].pictures) continue;
+        if (kind == NOH_NONE && desc->kinds[where.kind].changes) continue;
         to = at(kinds, desc, where);
         r = streamed(kinds, desc, where);
         is_owner = noh_gl_owns_picture(desc, where, &texture);
-        if (how == RESTORE && is_owner && r) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, &r->next);
         if (is_owner && !r && noh_gl_shares(gl)) shared = find_shared(desc, gl, where);
         if (!is_owner) {
             *to = *at(kinds, desc, noh_gl_picture_owner(desc, where));
         } else if (shared) {
             *to = *shared;
         } else {
-            if (how == RESTORE) noh_gl_texture_delete(noh_gl_lost_api(), d->ledger, to);
-            result = how == CREATE || (how == RESTORE && !kinds[where.kind].slot)
+            result = kind == NOH_NONE
                          ? noh_gl_picture_create_from(d->api, d->ledger, &texture, r ? r->first : 0, to, error)
                          : noh_gl_picture_create_empty(d->api, d->ledger, &texture, 0, to, error);
         }
@@ -223,18 +219,13 @@ static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint3
 
 noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error)
 {
-    return make(desc, gl, NOH_NONE, CREATE, error);
+    return make(desc, gl, NOH_NONE, error);
 }
 
 noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
                                         noh_error *error)
 {
-    return make(desc, gl, kind, CREATE_EMPTY, error);
-}
-
-noh_result noh_gl_pictures_restore(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error)
-{
-    return make(desc, gl, NOH_NONE, RESTORE, error);
+    return make(desc, gl, kind, error);
 }
 
 int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_gl_filling *f,
