@@ -15,33 +15,48 @@
 #define TEXELS 256u /* of each texture's side */
 #define BOUND 30000u
 #define KINDS 2u
+#define KINDS_MAX 3u
 
 static char shader_log[4096];
 static noh_error said;
 
-/* ---- two kinds of quads, each with a texture of its own ---- */
+/* ---- kinds of quads, each with a texture of its own ---- */
 
-static uint8_t *quad_pack(uint32_t which, size_t *count)
+/* What a pack has besides: TWO: another texture, of a material that no mesh has. Of SMALL the texture has a half and a
+ * quarter of the texels on its sides; READ reads it as a toon's shade, LOOSE has no material with it. */
+typedef enum form { PLAIN, TWO, SMALL, READ, LOOSE } form;
+
+static void fill_texture(model_texture *to, const char *name, form of, test_random *r)
+{
+    to->name = model_string(name);
+    to->width = of == SMALL ? TEXELS / 2u : TEXELS;
+    to->height = of == SMALL ? TEXELS / 4u : TEXELS;
+    to->wrap_s = to->wrap_t = 33071;
+    to->rgba = test_zeros((size_t)4 * to->width * to->height);
+    for (uint32_t i = 0; i < to->width * to->height; i++) { /* bright: black would be what was never written */
+        for (uint32_t c = 0; c < 3; c++) to->rgba[4u * i + c] = (uint8_t)(150u + test_random_below(r, 100));
+        to->rgba[4u * i + 3u] = 255;
+    }
+}
+
+static uint8_t *quad_pack(uint32_t which, form of, size_t *count)
 {
     const test_model_desc desc = { 1, 2, 0, TEST_UVS, 1 };
     test_random r = test_random_from(7u + which);
     model *m = test_model(&desc);
-    model_material *material = m->materials = test_zeros(sizeof *m->materials);
-    model_texture *to = m->textures = test_zeros(sizeof *m->textures);
     uint8_t *bytes;
-    *material = model_material_default();
-    material->base_color_texture = 0;
-    m->material_count = m->texture_count = 1;
-    material->name = model_string("cloth");
-    for (int i = 0; i < 4; i++) material->base_color[i] = 1.0f;
-    material->unlit = material->double_sided = 1;
-    to->name = model_string("cloth");
-    to->width = to->height = TEXELS;
-    to->wrap_s = to->wrap_t = 33071;
-    to->rgba = test_zeros(4u * TEXELS * TEXELS);
-    for (uint32_t i = 0; i < TEXELS * TEXELS; i++) { /* bright everywhere: black would be what was never written */
-        for (uint32_t c = 0; c < 3; c++) to->rgba[4u * i + c] = (uint8_t)(150u + test_random_below(&r, 100));
-        to->rgba[4u * i + 3u] = 255;
+    m->material_count = m->texture_count = of == TWO ? 2u : 1u;
+    m->materials = test_zeros(m->material_count * sizeof *m->materials);
+    m->textures = test_zeros(m->texture_count * sizeof *m->textures);
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        model_material *material = &m->materials[i];
+        *material = model_material_default();
+        material->name = model_string(i ? "cloth-x" : "cloth");
+        if (of != READ && of != LOOSE) material->base_color_texture = i;
+        if (of == READ) material->surface = NOH_SURFACE_TOON, material->more_textures[NOH_TOON_SHADE] = i;
+        for (int c = 0; c < 4; c++) material->base_color[c] = 1.0f;
+        material->unlit = material->double_sided = 1;
+        fill_texture(&m->textures[i], material->name, of, &r);
     }
     m->meshes[0].submeshes[0].material = 0;
     for (uint32_t v = 0; v < 4; v++) {
@@ -57,25 +72,25 @@ static uint8_t *quad_pack(uint32_t which, size_t *count)
 }
 
 typedef struct show {
-    uint8_t *bytes[KINDS];
-    noh_pack packs[KINDS];
-    noh_kind_desc kinds[KINDS];
+    uint8_t *bytes[KINDS_MAX];
+    noh_pack packs[KINDS_MAX];
+    noh_kind_desc kinds[KINDS_MAX];
     noh_texture_set sets; /* the second kind may wear the first one's texture */
     noh_stage_desc desc;
     noh_stage_plan plan;
     noh_stage *stage;
     void *memory;
-    noh_actor actors[KINDS];
+    noh_actor actors[KINDS_MAX];
     noh_gl_ledger ledger;
     noh_gl_device device;
 } show;
 
-static void open_show(show *w, gpu *g, uint64_t reserve)
+static void open_forms(show *w, gpu *g, const form *forms, uint32_t kinds)
 {
     memset(w, 0, sizeof *w);
-    for (uint32_t i = 0; i < KINDS; i++) {
+    for (uint32_t i = 0; i < kinds; i++) {
         size_t count;
-        w->bytes[i] = quad_pack(i, &count);
+        w->bytes[i] = quad_pack(i, forms[i], &count);
         w->packs[i] = test_open(w->bytes[i], count);
         w->kinds[i].mesh = &w->packs[i];
         w->kinds[i].actor_count = 1;
@@ -84,11 +99,17 @@ static void open_show(show *w, gpu *g, uint64_t reserve)
     w->kinds[1].texture_sets = &w->sets;
     w->kinds[1].texture_set_count = 1;
     w->desc.kinds = w->kinds;
-    w->desc.kind_count = KINDS;
+    w->desc.kind_count = kinds;
     w->desc.gpu = &noh_stage_on_gl;
     w->desc.load_bytes = BOUND;
-    w->desc.texture_reserve = reserve;
     w->device = (noh_gl_device){ &g->gl, &g->caps, &w->ledger, shader_log, sizeof shader_log };
+}
+
+static void open_show(show *w, gpu *g, uint64_t reserve)
+{
+    static const form forms[KINDS] = { PLAIN, PLAIN };
+    open_forms(w, g, forms, KINDS);
+    w->desc.texture_reserve = reserve;
 }
 
 static void make(show *w)
@@ -98,7 +119,7 @@ static void make(show *w)
     if (noh_stage_init(w->memory, (size_t)w->plan.cpu_bytes, &w->device, &w->desc, &w->plan, &w->stage, &said) !=
         NOH_OK)
         fail_msg("stage: %s", said.what);
-    for (uint32_t i = 0; i < KINDS; i++) {
+    for (uint32_t i = 0; i < w->desc.kind_count; i++) {
         const noh_place place = { .position = { 100.0f * (float)i, 0.0f, 0.0f } }; /* a picture shows one of them */
         assert_int_equal(noh_stage_spawn(w->stage, i, &place, &w->actors[i], &said), NOH_OK);
     }
@@ -110,7 +131,7 @@ static void close_show(show *w)
     if (w->stage) noh_stage_delete(w->stage);
     assert_memory_equal(&nothing, &w->ledger, sizeof nothing);
     free(w->memory);
-    for (uint32_t i = 0; i < KINDS; i++) free(w->bytes[i]);
+    for (uint32_t i = 0; i < KINDS_MAX; i++) free(w->bytes[i]);
 }
 
 /* The bytes of a texture from a level on. */
@@ -325,6 +346,114 @@ static void a_reserve_that_is_too_small_is_refused(void **state)
     gpu_close(&g);
 }
 
+/* ---- which textures, and which first ---- */
+
+/* The least reserve of a desc. */
+static uint64_t need_of(show *w)
+{
+    w->desc.texture_reserve = 1;
+    assert_int_equal(noh_stage_plan_make(&w->desc, w->device.caps, &w->plan, &said), NOH_ERR_ARG);
+    return said.need;
+}
+
+/* The largest texture has all of the reserve; of two more that are near as well, one is small enough for the rest. */
+static void a_texture_without_room_keeps_no_other_waiting(void **state)
+{
+    static const form forms[] = { PLAIN, PLAIN, SMALL };
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_forms(&w, &g, forms, 3);
+    w.desc.texture_reserve = need_of(&w) + bytes_from(&w, 2, 0);
+    make(&w);
+    for (uint32_t f = 0; f < 40; f++) frame(&w, 0, 0.6f);
+    assert_int_equal(first_of(&w, 0), 0);
+    for (uint32_t i = 1; i < 3; i++) {
+        const noh_place place = { .position = { 0.0f, 0.0f, -0.01f * (float)i } };
+        assert_int_equal(noh_actor_set_place(w.stage, w.actors[i], &place, &said), NOH_OK);
+    }
+    for (uint32_t f = 0; f < 40; f++) frame(&w, 0, 0.6f);
+    assert_int_equal(first_of(&w, 0), 0);
+    assert_int_equal(first_of(&w, 1), 2);
+    assert_int_equal(first_of(&w, 2), 0);
+    assert_int_equal(stats_of(&w)->textures_coarser, 1);
+    close_show(&w);
+    gpu_close(&g);
+}
+
+/* The first kind has a texture that only the second one shows, while it wears it. */
+static void kinds_bring_what_they_show(void **state)
+{
+    static const form forms[] = { TWO, PLAIN };
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    open_forms(&w, &g, forms, 2);
+    w.sets.suffix = "-x";
+    w.desc.texture_reserve = 2u * need_of(&w);
+    make(&w);
+    for (uint32_t f = 0; f < 60; f++) frame(&w, f / 30u, 0.6f);
+    assert_int_equal(((const noh_stage_gl *)w.stage->gpu)->streamed_count, 3);
+    assert_int_equal(first_of(&w, 0), 0);
+    assert_int_equal(first_of(&w, 1), 2);
+    assert_int_equal(first_of(&w, 2), 0);
+    wear_the_other(&w);
+    for (uint32_t f = 0; f < 30; f++) frame(&w, 1, 0.6f);
+    assert_int_equal(first_of(&w, 1), 0);
+    close_show(&w);
+    gpu_close(&g);
+}
+
+/* The first kind's texture stays whole where the second one may wear it as a shade. */
+static void shades_of_other_kinds_are_whole(void **state)
+{
+    static const form forms[] = { PLAIN, READ };
+    gpu g;
+    show w;
+    (void)state;
+    counted_open(&g);
+    for (uint32_t sets = 0; sets < 2; sets++) {
+        uint32_t count;
+        open_forms(&w, &g, forms, 2);
+        w.kinds[1].texture_set_count = sets;
+        w.desc.texture_reserve = 4u * bytes_from(&w, 0, 0);
+        assert_int_equal(noh_gl_textures_plan(&w.desc, w.device.caps, &count, &said), NOH_OK);
+        assert_int_equal(count, 1u - sets);
+        close_show(&w);
+    }
+    gpu_close(&g);
+}
+
+/* Nobody lends a texture whose levels come by need, in whatever kind and set it is found. */
+static void plans_count_what_peers_lend(void **state)
+{
+    static const form forms[] = { PLAIN, LOOSE };
+    noh_stage_peers none = { NULL, 0 }, peers;
+    noh_stage_peer peer;
+    uint64_t before;
+    gpu g;
+    show level, room;
+    (void)state;
+    counted_open(&g);
+    open_forms(&level, &g, forms, 2), open_forms(&room, &g, forms, 1);
+    level.desc.texture_reserve = need_of(&level);
+    level.desc.share = &none;
+    make(&level);
+    peer = (noh_stage_peer){ &level.desc, &level.plan };
+    peers = (noh_stage_peers){ &peer, 1 };
+    room.kinds[0].mesh = &level.packs[0];
+    room.desc.share = &peers;
+    room.device.ledger = &level.ledger;
+    before = noh_gl_ledger_bytes(&level.ledger);
+    make(&room);
+    assert_true(room.plan.shared_bytes > 0);
+    assert_int_equal(noh_gl_ledger_bytes(&level.ledger) - before, room.plan.gpu_bytes);
+    close_show(&room), close_show(&level);
+    gpu_close(&g);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -333,6 +462,10 @@ int main(void)
         cmocka_unit_test(a_driver_that_fails_shows_what_was_there),
         cmocka_unit_test(textures_of_slots_are_whole),
         cmocka_unit_test(a_reserve_that_is_too_small_is_refused),
+        cmocka_unit_test(a_texture_without_room_keeps_no_other_waiting),
+        cmocka_unit_test(kinds_bring_what_they_show),
+        cmocka_unit_test(shades_of_other_kinds_are_whole),
+        cmocka_unit_test(plans_count_what_peers_lend),
     };
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);
 }

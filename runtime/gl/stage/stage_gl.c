@@ -184,7 +184,7 @@ static void carve_kind(measure *m, uint32_t i, noh_gl_kind *kind)
     noh_gl_buffer *indices = CARVE(m, cover_count * meshes, noh_gl_buffer);
     noh_gl_last *last = CARVE(m, last_count, noh_gl_last);
     const int streams_any = !NOH_PAGE && m->desc->texture_reserve && !m->desc->kinds[i].changes;
-    uint16_t *streams = CARVE(m, streams_any ? count : 0, uint16_t);
+    noh_gl_stream *streams = CARVE(m, streams_any ? count : 0, noh_gl_stream);
     if (!kind) return;
     if (streams_any) kind->streams = memset(streams, 0, count * sizeof *streams);
     kind->last = last_count ? memset(last, 0, last_count * sizeof *last) : NULL;

@@ -112,10 +112,15 @@ typedef struct noh_gl_streamed {
     uint32_t kind, picture; /* of its first owner */
     uint32_t first, tail;   /* the finest level that is there; that is always there */
     uint32_t wanted;        /* the finest that the last frame needed */
-    float texels;           /* of level 0 in a metre */
     noh_gl_texture next;    /* another object for it, which frames fill; no name: none */
     uint32_t next_first, at;
 } noh_gl_streamed;
+
+/* Of a picture of a kind. */
+typedef struct noh_gl_stream {
+    float texels; /* of level 0 in a metre of the kind's meshes; < 0: none shows it */
+    uint16_t own; /* 1 + index of its noh_gl_streamed, 0: it is whole */
+} noh_gl_stream;
 
 typedef struct noh_gl_kind {
     noh_gl_last *last;         /* [actor_count] with motion; else NULL */
@@ -123,7 +128,7 @@ typedef struct noh_gl_kind {
     noh_gl_item *items;        /* [mesh_count] */
     noh_gl_texture *pictures;  /* [1 + texture_set_count][textures of the pack]: those that others own, too */
     noh_gl_streamed *streamed; /* of the stage */
-    uint16_t *streams;         /* the same: 1 + index of its noh_gl_streamed, 0: whole; NULL: all are */
+    noh_gl_stream *streams;    /* of each of `pictures`; NULL: all are whole */
     /* of a slot; the arrays above are NULL while it is empty */
     uint8_t *slot;        /* [room.drawn_bytes] NULL: the kind stays */
     uint32_t first_model; /* [room.mesh_count] of its own */

@@ -35,8 +35,8 @@ static noh_gl_texture *at(noh_gl_kind *kinds, const noh_stage_desc *desc, site w
 /* Of a texture whose levels come by need; NULL: it is whole. */
 static noh_gl_streamed *streamed(const noh_gl_kind *kinds, const noh_stage_desc *desc, site where)
 {
-    const uint16_t *streams = NOH_PAGE ? NULL : kinds[where.kind].streams;
-    const uint32_t own = streams ? streams[noh_gl_picture_index(desc, where)] : 0;
+    const noh_gl_stream *streams = NOH_PAGE ? NULL : kinds[where.kind].streams;
+    const uint32_t own = streams ? streams[noh_gl_picture_index(desc, where)].own : 0;
     return own ? &kinds[where.kind].streamed[own - 1u] : NULL;
 }
 
@@ -148,20 +148,27 @@ static int others_have(const noh_stage_gl *gl, const noh_gl_texture *own)
     return 0;
 }
 
+/* Whether the owner of a texture in a peer lends it. */
+static int lends(const noh_stage_desc *peer, const noh_pack *pack, uint32_t index, const noh_texture *of)
+{
+    site s = { 0, 0, 0 };
+    for (; s.kind < peer->kind_count; s.kind++) {
+        if (peer->kinds[s.kind].changes) continue;
+        for (s.set = 0; s.set <= peer->kinds[s.kind].texture_set_count; s.set++) {
+            if (has(&peer->kinds[s.kind], s.set, pack, index, &s.texture))
+                return NOH_PAGE || !noh_gl_is_streamed(peer, s, of);
+        }
+    }
+    return 0;
+}
+
 static int peers_have(const noh_stage_desc *desc, site where, const noh_texture *of)
 {
     const noh_pack *pack;
     const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
-    if (!desc->share || desc->kinds[where.kind].changes) return 0;
-    for (uint32_t p = 0; p < desc->share->peer_count; p++) {
-        const noh_stage_desc *peer = desc->share->peers[p].desc;
-        for (uint32_t k = 0; k < peer->kind_count; k++) {
-            uint32_t texture;
-            for (uint32_t set = 0; set <= peer->kinds[k].texture_set_count; set++) {
-                if (peer->kinds[k].changes || !has(&peer->kinds[k], set, pack, index, &texture)) continue;
-                if (NOH_PAGE || !noh_gl_is_streamed(peer, (site){ k, set, texture }, of)) return 1;
-            }
-        }
+    const uint32_t count = desc->share && !desc->kinds[where.kind].changes ? desc->share->peer_count : 0;
+    for (uint32_t p = 0; p < count; p++) {
+        if (lends(desc->share->peers[p].desc, pack, index, of)) return 1;
     }
     return 0;
 }

@@ -51,12 +51,20 @@ static int reads(const noh_material *m, uint32_t texture)
 
 int noh_gl_is_streamed(const noh_stage_desc *desc, noh_gl_picture_site where, const noh_texture *texture)
 {
-    const noh_kind_desc *kind = &desc->kinds[where.kind];
+    const noh_pack *pack, *has;
+    const uint32_t index = noh_stage_worn(&desc->kinds[where.kind], where.set, where.texture, &pack);
+    noh_gl_picture_site site = { 0, 0, UINT32_MAX };
     int filtered = 0, read = 0;
-    if (!desc->texture_reserve || kind->changes || texture->header->nearest || !tail_of(texture)) return 0;
-    for (uint32_t i = 0; i < kind->mesh->material_count; i++) {
-        filtered |= filters(&kind->mesh->materials[i], where.texture);
-        read |= reads(&kind->mesh->materials[i], where.texture);
+    if (!desc->texture_reserve || desc->kinds[where.kind].changes || texture->header->nearest || !tail_of(texture))
+        return 0;
+    while (noh_gl_next_picture(desc, desc->kind_count, &site)) { /* whichever kind and set shows it */
+        const noh_kind_desc *kind = &desc->kinds[site.kind];
+        if (kind->changes || noh_stage_worn(kind, site.set, site.texture, &has) != index || has->bytes != pack->bytes)
+            continue;
+        for (uint32_t i = 0; i < kind->mesh->material_count; i++) {
+            filtered |= filters(&kind->mesh->materials[i], site.texture);
+            read |= reads(&kind->mesh->materials[i], site.texture);
+        }
     }
     return filtered && !read;
 }
@@ -85,7 +93,8 @@ static void add_triangle(const noh_mesh *mesh, uint32_t first, float *metres, fl
     *uv += u[0] * v[1] > u[1] * v[0] ? u[0] * v[1] - u[1] * v[0] : u[1] * v[0] - u[0] * v[1];
 }
 
-/* On average over the coarsest level of all meshes that show it, along one axis of the finest level; 0: none does. */
+/* On average over the coarsest level of all meshes that show it, along one axis of the finest level; 0: the smallest
+ * part of it fills them; < 0: none shows it. */
 static float texels_in_metre(const noh_stage_desc *desc, noh_gl_picture_site where, const noh_texture *texture)
 {
     const noh_kind_desc kind = noh_stage_kind_desc(desc, where.kind);
@@ -105,7 +114,7 @@ static float texels_in_metre(const noh_stage_desc *desc, noh_gl_picture_site whe
         }
     }
     return metres > 0.0f ? noh_sqrt(uv / metres * (float)texture->header->width * (float)texture->header->height)
-                         : 0.0f;
+                         : -1.0f;
 }
 
 /* ---- plan and begin ---- */
@@ -131,7 +140,7 @@ noh_result noh_gl_textures_plan(const noh_stage_desc *desc, const noh_gl_caps *c
                : noh_fail(
                      error, NOH_ERR_ARG,
                      "texture_reserve of a stage is too small for the small levels of all textures and the largest "
-                     "texture once",
+                     "texture once: raise it to `need` bytes",
                      0, tails + whole + tail);
 }
 
@@ -141,10 +150,12 @@ void noh_gl_textures_open(const noh_stage_desc *desc, noh_stage_gl *gl)
     uint32_t count = 0;
     while (noh_gl_next_picture(desc, desc->kind_count, &where)) {
         const noh_gl_picture_site owner = noh_gl_picture_owner(desc, where);
+        noh_gl_stream *to;
         noh_texture texture;
         const int owns = noh_gl_owns_picture(desc, where, &texture);
         if (desc->kinds[where.kind].changes) continue;
         gl->kinds[where.kind].streamed = gl->streamed;
+        to = &gl->kinds[where.kind].streams[noh_gl_picture_index(desc, where)];
         if (owns && noh_gl_is_streamed(desc, where, &texture)) {
             noh_gl_streamed *r = &gl->streamed[count++];
             memset(r, 0, sizeof *r);
@@ -152,22 +163,20 @@ void noh_gl_textures_open(const noh_stage_desc *desc, noh_stage_gl *gl)
             r->picture = noh_gl_picture_index(desc, where);
             r->texture = texture;
             r->first = r->tail = tail_of(&texture);
-            r->texels = texels_in_metre(desc, where, &texture);
-            gl->kinds[where.kind].streams[r->picture] = (uint16_t)count;
+            to->own = (uint16_t)count;
         } else if (!owns) {
-            gl->kinds[where.kind].streams[noh_gl_picture_index(desc, where)] =
-                gl->kinds[owner.kind].streams[noh_gl_picture_index(desc, owner)];
+            to->own = gl->kinds[owner.kind].streams[noh_gl_picture_index(desc, owner)].own;
         }
+        if (to->own) to->texels = texels_in_metre(desc, where, &texture);
     }
     gl->streamed_count = count;
 }
 
 /* ---- what is needed ---- */
 
-static uint32_t level_for(const noh_gl_streamed *r, float pixels)
+static uint32_t level_for(const noh_gl_streamed *r, float texels, float pixels)
 {
-    float texels = r->texels;
-    uint32_t level = 0;
+    uint32_t level = texels < 0.0f ? r->tail : 0;
     for (; level < r->tail && texels >= 2.0f * TEXELS_MIN * pixels; texels *= 0.5f) level++;
     return level;
 }
@@ -193,8 +202,9 @@ static void choose_wanted(const noh_stage *s, noh_stage_gl *gl)
         float pixels[NOH_TEXTURE_SETS_MAX + 1u];
         if (textures) measure_sets(s, k, pixels);
         for (uint32_t at = 0; at < textures * (1u + k->desc->texture_set_count); at++) {
-            noh_gl_streamed *r = gl->kinds[i].streams[at] ? &gl->streamed[gl->kinds[i].streams[at] - 1u] : NULL;
-            const uint32_t level = r ? level_for(r, pixels[at / textures]) : 0;
+            const noh_gl_stream *of = &gl->kinds[i].streams[at];
+            noh_gl_streamed *r = of->own ? &gl->streamed[of->own - 1u] : NULL;
+            const uint32_t level = r ? level_for(r, of->texels, pixels[at / textures]) : 0;
             if (r && level < r->wanted) r->wanted = level;
         }
     }
@@ -212,8 +222,8 @@ static uint64_t bytes_from(const noh_stage_gl *gl, const noh_gl_streamed *r, uin
     return noh_gl_picture_bytes_from(&r->texture, gl->device.api->etc2, level);
 }
 
-/* Whether another object fits, and after it one of small levels, without which nothing could shrink. */
-static int fits(const noh_stage *s, const noh_stage_gl *gl, uint64_t more)
+/* Bytes for another object; after it one of small levels still fits, without which nothing could shrink. */
+static uint64_t room_of(const noh_stage *s, const noh_stage_gl *gl)
 {
     uint64_t held = 0, tail = 0;
     for (uint32_t i = 0; i < gl->streamed_count; i++) {
@@ -221,7 +231,7 @@ static int fits(const noh_stage *s, const noh_stage_gl *gl, uint64_t more)
         held += picture_of(gl, &gl->streamed[i])->bytes;
         tail = bytes > tail ? bytes : tail;
     }
-    return held + more + tail <= s->desc.texture_reserve;
+    return held + tail < s->desc.texture_reserve ? s->desc.texture_reserve - held - tail : 0;
 }
 
 static noh_gl_streamed *start(const noh_stage_gl *gl, noh_gl_streamed *r, uint32_t level)
@@ -233,13 +243,20 @@ static noh_gl_streamed *start(const noh_stage_gl *gl, noh_gl_streamed *r, uint32
                : NULL; /* the driver is out of memory: the next frame tries again */
 }
 
-/* The one that lacks most levels. */
-static noh_gl_streamed *poorest(noh_stage_gl *gl)
+static uint32_t lack_of(const noh_gl_streamed *r)
+{
+    return r->wanted < r->first ? r->first - r->wanted : 0;
+}
+
+/* The one that lacks most levels, or the next after another one; NULL at the end. */
+static noh_gl_streamed *poorest(noh_stage_gl *gl, const noh_gl_streamed *after)
 {
     noh_gl_streamed *found = NULL;
     for (uint32_t i = 0; i < gl->streamed_count; i++) {
         noh_gl_streamed *r = &gl->streamed[i];
-        if (r->wanted < r->first && (!found || r->first - r->wanted > found->first - found->wanted)) found = r;
+        const uint32_t lack = lack_of(r);
+        if (after && (lack > lack_of(after) || (lack == lack_of(after) && r <= after))) continue;
+        if (lack > (found ? lack_of(found) : 0)) found = r;
     }
     return found;
 }
@@ -260,13 +277,14 @@ static noh_gl_streamed *richest(noh_stage_gl *gl)
 
 static noh_gl_streamed *begin(const noh_stage *s, noh_stage_gl *gl)
 {
-    noh_gl_streamed *r = poorest(gl);
-    if (!r) return NULL;
-    if (fits(s, gl, bytes_from(gl, r, r->wanted))) return start(gl, r, r->wanted);
-    noh_gl_streamed *spare = richest(gl);
-    if (spare) return start(gl, spare, fits(s, gl, bytes_from(gl, spare, spare->wanted)) ? spare->wanted : spare->tail);
-    for (uint32_t level = r->wanted + 1u; level < r->first; level++) {
-        if (fits(s, gl, bytes_from(gl, r, level))) return start(gl, r, level);
+    const uint64_t room = room_of(s, gl);
+    noh_gl_streamed *spare = richest(gl), *r = NULL;
+    while ((r = poorest(gl, r)) != NULL) { /* one without room must not keep the others waiting */
+        if (bytes_from(gl, r, r->wanted) <= room) return start(gl, r, r->wanted);
+        if (spare) return start(gl, spare, bytes_from(gl, spare, spare->wanted) <= room ? spare->wanted : spare->tail);
+        for (uint32_t level = r->wanted + 1u; level < r->first; level++) {
+            if (bytes_from(gl, r, level) <= room) return start(gl, r, level);
+        }
     }
     return NULL;
 }
@@ -274,13 +292,13 @@ static noh_gl_streamed *begin(const noh_stage *s, noh_stage_gl *gl)
 /* The new object in place of the old one, wherever it is shown. */
 static void put(const noh_stage *s, noh_stage_gl *gl, noh_gl_streamed *r)
 {
-    const uint16_t own = gl->kinds[r->kind].streams[r->picture];
+    const uint32_t own = gl->kinds[r->kind].streams[r->picture].own;
     noh_gl_texture old = *picture_of(gl, r);
     r->next.premultiplied = old.premultiplied;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const uint32_t count = gl->kinds[i].streams ? noh_gl_pictures_count(s->kinds[i].desc) : 0;
         for (uint32_t at = 0; at < count; at++) {
-            if (gl->kinds[i].streams[at] == own) gl->kinds[i].pictures[at] = r->next;
+            if (gl->kinds[i].streams[at].own == own) gl->kinds[i].pictures[at] = r->next;
         }
     }
     noh_gl_texture_delete(gl->device.api, gl->device.ledger, &old);
