@@ -346,7 +346,8 @@ typedef struct noh_concession {
 /* Plain data, 10 KiB, that can be printed, compared and stored with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
-    uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots, at most */
+    uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots or texture_reserve, at most.
+                           * With peers, only while these are there */
     uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: what its peers have, and it would take if it were alone */
     uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
     uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer`,
@@ -407,7 +408,8 @@ noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const 
 void noh_stage_delete(noh_stage *stage);
 
 /* Make the GL objects again in a new context (gl_device.h): the next frame shows what it would have shown.
- * errors  GL, MEMORY, DATA. The stage then has no GL objects; restore may be called again */
+ * errors  GL, MEMORY, DATA. The stage then has no GL objects; restore may be called again. ARG it shares, and
+ *         noh_gl_ledger.contexts was not counted after the context was lost: nothing has changed */
 noh_result noh_stage_restore(noh_stage *stage, noh_error *error);
 
 /* A clip to be brought: read these bytes of its pack's file, and give them to noh_stage_load_clip. */

@@ -319,8 +319,8 @@ typedef struct noh_gl_mesh {
  * stage that lets an object go deletes it, in whatever order stages end and kinds leave their slots. A kind that comes
  * into a slot takes what is there, also from its own stage, and lends it once it is drawn. Each stage has its own
  * meshes with levels that are loaded later (`finer`), covers, light and programs. Pictures and states are the same as
- * without. After a lost context count noh_gl_ledger.contexts first, then restore each stage: the ledger is as before
- * once all are restored.
+ * without. After a lost context count noh_gl_ledger.contexts first, then restore each stage. Once all are restored, the
+ * ledger is as before, but for kinds in slots, which may share more or less then, and textures that were coming.
  *
  * Threads: the context's own thread. */
 

@@ -328,7 +328,7 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
                                 uint64_t *shared, noh_error *error);
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
 /* Make the textures of all kinds that stay, also in a new context. Of a slot: make them without pixels, fill them by a
- * piece. Delete those of all kinds (NOH_NONE). */
+ * piece. Delete the textures of a kind, or of all kinds (NOH_NONE). */
 noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error);
 noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
                                         noh_error *error);

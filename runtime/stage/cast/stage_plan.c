@@ -586,8 +586,9 @@ noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_c
         const noh_stage_peer *peer = desc->share->peers ? &desc->share->peers[i] : NULL;
         if (!peer || !peer->desc || !peer->plan || !peer->desc->share || peer->desc->gpu != desc->gpu) {
             return noh_fail(error, NOH_ERR_ARG,
-                            "a peer of a stage that shares: it is NULL, it does not share, or it is not drawn alike", i,
-                            0);
+                            "a peer of a stage that shares is wrong: give it a desc with `share` and the same `gpu`, "
+                            "and the plan of that desc",
+                            i, 0);
         }
     }
     filled = noh_stage_desc_filled(desc);
