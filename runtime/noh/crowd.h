@@ -237,7 +237,7 @@ size_t noh_walkers_size(const noh_walkers_desc *desc);
  * stage   its clips are measured; the pointer is not kept
  * errors  ARG memory is NULL or misaligned, a number is out of range, the kind, layer or modifier does not exist, the
  *         kind's roots move actors, or a clip moves no root and its speed is 0; NOT_FOUND no such clip (where: 0 walk,
- *         1 idle, 2 run); LIMIT; MEMORY */
+ *         1 idle, 2 run); LIMIT; MEMORY; with clip_reserve as noh_stage_load_clip says */
 noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *desc, noh_stage *stage,
                             noh_walkers **walkers, noh_error *error);
 
@@ -245,7 +245,8 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
  * and stands. The phase of its clips depends on the index, so that walkers do not move in unison.
  * index   below walker_max; the previous actor of this index is unbound
  * heading [2] unit vector x, z to face at first; NULL: +z
- * errors  NOT_FOUND the actor is gone; ARG the index is out of range, or the actor is of another kind */
+ * errors  NOT_FOUND the actor is gone; ARG the index is out of range, or the actor is of another kind; with
+ *         clip_reserve as noh_stage_load_clip says. The actor is then as it was */
 noh_result noh_walkers_add(noh_walkers *walkers, uint32_t index, noh_stage *stage, noh_actor actor, uint32_t agent,
                            const float heading[2], noh_error *error);
 void noh_walkers_remove(noh_walkers *walkers, uint32_t index);

@@ -351,7 +351,7 @@ typedef struct noh_stage_plan {
     uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: what its peers have, and it would take if it were alone */
     uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
     uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer`,
-                           * and without the clips of kinds with clip_reserve */
+                           * and without clips that only kinds with clip_reserve play */
     uint32_t halves;      /* 1: 16-bit accumulators */
     uint32_t sums;        /* 1: sums instead of finished vertices, as with morph_sums */
     uint32_t morph_path;  /* the chosen noh_morph_path; 0 without GPU */
@@ -437,7 +437,9 @@ typedef struct noh_stage_stats {
     uint32_t textures_coarser;     /* textures whose levels are coarser than needed: they come, or texture_reserve is
                                     * too small */
     uint32_t wanted_count;         /* clips that something asked for and that have not come since */
-    const noh_wanted_clip *wanted; /* [wanted_count] in the order of asking; those past the limit are asked again */
+    /* [wanted_count] in the order of asking. In a full list the oldest gives way. noh_stage_load_clip takes the clip
+     * that it brings out of the list, and later ones move down: walk it from its end */
+    const noh_wanted_clip *wanted;
     float error_pixels;            /* the largest of all visible actors */
 } noh_stage_stats;
 
@@ -583,7 +585,8 @@ typedef struct noh_play {
  * play    NULL: zeros
  * errors  NOT_FOUND the actor is gone, or the kind has no such clip or reference; ARG layer, a field of play, or
  *         NOH_PLAY_INERTIA without noh_kind_desc.inertia; LIMIT too many changes over time at once (need: the count
- *         wanted), or NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks) */
+ *         wanted), or NOH_PLAY_BESIDE finds no free track (where: the layer, need: tracks); with clip_reserve as
+ *         noh_stage_load_clip says */
 noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, const char *clip, const noh_play *play,
                           noh_error *error);
 
@@ -865,11 +868,14 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
  * for the new one, the least recently used first, ended or never played. Kinds with the same clips share them. Until a
  * clip is there, what would start it fails with NOT_FOUND and leaves the actor as it was: noh_actor_play, a graph with
  * such a clip, walkers; motion matching stays with what it plays, and getting up takes another clip. What failed is in
- * noh_stage_stats.wanted; durations, keys and names of absent clips are known. Which clips are there depends on the
- * order of calls alone, not on jobs or time, and is not part of the state.
+ * noh_stage_stats.wanted; durations, keys and names of absent clips are known. Clips that have to be there together
+ * (of a graph, of walkers, an additive clip and its reference) fail with MEMORY if what plays leaves too little for all
+ * (need: the bytes of clip_reserve), and are not in `wanted`. Which clips are there depends on the order of calls
+ * alone, not on jobs or time, and is not part of the state.
  * clip    as noh_stage_find has it
- * chunk   the whole chunk, as in the pack's file: noh_wanted_clip.bytes, copied. Any alignment. NULL: ask for the clip,
- *         which puts it into noh_stage_stats.wanted if it is absent
+ * chunk   the whole chunk, as in the pack's file: noh_wanted_clip.bytes, copied. Any alignment. Bytes with the checksum
+ *         that the pack has for them are trusted as the pack is. NULL: ask for the clip, which puts it into
+ *         noh_stage_stats.wanted if it is absent
  * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no clip_reserve; NOT_FOUND no such clip
  *         (need: their count); DATA the bytes differ from those that the stage was made with; MEMORY what plays
  *         leaves too little of the reserve (where: bytes that play, need: bytes). Nothing has then changed */
@@ -890,7 +896,8 @@ noh_result noh_stage_load_clip(noh_stage *stage, uint32_t kind, uint32_t clip, c
  * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
  *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
  *         where: what there is), or the driver is out of memory; UNSUPPORTED with `gpu`, it needs a program that no
- *         kind of the plan needs, or has `finer`; GL the driver refused an object; as noh_stage_init. The slot is then as it was */
+ *         kind of the plan needs, or has `finer`; it has clip_reserve, and no kind of the plan has; GL the driver
+ *         refused an object; as noh_stage_init. The slot is then as it was */
 noh_result noh_stage_set_kind(noh_stage *stage, uint32_t kind, const noh_kind_desc *desc, noh_error *error);
 
 /* ---- state ---- */
@@ -903,7 +910,8 @@ const void *noh_stage_state(const noh_stage *stage, size_t *bytes);
  * frames that follow have the same bits as those after the copy, if the same levels are loaded (noh_stage_load_level);
  * loaded levels are not part of the state. Without them actors show the finest level there is.
  * errors  ARG called during a frame or a step; NOT_FOUND it plays clips that are absent here, which are then in
- *         noh_stage_stats.wanted (where: the kind, need: how many); DATA the state is of another plan, or a count or
+ *         noh_stage_stats.wanted (where: the first kind, need: how many clips); MEMORY they and what plays here do not
+ *         fit clip_reserve (where: the kind, need: bytes); DATA the state is of another plan, or a count or
  *         index in it is out of range (where: the actor). Nothing has then changed */
 noh_result noh_stage_set_state(noh_stage *stage, const void *state, size_t bytes, noh_error *error);
 

@@ -177,7 +177,9 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
     }
     c->reserve_bytes = (uint32_t)align_up(desc->reserve_bytes);
     if (!NOH_PAGE && c->reserve_bytes && c->reserve_bytes < align_up(c->clip_max)) {
-        return noh_fail(error, NOH_ERR_ARG, "clip_reserve is smaller than the largest clip", 0, align_up(c->clip_max));
+        return noh_fail(error, NOH_ERR_ARG,
+                        "clip_reserve is smaller than the largest clip: raise it to `need` bytes or more", 0,
+                        align_up(c->clip_max));
     }
     c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
     c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, &why);

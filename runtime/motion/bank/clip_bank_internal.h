@@ -42,8 +42,10 @@ struct noh_bank_clip {
 void noh_clip_bank_empty(noh_clip_bank *bank);
 /* Time goes on for the reserve: what is not touched from now on was used earlier. */
 void noh_clip_bank_tick(noh_clip_bank *bank);
-/* A clip of the bank is in use. Clips past the bank's own are ignored. */
+/* A clip of the bank is in use, or is asked for. Clips past the bank's own are ignored. */
 void noh_clip_bank_touch(noh_clip_bank *bank, uint32_t clip);
+/* Get the bytes that clips touched since the last tick take in the reserve. *absent: how many of them are absent */
+uint64_t noh_clip_bank_touched(const noh_clip_bank *bank, uint32_t *absent);
 /* Copy the bytes of an absent clip into the reserve. Clips that were not touched since the last tick make room, the
  * least recently used first; of equal ones the first.
  * bytes   [byte_count] those that the bank was made with

@@ -41,8 +41,8 @@ static void leave(noh_clip_bank *bank, uint32_t clip)
 void noh_clip_bank_empty(noh_clip_bank *bank)
 {
     if (NOH_PAGE || !bank->clips.reserve) return;
+    /* root_ends point into the packs too: only what makes sets reads them, and that is done */
     for (uint32_t i = 0; i < bank->clips.clip_count; i++) leave(bank, i);
-    bank->clips.root_ends = NULL;
 }
 
 void noh_clip_bank_tick(noh_clip_bank *bank)
@@ -54,6 +54,19 @@ void noh_clip_bank_touch(noh_clip_bank *bank, uint32_t clip)
 {
     if (bank->clips.reserve && clip < bank->clips.clip_count)
         bank->clips.reserve->clips[clip].used = bank->clips.reserve->clock;
+}
+
+uint64_t noh_clip_bank_touched(const noh_clip_bank *bank, uint32_t *absent)
+{
+    const noh_clip_reserve *r = bank->clips.reserve;
+    uint64_t bytes = 0;
+    *absent = 0;
+    for (uint32_t i = 0; i < bank->clips.clip_count; i++) {
+        if (r->clips[i].used != r->clock) continue;
+        bytes += aligned(bytes_of(bank, i));
+        *absent += r->clips[i].absent;
+    }
+    return bytes;
 }
 
 /* ---- room ---- */

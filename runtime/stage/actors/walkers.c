@@ -83,12 +83,6 @@ static noh_result measure(const noh_stage_kind *k, uint32_t which, const char *n
     if (!k->bank || c->clip == NOH_NONE || c->clip >= noh_stage_clip_count(k)) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip with the name in noh_walkers_desc", which, 0);
     }
-    if (noh_clip_is_absent(&k->set, c->clip)) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND,
-                        "the clip of a walker is not in memory: bring it with "
-                        "noh_stage_load_clip",
-                        which, c->clip);
-    }
     c->ticks = k->set.clips[c->clip].duration_ticks;
     if (k->set.roots && c->ticks) {
         root_at(k, c->clip, noh_position_of(c->ticks), end);
@@ -117,11 +111,20 @@ static uint16_t are_in_step(const noh_walkers *w, const noh_stage_kind *k)
     return walk->marker_count && noh_sync_fits(&k->set, walk, run) ? 1u : 0u;
 }
 
-static noh_result measure_all(noh_walkers *w, const noh_walkers_desc *d, const noh_stage_kind *k, noh_error *error)
+static noh_result measure_all(noh_walkers *w, const noh_walkers_desc *d, noh_stage *s, const noh_stage_kind *k,
+                              noh_error *error)
 {
     const char *const names[WALKER_CLIPS] = { d->walk, d->idle, d->run };
     const float speeds[WALKER_CLIPS] = { d->walk_speed, 0.0f, d->run_speed };
     w->forward[1] = 1.0f;
+    if (!NOH_PAGE) {
+        uint32_t clips[WALKER_CLIPS];
+        for (uint32_t i = 0; i < WALKER_CLIPS; i++) {
+            clips[i] = names[i] ? noh_clip_set_find(&k->set, noh_hash_name(names[i])) : NOH_NONE;
+        }
+        const noh_result there = noh_stage_check_there(s, k, clips, WALKER_CLIPS, error);
+        if (there) return there;
+    }
     for (uint32_t i = 0; i < WALKER_CLIPS; i++) {
         w->clips[i].clip = NOH_NONE;
         if (!names[i]) continue;
@@ -150,7 +153,7 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);
     if (result) return result;
     memset(memory, 0, bytes_of(desc));
-    result = measure_all(w, desc, k, error);
+    result = measure_all(w, desc, stage, k, error);
     if (result) return result;
     w->bytes = (uint32_t)bytes_of(desc);
     w->walker_max = desc->walker_max;
@@ -201,6 +204,12 @@ noh_result noh_walkers_add(noh_walkers *walkers, uint32_t index, noh_stage *stag
     if (result) return result;
     if (index >= walkers->walker_max || k != &stage->kinds[walkers->kind]) {
         return noh_fail(error, NOH_ERR_ARG, "index is not below walker_max, or the actor is of another kind", index, 0);
+    }
+    if (!NOH_PAGE) { /* all of them: one that is started alone would change the actor */
+        uint32_t clips[WALKER_CLIPS];
+        for (uint32_t i = 0; i < WALKER_CLIPS; i++) clips[i] = walkers->clips[i].clip;
+        result = noh_stage_check_there(stage, k, clips, WALKER_CLIPS, error);
+        if (result) return result;
     }
     result = start(walkers, k, noh_character_controller(noh_stage_character(k, noh_stage_index(k, a))),
                    index * 2654435769u, error);

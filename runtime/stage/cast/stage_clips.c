@@ -2,7 +2,8 @@
  *
  * A bank knows all its clips, and which of their bytes are in memory (clip_bank_reserve.c). What would start one that is
  * not asks here first. Clips in use stay: what tracks play that are on, or will be by a change that waits, and all
- * clips of a graph that plays. */
+ * clips of a graph that plays. What is asked for together was used last, and is asked for only where it has room with
+ * what plays: so bringing the rest of it takes none of it away. */
 #include <string.h>
 
 #include "core/base/assert_internal.h"
@@ -19,7 +20,8 @@
 
 /* ---- the list of those that are wanted ---- */
 
-/* [NOH_WANTED_CLIPS_MAX] in the stage's block; the game reads it through the statistics. NULL: the plan has no reserve */
+/* [NOH_WANTED_CLIPS_MAX] in the stage's block; the game reads it through the statistics. NULL: no kind of the plan has
+ * a reserve, and none comes (stage_slot.c) */
 static noh_wanted_clip *wanted_of(const noh_stage *s)
 {
     return (noh_wanted_clip *)(uintptr_t)s->stats.wanted;
@@ -32,14 +34,16 @@ static void want(noh_stage *s, const noh_stage_kind *k, uint32_t clip)
     for (uint32_t i = 0; i < stats->wanted_count; i++) {
         if (stats->wanted[i].kind == k->bank_kind && stats->wanted[i].clip == clip) return;
     }
-    if (stats->wanted && stats->wanted_count < NOH_WANTED_CLIPS_MAX) {
-        noh_wanted_clip *w = &wanted_of(s)[stats->wanted_count++];
-        w->kind = k->bank_kind;
-        w->clip = clip;
-        w->pack = k->bank->packs[clip];
-        w->offset = chunk->offset;
-        w->bytes = chunk->bytes;
+    if (stats->wanted_count == NOH_WANTED_CLIPS_MAX) {
+        stats->wanted_count--; /* the oldest: perhaps it cannot be brought */
+        for (uint32_t i = 0; i < stats->wanted_count; i++) wanted_of(s)[i] = wanted_of(s)[i + 1u];
     }
+    noh_wanted_clip *w = &wanted_of(s)[stats->wanted_count++];
+    w->kind = k->bank_kind;
+    w->clip = clip;
+    w->pack = k->bank->packs[clip];
+    w->offset = chunk->offset;
+    w->bytes = chunk->bytes;
 }
 
 /* clip: NOH_NONE: all of the kind */
@@ -63,19 +67,19 @@ void noh_stage_forget_wanted(noh_stage *s, uint32_t kind)
 
 /* What is done with each clip of a kind that something uses. */
 typedef struct visit {
-    noh_stage *s; /* where absent ones become wanted; NULL: they are touched */
     const noh_stage_kind *k;
-    uint32_t absent;
+    noh_stage *wants; /* where absent ones become wanted; NULL: they do not */
+    int touches;      /* 1: its time of use is now */
+    uint32_t visited, absent;
 } visit;
 
 static void visit_own(visit *v, uint32_t clip)
 {
-    if (!v->s) {
-        noh_clip_bank_touch(v->k->bank, clip);
-    } else if (noh_clip_is_absent(&v->k->bank->clips, clip)) {
-        want(v->s, v->k, clip);
-        v->absent++;
-    }
+    const int is_absent = noh_clip_is_absent(&v->k->bank->clips, clip);
+    v->visited++;
+    v->absent += is_absent ? 1u : 0u;
+    if (v->touches) noh_clip_bank_touch(v->k->bank, clip);
+    if (v->wants && is_absent) want(v->wants, v->k, clip);
 }
 
 /* A clip of the set: one of the bank, or one that stands for all that a source plays. */
@@ -126,13 +130,20 @@ static int has_reserve(const noh_stage_kind *k)
     return k->bank && k->bank->clips.reserve;
 }
 
+/* Of all kinds that share a bank. */
+static void visit_owner(visit *v, const noh_stage *s, uint32_t owner, const uint8_t *state)
+{
+    for (uint32_t i = owner; i < s->desc.kind_count; i++) {
+        v->k = &s->kinds[i];
+        if (v->k->bank_kind == owner && v->k->bank) visit_kind(v, s, state);
+    }
+}
+
 static void use_clips(const noh_stage *s, uint32_t owner)
 {
+    visit v = { .touches = 1 };
     noh_clip_bank_tick(s->kinds[owner].bank);
-    for (uint32_t i = owner; i < s->desc.kind_count; i++) {
-        visit v = { NULL, &s->kinds[i], 0 };
-        if (v.k->bank_kind == owner && v.k->bank) visit_kind(&v, s, s->state);
-    }
+    visit_owner(&v, s, owner, s->state);
 }
 
 void noh_stage_use_clips(noh_stage *s)
@@ -144,42 +155,86 @@ void noh_stage_use_clips(noh_stage *s)
 
 /* ---- what is there ---- */
 
-static noh_result absent(const char *what, uint64_t where, uint64_t need, noh_error *error)
+/* What was touched since use_clips, if it is not too much together. *absent: how many of it */
+static noh_result check_fit(const noh_stage *s, uint32_t owner, uint32_t *absent, noh_error *error)
 {
-    return noh_fail(error, NOH_ERR_NOT_FOUND, what, where, need);
+    const noh_clip_bank *bank = s->kinds[owner].bank;
+    const uint64_t need = noh_clip_bank_touched(bank, absent);
+    return need <= bank->clips.reserve->room
+               ? NOH_OK
+               : noh_fail(error, NOH_ERR_MEMORY,
+                          "what plays and clips that have to be there together fill the reserve: raise clip_reserve of "
+                          "the kind to `need` bytes, or stop something",
+                          owner, need);
 }
 
-noh_result noh_stage_check_there(noh_stage *s, const noh_stage_kind *k, uint32_t clip, noh_error *error)
+static void visit_clips(visit *v, const uint32_t *clips, uint32_t count)
 {
-    visit v = { s, k, 0 };
+    for (uint32_t i = 0; i < count; i++) {
+        if (clips[i] != NOH_NONE) visit_clip(v, clips[i]);
+    }
+}
+
+noh_result noh_stage_check_there(noh_stage *s, const noh_stage_kind *k, const uint32_t *clips, uint32_t count,
+                                 noh_error *error)
+{
+    visit seen = { .k = k }, asked = { .k = k, .wants = s };
+    uint32_t absent = 1;
+    noh_result result = NOH_OK;
     if (!has_reserve(k)) return NOH_OK;
-    visit_clip(&v, clip);
-    return v.absent
-               ? absent("the clip, or one of the graph's, is not in memory: bring what noh_stage_stats has in wanted",
-                        (uint64_t)(k - s->kinds), v.absent, error)
-               : NOH_OK;
+    visit_clips(&seen, clips, count);
+    if (!seen.absent) return NOH_OK;
+    if (seen.visited > 1u) { /* of one clip alone bringing says whether it has room */
+        visit together = { .k = k, .touches = 1 };
+        use_clips(s, k->bank_kind);
+        visit_clips(&together, clips, count);
+        result = check_fit(s, k->bank_kind, &absent, error);
+    }
+    if (result != NOH_OK) return result;
+    visit_clips(&asked, clips, count);
+    return noh_fail(error, NOH_ERR_NOT_FOUND,
+                    "the clip, or one of the graph's, is not in memory: bring what noh_stage_stats has in wanted",
+                    (uint64_t)(k - s->kinds), absent);
+}
+
+/* Of the kinds of one bank. *absent: how many were asked for */
+static noh_result check_owner(noh_stage *s, uint32_t owner, const uint8_t *state, uint32_t *absent, noh_error *error)
+{
+    visit seen = { 0 }, together = { .touches = 1 }, asked = { .wants = s };
+    noh_result result;
+    *absent = 0;
+    visit_owner(&seen, s, owner, state);
+    if (!seen.absent) return NOH_OK;
+    use_clips(s, owner);
+    visit_owner(&together, s, owner, state);
+    result = check_fit(s, owner, absent, error);
+    if (result == NOH_OK) visit_owner(&asked, s, owner, state);
+    return result;
 }
 
 noh_result noh_stage_check_state_clips(noh_stage *s, const uint8_t *state, noh_error *error)
 {
+    uint32_t first = 0, absent = 0;
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        visit v = { s, &s->kinds[i], 0 };
-        if (!has_reserve(v.k)) continue;
-        visit_kind(&v, s, state);
-        if (v.absent)
-            return absent("state: it plays clips that are not in memory: bring what noh_stage_stats has in wanted", i,
-                          v.absent, error);
+        uint32_t of_kind;
+        if (!has_reserve(&s->kinds[i]) || s->kinds[i].bank_kind != i) continue;
+        const noh_result result = check_owner(s, i, state, &of_kind, error);
+        if (result != NOH_OK) return result;
+        if (!absent) first = i;
+        absent += of_kind;
     }
-    return NOH_OK;
+    return absent ? noh_fail(error, NOH_ERR_NOT_FOUND,
+                             "state: it plays clips that are not in memory: bring what noh_stage_stats has in wanted",
+                             first, absent)
+                  : NOH_OK;
 }
 
 void noh_stage_empty_clips(noh_stage *s, uint32_t kind)
 {
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
-        noh_stage_kind *k = &s->kinds[i];
+        const noh_stage_kind *k = &s->kinds[i];
         if (!has_reserve(k) || (kind != NOH_NONE && kind != i)) continue;
         if (k->bank_kind == i) noh_clip_bank_empty(k->bank);
-        k->set.root_ends = NULL;
     }
 }
 
@@ -199,6 +254,9 @@ static noh_result bring(noh_stage *s, noh_stage_kind *k, uint32_t clip, const vo
     if (noh_crc32c(0, chunk, own->bytes) != own->crc)
         return noh_fail(error, NOH_ERR_DATA, "the bytes of a clip are not its chunk in the pack", clip, own->bytes);
     memcpy(&header, chunk, sizeof header);
+    if (header.clip_offset > own->bytes || header.clip_bytes > own->bytes - header.clip_offset)
+        return noh_fail(error, NOH_ERR_DATA, "the coded bytes of a clip are not in its chunk: build the pack again",
+                        clip, own->bytes);
     use_clips(s, k->bank_kind);
     result = noh_clip_bank_bring(k->bank, clip, (const uint8_t *)chunk + header.clip_offset, header.clip_bytes, error);
     if (result == NOH_OK) {

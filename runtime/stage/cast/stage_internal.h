@@ -589,8 +589,12 @@ void noh_stage_empty_clips(noh_stage *s, uint32_t kind);
 void noh_stage_forget_wanted(noh_stage *s, uint32_t kind);
 /* After a step: what plays was used. */
 void noh_stage_use_clips(noh_stage *s);
-/* Whether a clip is there, or all that a source would play as one. Those that are not become wanted. */
-noh_result noh_stage_check_there(noh_stage *s, const noh_stage_kind *k, uint32_t clip, noh_error *error);
+/* Whether clips[count] are there, and all that a source would play as one. Those that are not become wanted. NOH_NONE
+ * is left out.
+ * errors  NOT_FOUND some are absent (where: the kind, need: how many); MEMORY they are several, and too much together
+ *         with what plays (where: the kind of the bank, need: bytes): none becomes wanted */
+noh_result noh_stage_check_there(noh_stage *s, const noh_stage_kind *k, const uint32_t *clips, uint32_t count,
+                                 noh_error *error);
 /* Whether all is there that a checked state plays. */
 noh_result noh_stage_check_state_clips(noh_stage *s, const uint8_t *state, noh_error *error);
 

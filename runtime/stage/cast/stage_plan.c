@@ -472,12 +472,24 @@ static uint64_t count_set_packs(const noh_kind_desc *d)
     return bytes;
 }
 
-/* Without the clips that are not read in place. */
-static uint64_t pack_bytes(const noh_kind_desc *d, const noh_pack *pack)
+static int plays_from(const noh_kind_desc *d, const noh_pack *pack)
+{
+    const noh_pack *clips = d->clips || d->clip_packs ? d->clips : d->mesh;
+    int plays = clips && clips->bytes == pack->bytes;
+    for (uint32_t i = 0; d->clip_packs && i < d->clip_pack_count; i++) plays |= d->clip_packs[i]->bytes == pack->bytes;
+    return plays;
+}
+
+/* Without its clips, if no kind reads them in place. */
+static uint64_t pack_bytes(const noh_stage_desc *desc, const noh_pack *pack)
 {
     const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
     uint64_t bytes = pack->byte_count;
-    for (uint32_t i = 0; !NOH_PAGE && d->clip_reserve && i < run.count; i++) {
+    int in_place = NOH_PAGE;
+    for (uint32_t i = 0; !NOH_PAGE && i < desc->kind_count; i++) {
+        in_place |= !desc->kinds[i].clip_reserve && plays_from(&desc->kinds[i], pack);
+    }
+    for (uint32_t i = 0; !in_place && i < run.count; i++) {
         bytes -= pack->chunks[run.first + i].bytes;
     }
     return bytes;
@@ -492,11 +504,11 @@ static uint64_t count_packs(const noh_stage_desc *desc)
         for (uint32_t k = 0; k < i; k++) {
             seen |= desc->kinds[k].mesh->bytes == d.mesh->bytes;
         }
-        bytes += seen ? 0 : d.clips == d.mesh ? pack_bytes(&d, d.mesh) : d.mesh->byte_count;
+        bytes += seen ? 0 : d.clips == d.mesh ? pack_bytes(desc, d.mesh) : d.mesh->byte_count;
         bytes += seen ? 0 : count_set_packs(&d);
-        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += pack_bytes(&d, d.clips);
+        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += pack_bytes(desc, d.clips);
         for (uint32_t c = 0; !seen && d.clip_packs && c < d.clip_pack_count; c++) {
-            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? pack_bytes(&d, d.clip_packs[c]) : 0;
+            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? pack_bytes(desc, d.clip_packs[c]) : 0;
         }
     }
     return bytes;

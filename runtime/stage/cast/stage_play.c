@@ -375,7 +375,7 @@ noh_result noh_stage_leap_to(noh_stage *stage, noh_actor actor, uint32_t layer, 
     noh_inertia_joint *left;
     player p;
     noh_result result = noh_stage_open_player(stage, actor, layer, &p, error);
-    if (!NOH_PAGE && result == NOH_OK) result = noh_stage_check_there(stage, p.k, clip, error);
+    if (!NOH_PAGE && result == NOH_OK) result = noh_stage_check_there(stage, p.k, &clip, 1, error);
     if (result != NOH_OK) return result;
     if (!p.k->desc->inertia) return begin(&p, clip, &play, error);
     play.fade_ticks = ticks;
@@ -410,8 +410,8 @@ noh_result noh_stage_play_clip(player *p, uint32_t clip, const noh_play *play, n
                         (uint64_t)(p->k - p->s->kinds), 0);
     }
     if (!NOH_PAGE) {
-        noh_result result = noh_stage_check_there(p->s, p->k, clip, error);
-        if (result == NOH_OK && p->reference) result = noh_stage_check_there(p->s, p->k, p->reference - 1u, error);
+        const uint32_t clips[2] = { clip, p->reference ? p->reference - 1u : NOH_NONE };
+        const noh_result result = noh_stage_check_there(p->s, p->k, clips, 2, error);
         if (result != NOH_OK) return result;
     }
     return play->flags & NOH_PLAY_INERTIA ? leap(p, clip, play, error) : begin(p, clip, play, error);

@@ -219,6 +219,11 @@ static noh_result fill(noh_stage *s, uint32_t kind, const noh_kind_desc *desc, n
     noh_kind_desc *d = &s->kind_descs[kind];
     noh_result result = noh_stage_check_kind(&s->desc, desc, kind, error);
     if (result == NOH_OK) result = check_worn(s, kind, desc, error);
+    if (!NOH_PAGE && result == NOH_OK && desc->clip_reserve && !s->stats.wanted) {
+        result = noh_fail(error, NOH_ERR_UNSUPPORTED,
+                          "clip_reserve of a kind, and no kind of the plan has it: set it in one of the slot's others",
+                          kind, 0);
+    }
     if (result != NOH_OK) {
         return result;
     }

@@ -87,14 +87,14 @@ static noh_result choose_clip(noh_stage *s, noh_stage_kind *k, const noh_stage_a
         const uint32_t clip = noh_stage_find(s, kind, NOH_NAME_CLIP, how->clips[i]);
         if (clip == NOH_NONE)
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name to get up by", i, 0);
-        result = NOH_PAGE ? NOH_OK : noh_stage_check_there(s, k, clip, error);
+        result = NOH_PAGE ? NOH_OK : noh_stage_check_there(s, k, &clip, 1, error);
         if (result == NOH_OK) result = compare_clip(s, k, a, b, clip, best, error);
     }
     for (uint32_t i = 0; !how->clips && result == NOH_OK; i++) {
         name = noh_stage_name(s, kind, NOH_NAME_CLIP, i);
         if (!name) break;
         if (!noh_name_begins(name, NOH_GET_UP_CLIPS)) continue;
-        if (NOH_PAGE || noh_stage_check_there(s, k, i, NULL) == NOH_OK)
+        if (NOH_PAGE || noh_stage_check_there(s, k, &i, 1, NULL) == NOH_OK)
             result = compare_clip(s, k, a, b, i, best, error);
     }
     return result == NOH_OK && best->clip == NOH_NONE ? bodies_of(s, k, a, b, NOH_NONE, best->bodies, error) : result;
