@@ -491,11 +491,55 @@ static void bad_goals_are_refused(void **state)
     cast_end(&c);
 }
 
+/* Clips by need: where the table's choice is absent the actor keeps what it plays, and what it would play is wanted. */
+static void an_absent_choice_leaves_what_plays(void **state)
+{
+    const noh_stage_stats *stats;
+    uint32_t kept = 0;
+    cast c;
+    noh_actor actor;
+    (void)state;
+    describe(&c, &plain);
+    c.kinds[0].clip_reserve = 1u << 20;
+    cast_make(&c, NULL);
+    stats = noh_stage_stats_of(c.stage);
+    actor = spawn(&c);
+    push(&c, actor, 0.0, 0.9);
+    for (int i = 0; i < 30; i++) step(&c);
+    assert_null(see(&c, actor).track);
+    assert_true(stats->wanted_count > 0);
+    for (int n = 0; n < 12; n++) {
+        push(&c, actor, PI * (double)n, n % 3 == 2 ? 0.0 : 0.9);
+        for (int i = 0; i < 30; i++) {
+            const noh_track *track = see(&c, actor).track;
+            const uint32_t before = track ? track->clip : NOH_NONE, asked = stats->wanted_count;
+            step(&c);
+            track = see(&c, actor).track;
+            if (stats->wanted_count == asked) continue;
+            assert_int_equal(track ? track->clip : NOH_NONE, before);
+            kept += before != NOH_NONE;
+        }
+        while (stats->wanted_count) {
+            const noh_wanted_clip w = stats->wanted[0];
+            const uint8_t *chunk = (const uint8_t *)c.files[ROAM].data + w.offset;
+            if (noh_stage_load_clip(c.stage, w.kind, w.clip, chunk, &said) != NOH_OK) fail_msg("%s", said.what);
+        }
+    }
+    assert_non_null(see(&c, actor).track);
+    assert_true(kept > 0);
+    cast_end(&c);
+}
+
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(a_turned_stick_is_followed), cmocka_unit_test(standing_feet_stay),
-    cmocka_unit_test(it_goes_and_stops),          cmocka_unit_test(tags_are_kept),
-    cmocka_unit_test(it_is_saved_and_forked),     cmocka_unit_test(damaged_states_do_no_harm),
-    cmocka_unit_test(bad_descs_are_refused),      cmocka_unit_test(bad_goals_are_refused),
+    cmocka_unit_test(an_absent_choice_leaves_what_plays),
+    cmocka_unit_test(a_turned_stick_is_followed),
+    cmocka_unit_test(standing_feet_stay),
+    cmocka_unit_test(it_goes_and_stops),
+    cmocka_unit_test(tags_are_kept),
+    cmocka_unit_test(it_is_saved_and_forked),
+    cmocka_unit_test(damaged_states_do_no_harm),
+    cmocka_unit_test(bad_descs_are_refused),
+    cmocka_unit_test(bad_goals_are_refused),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -712,6 +712,36 @@ static void the_dead_lie(void **state)
     close_cast(&c);
 }
 
+/* With clips by need: by a clip that is there, though another is more like the ragdoll; one that is named fails. */
+static void who_gets_up_takes_a_clip_that_is_there(void **state)
+{
+    const noh_kind_ragdoll ragdoll = { .count = 1, .world = &ground };
+    const noh_pack_chunk *chunks;
+    noh_actor actor;
+    cast c;
+    (void)state;
+    open_cast(&c, 1, &ragdoll, 1);
+    c.kinds[0].clip_reserve = 1u << 18;
+    cast_make(&c, NULL);
+    chunks = c.packs[0].chunks + c.packs[0].runs[NOH_CHUNK_CLIP].first;
+    for (uint32_t i = 0; noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i); i++) {
+        if (strcmp(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, i), rises[0]) == 0) continue;
+        assert_int_equal(noh_stage_load_clip(c.stage, 0, i, (const uint8_t *)c.files[0].data + chunks[i].offset, &said),
+                         NOH_OK);
+    }
+    actor = enter(&c, 0.0f);
+    run(&c, 40);
+    fall_with(&c, actor, -90.0f); /* onto its back */
+    run_until_it_lies(&c, actor);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, &rise, NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "not in memory"));
+    assert_int_equal(noh_actor_body(c.stage, actor), NOH_BODY_LIES);
+    assert_int_equal(noh_stage_stats_of(c.stage)->wanted_count, 1);
+    assert_int_equal(noh_actor_get_up(c.stage, actor, NULL, NULL, &said), NOH_OK);
+    assert_string_equal(noh_stage_name(c.stage, 0, NOH_NAME_CLIP, noh_actor_track(c.stage, actor, 0)->clip), rises[1]);
+    close_cast(&c);
+}
+
 static void what_cannot_get_up_is_told(void **state)
 {
     static const char *const unknown[] = { "get_up_back", "no such clip" };
@@ -836,6 +866,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(an_arm_falls_alone),
     cmocka_unit_test(joints_have_strength),
     cmocka_unit_test(the_dead_lie),
+    cmocka_unit_test(who_gets_up_takes_a_clip_that_is_there),
     cmocka_unit_test(what_cannot_get_up_is_told),
     cmocka_unit_test(every_byte_is_planned),
     cmocka_unit_test(the_same_bits_for_any_jobs_and_after_a_restore),
