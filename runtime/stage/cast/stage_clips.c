@@ -27,25 +27,6 @@ static noh_wanted_clip *wanted_of(const noh_stage *s)
     return (noh_wanted_clip *)(uintptr_t)s->stats.wanted;
 }
 
-static void want(noh_stage *s, const noh_stage_kind *k, uint32_t clip)
-{
-    noh_stage_stats *stats = &s->stats;
-    const noh_pack_chunk *chunk = noh_stage_clip_chunk(k, clip);
-    for (uint32_t i = 0; i < stats->wanted_count; i++) {
-        if (stats->wanted[i].kind == k->bank_kind && stats->wanted[i].clip == clip) return;
-    }
-    if (stats->wanted_count == NOH_WANTED_CLIPS_MAX) {
-        stats->wanted_count--; /* the oldest: perhaps it cannot be brought */
-        for (uint32_t i = 0; i < stats->wanted_count; i++) wanted_of(s)[i] = wanted_of(s)[i + 1u];
-    }
-    noh_wanted_clip *w = &wanted_of(s)[stats->wanted_count++];
-    w->kind = k->bank_kind;
-    w->clip = clip;
-    w->pack = k->bank->packs[clip];
-    w->offset = chunk->offset;
-    w->bytes = chunk->bytes;
-}
-
 /* clip: NOH_NONE: all of the kind */
 static void forget(noh_stage *s, uint32_t kind, uint32_t clip)
 {
@@ -56,6 +37,24 @@ static void forget(noh_stage *s, uint32_t kind, uint32_t clip)
         if (w.kind != kind || (clip != NOH_NONE && w.clip != clip)) wanted_of(s)[left++] = w;
     }
     stats->wanted_count = left;
+}
+
+static void want(noh_stage *s, const noh_stage_kind *k, uint32_t clip)
+{
+    noh_stage_stats *stats = &s->stats;
+    const noh_pack_chunk *chunk = noh_stage_clip_chunk(k, clip);
+    for (uint32_t i = 0; i < stats->wanted_count; i++) {
+        if (stats->wanted[i].kind == k->bank_kind && stats->wanted[i].clip == clip) return;
+    }
+    if (stats->wanted_count == NOH_WANTED_CLIPS_MAX) { /* the oldest goes: perhaps it cannot be brought */
+        forget(s, stats->wanted[0].kind, stats->wanted[0].clip);
+    }
+    noh_wanted_clip *w = &wanted_of(s)[stats->wanted_count++];
+    w->kind = k->bank_kind;
+    w->clip = clip;
+    w->pack = k->bank->packs[clip];
+    w->offset = chunk->offset;
+    w->bytes = chunk->bytes;
 }
 
 void noh_stage_forget_wanted(noh_stage *s, uint32_t kind)
