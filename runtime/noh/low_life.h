@@ -536,7 +536,7 @@ noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_r
 /* The state of a gaze. A copy continues identically; zeros look ahead. */
 typedef struct noh_gaze {
     noh_ik_look head, eyes;
-    float point[3]; /* world: the target (modules.h) */
+    float point[3]; /* world: the target (modules.h); up to NOH_NUMBER_MAX */
     uint32_t looks; /* 1: at the point; likewise */
     float near;     /* 1 / distance of the target */
     uint32_t begun, unused[2];
@@ -557,7 +557,7 @@ typedef struct noh_gaze {
 noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *rig, noh_error *error);
 
 typedef struct noh_reach_hand {
-    float point[3]; /* world: the target (modules.h) */
+    float point[3]; /* world: the target (modules.h); up to NOH_NUMBER_MAX */
     float part;     /* 0..1 fraction of the time to reach, before easing */
     uint32_t wants; /* 1: it reaches, while set */
     uint32_t unused[3];

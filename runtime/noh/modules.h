@@ -307,8 +307,8 @@ noh_result noh_actor_revive(noh_stage *stage, noh_actor actor, noh_error *error)
 /* How much clips move a body of a falling actor. All zeros: limp. */
 typedef struct noh_body_hold {
     uint32_t held;  /* 1: clips move it, through obstacles too; for the first body: clips also move the place */
-    float hertz;    /* how fast the joint to its parent turns to the angle of the clips: 0 limp, 20 follows closely. A
-                     * ragdoll with strength does not fall asleep */
+    float hertz;    /* how fast the joint to its parent turns to the angle of the clips: 0 limp, 20 follows closely; up
+                     * to NOH_NUMBER_MAX. A ragdoll with strength does not fall asleep */
     float animated; /* 0..1: share of the clips in its shown rotation */
 } noh_body_hold;
 
@@ -435,8 +435,8 @@ typedef struct noh_kind_match {
 
 typedef struct noh_match_goal {
     float velocity[3]; /* in the world, units a second, up to 1e6; y is not used */
-    float facing[3];   /* direction in the world of the model's z axis, of any length; y is not used. Default (0) where
-                        * it goes, or where it faces while the velocity is 0 */
+    float facing[3];   /* direction in the world of the model's z axis, each number up to 1e6; y is not used. Default
+                        * (0) where it goes, or where it faces while the velocity is 0 */
     const char *tags;  /* names of the table's tags, separated by blanks: clips that have all of them play. Default
                         * (NULL) all clips. Read by the call */
 } noh_match_goal;
@@ -514,7 +514,7 @@ size_t noh_kind_find_eyes_size(const noh_kind_desc *kind);
 
 /* Make an actor look at a fixed point, also while it moves.
  * point  world; NULL: ahead
- * errors also ARG not finite */
+ * errors also ARG not finite or beyond NOH_NUMBER_MAX */
 noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float point[3], noh_error *error);
 
 /* Make an actor look between another actor's eyes, or at its middle if it has no face. The other actor's rest pose in
@@ -539,7 +539,7 @@ noh_result noh_actor_seed_face(noh_stage *stage, noh_actor actor, uint32_t seed,
 /* Give an actor the face of a person: hold the floats of the identity's targets (noh_actor_hold_float) at these
  * weights, and adapt blinks to the lids. Takes a held float for each weight that is not 0.
  * mesh    of the kind's pack, as used to make the identity
- * shapes  weights[target_count] of noh_identity_random; NULL: back to the mesh's own face
+ * shapes  weights[target_count] of noh_identity_random, up to NOH_NUMBER_MAX; NULL: back to the mesh's own face
  * errors  also NOT_FOUND the kind has no float with a target's name; LIMIT held_float_count is too small (need: the
  *         count). The actor is then unchanged */
 noh_result noh_actor_set_identity(noh_stage *stage, noh_actor actor, const noh_identity *identity, const noh_mesh *mesh,

@@ -604,7 +604,8 @@ noh_controller *noh_actor_controller(noh_stage *stage, noh_actor actor, const no
 /* Hold a float: blend the value from the clips towards this one.
  * ranges  amount 0..1: 1 shows only this value; 0 releases the float
  * errors  NOT_FOUND the actor is gone, or the kind has no such float; LIMIT held_float_count floats are already held
- *         (need: held_float_count); ARG value is not finite, or amount is out of range */
+ *         (need: held_float_count); ARG value is not finite or beyond NOH_NUMBER_MAX, or
+ *         amount is not in 0..1 */
 noh_result noh_actor_hold_float(noh_stage *stage, noh_actor actor, uint32_t index, float value, float amount,
                                 noh_error *error);
 
@@ -908,7 +909,8 @@ const void *noh_stage_state(const noh_stage *stage, size_t *bytes);
 
 /* Restore a copied state, of this stage or another with the same plan, on any processor of the same byte order. The
  * frames that follow have the same bits as those after the copy, if the same levels are loaded (noh_stage_load_level);
- * loaded levels are not part of the state. Without them actors show the finest level there is.
+ * loaded levels are not part of the state. Without them actors show the finest level there is. A stage's own state is
+ * always valid: places that time or noh_stage_shift_origin moves stop at NOH_NUMBER_MAX.
  * errors  ARG called during a frame or a step; NOT_FOUND it plays clips that are absent here, which are then in
  *         noh_stage_stats.wanted (where: the first kind, need: how many clips); MEMORY they and what plays here do not
  *         fit clip_reserve (where: the kind, need: bytes); DATA the state is of another plan, or a count or

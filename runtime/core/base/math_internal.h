@@ -56,17 +56,21 @@ static inline int noh_is_number3(const float v[3])
     return noh_is_number(v[0]) && noh_is_number(v[1]) && noh_is_number(v[2]);
 }
 
-static inline int noh_are_numbers(const float *x, size_t count)
+/* Results of frames from numbers, as saved states hold them: sums and products of what the game sets may be larger than
+ * NOH_NUMBER_MAX, and the squares of these are finite still. */
+#define NOH_SOUND_MAX 1e18f
+
+static inline int noh_are_sound(const float *x, size_t count)
 {
     int all = 1;
-    for (size_t i = 0; i < count; i++) all &= noh_is_number(x[i]);
+    for (size_t i = 0; i < count; i++) all &= x[i] >= -NOH_SOUND_MAX && x[i] <= NOH_SOUND_MAX;
     return all;
 }
 
-/* Whether the fields of a struct from one on, before another, are numbers: all of them are floats. */
-#define NOH_ARE_NUMBERS(type, of, from, end)                                                     \
-    noh_are_numbers((const float *)(const void *)((const uint8_t *)(of) + offsetof(type, from)), \
-                    (offsetof(type, end) - offsetof(type, from)) / sizeof(float))
+/* Whether the fields of a struct from one on, before another, are results: all of them are floats. */
+#define NOH_ARE_SOUND(type, of, from, end)                                                     \
+    noh_are_sound((const float *)(const void *)((const uint8_t *)(of) + offsetof(type, from)), \
+                  (offsetof(type, end) - offsetof(type, from)) / sizeof(float))
 
 #define NOH_NEAR_ORIGIN 512.0f /* along each axis: a float there is exact to 0.03 mm, in metres */
 

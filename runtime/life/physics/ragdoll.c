@@ -460,8 +460,7 @@ noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc)
 
 static int good_state(const noh_ragdoll_state *s)
 {
-    return noh_are_numbers(s->position, sizeof *s / sizeof(float)) && is_unit4(s->rotation) &&
-           is_unit4(s->goal_rotation);
+    return noh_are_sound(s->position, sizeof *s / sizeof(float)) && is_unit4(s->rotation) && is_unit4(s->goal_rotation);
 }
 
 const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy)
@@ -472,7 +471,7 @@ const char *noh_ragdolls_check(const noh_ragdolls *set, const noh_ragdolls *copy
     }
     for (uint32_t d = 0; d < set->count; d++) {
         const noh_ragdoll_doll *doll = doll_of(copy, d);
-        if (!noh_is_number3(doll->origin) || !noh_are_numbers(doll->lain[0], sizeof doll->lain / sizeof(float)))
+        if (!noh_are_sound(doll->origin, 3) || !noh_are_sound(doll->lain[0], sizeof doll->lain / sizeof(float)))
             return "state: a ragdoll's position is not a number";
         if (!noh_ragdoll_is_size(noh_ragdoll_size(doll))) return "state: a ragdoll's size is out of range";
         for (uint32_t i = 0; i < set->shape.body_count; i++) {

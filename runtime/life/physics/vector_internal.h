@@ -31,15 +31,6 @@ static inline void noh_cross3(const float a[3], const float b[3], float out[3])
     out[2] = z;
 }
 
-/* Numbers whose squares, and the squares of their differences, stay finite. */
-static inline int noh_are_sound(const float *v, size_t count)
-{
-    for (size_t i = 0; i < count; i++) {
-        if (!(v[i] > -1e15f && v[i] < 1e15f)) return 0;
-    }
-    return 1;
-}
-
 static inline float noh_length3(const float v[3])
 {
     return noh_sqrt(noh_dot3(v, v));

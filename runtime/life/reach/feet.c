@@ -482,12 +482,12 @@ void noh_feet_init(noh_feet *feet)
 
 const char *noh_feet_check(const noh_feet *feet)
 {
-    int good = noh_is_number(feet->pelvis) && noh_is_number(feet->speed);
+    int good = noh_are_sound(&feet->pelvis, 1) && noh_are_sound(&feet->speed, 1);
     for (uint32_t i = 0; i < NOH_FEET_LEGS_MAX; i++) {
         const noh_foot *f = &feet->feet[i];
         const float square = noh_dot3(f->normal, f->normal);
-        good = good && noh_are_numbers(f->was[0], 9) && noh_is_number(f->height) && noh_is_number(f->speed) &&
-               noh_are_numbers(f->moved, 2) && noh_are_numbers(f->held, 2);
+        good = good && noh_are_sound(f->was[0], 9) && noh_are_sound(&f->height, 1) && noh_are_sound(&f->speed, 1) &&
+               noh_are_sound(f->moved, 2) && noh_are_sound(f->held, 2);
         if (f->part > 2u || f->is_held > 1u || f->has_ground > 1u || !(f->stands >= 0.0f && f->stands <= 1.0f)) {
             return "feet: the planted part, its share or a flag is out of range";
         }

@@ -208,7 +208,7 @@ static int is_look(const noh_ik_look *look)
 
 const char *noh_gaze_check(const noh_gaze *g)
 {
-    if (!noh_is_number3(g->point) || !(g->near >= 0.0f && g->near < 1e12f)) {
+    if (!noh_are_sound(g->point, 3) || !(g->near >= 0.0f && g->near < 1e12f)) {
         return "gaze: a point or a distance is not a number";
     }
     if (g->looks > 1u || g->begun > 1u) return "gaze: a flag is not 0 or 1";

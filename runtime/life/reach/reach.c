@@ -93,7 +93,7 @@ const char *noh_reach_check(const noh_reach *reach)
 {
     for (uint32_t i = 0; i < NOH_REACH_ARMS_MAX; i++) {
         const noh_reach_hand *h = &reach->hands[i];
-        if (!noh_is_number3(h->point)) return "reach: a point is not a number";
+        if (!noh_are_sound(h->point, 3)) return "reach: a point is not a number";
         if (h->wants > 1u || !(h->part >= 0.0f && h->part <= 1.0f))
             return "reach: a fraction or a flag is out of range";
     }

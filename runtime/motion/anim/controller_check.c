@@ -77,7 +77,7 @@ static const char *bad_inertia(const noh_controller *c)
 {
     const float *offsets = (const float *)(const void *)((const uint8_t *)c + c->inertia_offset);
     const size_t count = c->inertia_offset ? 12u * (size_t)c->joint_count + 2u * (size_t)c->float_count : 0;
-    return noh_are_numbers(offsets, count) ? NULL : "controller: an inertial offset is not a number";
+    return noh_are_sound(offsets, count) ? NULL : "controller: an inertial offset is not a number";
 }
 
 /* Whether the bits of a change's end value are a weight valid for its kind. */

@@ -170,10 +170,22 @@ void noh_stage_keep_before(noh_stage_actor *a)
     memcpy(a->rest_before, a->rest, sizeof a->rest);
 }
 
+void noh_stage_keep_within(noh_place *place, float rest[3])
+{
+    for (int i = 0; i < 3; i++) {
+        const float at = place->position[i];
+        if (noh_is_number(at)) continue;
+        place->position[i] = at < 0.0f ? -NOH_NUMBER_MAX : NOH_NUMBER_MAX;
+        rest[i] = 0.0f;
+    }
+    if (!noh_is_scale(place->scale)) place->scale = place->scale > 1.0f ? NOH_NUMBER_MAX : 1.0f / NOH_NUMBER_MAX;
+}
+
 static void put(noh_stage_actor *a, const noh_place *place)
 {
     a->place = *place;
     memset(a->rest, 0, sizeof a->rest);
+    if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
     memset(a->rotation_rest, 0, sizeof a->rotation_rest);
 }
 
@@ -312,6 +324,7 @@ static void shift(noh_place *place, float rest[3], const float by[3])
     for (int i = 0; i < 3; i++) {
         noh_split((double)place->position[i] + (double)rest[i] + (double)by[i], &place->position[i], &rest[i]);
     }
+    if (!NOH_PAGE) noh_stage_keep_within(place, rest);
 }
 
 void noh_stage_shift_actor(noh_stage_actor *a, const float by[3])

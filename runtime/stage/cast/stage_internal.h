@@ -88,6 +88,9 @@ static inline int noh_is_scale(float scale)
     return scale >= 1.0f / NOH_NUMBER_MAX && scale <= NOH_NUMBER_MAX;
 }
 
+/* Keep a place that has moved, or that comes from other places, within what states may have. */
+void noh_stage_keep_within(noh_place *place, float rest[3]);
+
 /* [4] as it is drawn; NULL: white. */
 static inline const uint8_t *noh_stage_tint_of(const noh_stage_actor *a)
 {

@@ -41,6 +41,11 @@ static const void *in_copy(const reader *r, const void *own)
     return r->state + ((const uint8_t *)own - r->s->state);
 }
 
+static int is_sound(double x)
+{
+    return x >= -(double)NOH_SOUND_MAX && x <= (double)NOH_SOUND_MAX;
+}
+
 static const char *bad_place(const noh_place *place)
 {
     float length = 0.0f;
@@ -73,8 +78,8 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     for (int i = 0; i < 3 && !what; i++) {
-        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !noh_is_number((float)a->home[i]) ||
-            !noh_is_number((float)a->moved.translation[i]))
+        if (!noh_is_number(a->rest[i]) || !noh_is_number(a->rest_before[i]) || !is_sound(a->home[i]) ||
+            !is_sound(a->moved.translation[i]))
             what = "state: an actor's place is not a number";
     }
     for (int i = 0; i < 4 && !what; i++) {

@@ -141,6 +141,9 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
             const noh_module_type *type = k->modules[slot].type;
             if (type && type->step) type->step(k, ticks);
         }
+        for (uint32_t a = 0; !NOH_PAGE && a < k->desc->actor_count; a++) {
+            if (k->actors[a].alive) noh_stage_keep_within(&k->actors[a].place, k->actors[a].rest);
+        }
     }
     stage->head->clock += ticks;
     stage->head->step_ticks = ticks;

@@ -46,9 +46,9 @@ static const char *bad_head(const noh_character *ch, size_t bytes, const noh_cli
         at += 48u * (uint64_t)set->joint_count;
         at = (at + 4u * (uint64_t)set->float_count + 15u) & ~(uint64_t)15;
     }
-    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f) || !noh_are_numbers(ch->stretches, 2))
+    if (!(ch->stretches[0] >= 0.0f && ch->stretches[1] >= 0.0f) || !noh_are_sound(ch->stretches, 2))
         return "character: the stretch of a pose is negative, or not a number";
-    if (!noh_are_numbers(ch->spheres[0], 8)) return "character: a sphere is not a number";
+    if (!noh_are_sound(ch->spheres[0], 8)) return "character: a sphere is not a number";
     if (ch->multiplied > 3u) return "character: unknown palette flags";
     return ch->bytes != at ? "character: its size does not match its counts" : NULL;
 }
@@ -57,7 +57,7 @@ static const char *bad_head(const noh_character *ch, size_t bytes, const noh_cli
 static const char *bad_poses(const noh_character *ch)
 {
     const float *poses = (const float *)(const void *)((const uint8_t *)ch + ch->palette_offsets[0]);
-    return noh_are_numbers(poses, (ch->bytes - ch->palette_offsets[0]) / sizeof(float))
+    return noh_are_sound(poses, (ch->bytes - ch->palette_offsets[0]) / sizeof(float))
                ? NULL
                : "character: a pose is not a number";
 }

@@ -329,7 +329,7 @@ void noh_stage_step_brace(const noh_stage_ragdoll_kind *shared, noh_stage_body *
 
 const char *noh_stage_check_brace(const noh_stage_brace *b)
 {
-    return noh_are_numbers(b->toward, 2) && noh_is_number(b->fastest) && b->strength > 0.0f && b->strength <= 1.0f &&
+    return noh_are_sound(b->toward, 2) && noh_are_sound(&b->fastest, 1) && b->strength > 0.0f && b->strength <= 1.0f &&
                    b->ticks <= 2u * NOH_RAGDOLL_TIME_MAX * BRACE_MAX_TICKS
                ? NULL
                : "state: an actor's brace is out of range";

@@ -480,11 +480,11 @@ static void shift(noh_stage_kind *k, const float by[3])
 static int is_sound(const noh_face *f)
 {
     const noh_face_speech *s = &f->speech;
-    int good = noh_are_numbers(&s->brows, sizeof *s / sizeof(float)) && NOH_ARE_NUMBERS(noh_face, f, from, head);
-    for (int i = 0; i < 2; i++) good = good && NOH_ARE_NUMBERS(noh_face_spring, &f->head[i], from, start);
+    int good = noh_are_sound(&s->brows, sizeof *s / sizeof(float)) && NOH_ARE_SOUND(noh_face, f, from, head);
+    for (int i = 0; i < 2; i++) good = good && NOH_ARE_SOUND(noh_face_spring, &f->head[i], from, start);
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         const noh_face_emotion *e = &f->emotions[i];
-        good = good && NOH_ARE_NUMBERS(noh_face_spring, &e->amount, from, start) && noh_is_number(e->fade_omega);
+        good = good && NOH_ARE_SOUND(noh_face_spring, &e->amount, from, start) && noh_are_sound(&e->fade_omega, 1);
         if (e->emotion >= NOH_EMOTION_COUNT || e->on > 1u || e->holds > 1u) return 0;
     }
     return good && f->clock >= 0 && f->activity < NOH_ACTIVITY_COUNT && f->flags <= NOH_FACE_FLAGS && f->gaze <= 2u &&
@@ -495,7 +495,7 @@ static noh_result check(const noh_stage_kind *k, const void *state, noh_error *e
 {
     const noh_stage_face *f = state;
     (void)k;
-    return !noh_is_number3(f->point) || !NOH_ARE_NUMBERS(noh_stage_face, f, visemes, looks) ||
+    return !noh_are_sound(f->point, 3) || !NOH_ARE_SOUND(noh_stage_face, f, visemes, looks) ||
                    f->looks > NOH_LOOKS_AT_ACTOR || f->says > 1u || f->begun > 1u || f->fresh > 1u ||
                    !is_sound(&f->face)
                ? noh_fail(error, NOH_ERR_DATA, "state: bad face of an actor", 0, 0)
@@ -543,8 +543,8 @@ noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float poin
     noh_result result;
     noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
-    if (point && !noh_is_finite(point[0] + point[1] + point[2])) {
-        return noh_fail(error, NOH_ERR_ARG, "point to look at: not finite", 0, 0);
+    if (!NOH_PAGE && point && !noh_is_number3(point)) {
+        return noh_fail(error, NOH_ERR_ARG, "point to look at: not within 10^12", 0, 0);
     }
     f->looks = point ? NOH_LOOKS_AT_POINT : NOH_LOOKS_AHEAD;
     f->fresh = 1;

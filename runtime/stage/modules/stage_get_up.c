@@ -121,6 +121,7 @@ static void stand_under(const noh_stage_kind *k, noh_stage_actor *a, const noh_s
     for (int i = 0; i < 3; i++) {
         a->place.position[i] = (float)(((double)b->origin[i] + (double)frame.position[i]) / (double)shared->metres);
     }
+    if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
     memcpy(a->place.rotation, frame.rotation, sizeof frame.rotation);
     a->before = a->place;
     a->on_its_way = 0;

@@ -1,6 +1,7 @@
 /* stage_person.c: an actor as a person: held floats, and lids that shut. */
 #include "stage/modules/stage_face_internal.h"
 #include "core/base/assert_internal.h"
+#include "core/base/math_internal.h"
 #include "life/face/identity_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
@@ -41,8 +42,8 @@ static noh_result check(const noh_stage *s, noh_actor actor, const noh_identity 
         at = float_of(s, actor, mesh, t);
         if (at == NOH_NONE)
             return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no float of an identity target", t, 0);
-        if (weights && weights[t] - weights[t] != 0.0f)
-            return noh_fail(error, NOH_ERR_ARG, "a weight of a person is not finite", t, 0);
+        if (weights && !noh_is_number(weights[t]))
+            return noh_fail(error, NOH_ERR_ARG, "a weight of a person is not finite, or beyond NOH_NUMBER_MAX", t, 0);
         was_held = held_at(k, held, at) != NULL;
         needed += weights && weights[t] != 0.0f;
         needed -= was_held ? 1u : 0u;

@@ -492,8 +492,9 @@ noh_result noh_actor_hold_body(noh_stage *stage, noh_actor actor, uint32_t joint
     const noh_result result = noh_stage_open_body(stage, actor, &a, &k, &b, error);
     NOH_ASSERT(hold);
     if (!b) return result;
-    if (!(hold->hertz >= 0.0f) || !noh_is_finite(hold->hertz) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
-        return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is below 0, or animated not in 0..1", joint, 0);
+    if (!(hold->hertz >= 0.0f && noh_is_number(hold->hertz)) || !(hold->animated >= 0.0f && hold->animated <= 1.0f))
+        return noh_fail(error, NOH_ERR_ARG, "hertz of a body's hold is not in 0..10^12, or animated not in 0..1", joint,
+                        0);
     for (uint32_t i = 0; joint != NOH_JOINT_ROOT && i < noh_stage_ragdoll_kind_of(k)->rig.body_count; i++) {
         if (!noh_joint_is_below(&k->skeleton, noh_stage_ragdoll_kind_of(k)->fit.joints[i], joint)) continue;
         b->held = (b->held & ~(1u << i)) | (hold->held ? 1u << i : 0u);
@@ -534,7 +535,7 @@ static const char *bad_move(const noh_stage_kind *k, const noh_stage_body *b)
     if (b->moves >= NOH_MOVES_STAGGERING && !legs) return "state: an actor without legs staggers";
     if (b->moves == NOH_MOVES_STAGGERING) return noh_stage_check_stagger(&b->of.stagger);
     if (b->moves == NOH_MOVES_BRACING) return noh_stage_check_brace(&b->of.brace);
-    return noh_are_numbers(b->of.motions[0].velocity, 6u * NOH_RAGDOLL_BODIES_MAX) && b->rise_ticks
+    return noh_are_sound(b->of.motions[0].velocity, 6u * NOH_RAGDOLL_BODIES_MAX) && b->rise_ticks
                ? NULL
                : "state: an actor's ragdoll is not a number";
 }
@@ -546,8 +547,8 @@ static const char *bad_body(const noh_stage_kind *k, const noh_stage_body *b)
         (b->state == NOH_BODY_FALLS) != (b->doll != 0) || b->dead > 1u || (b->doll && b->goals > 1u)) {
         return "state: bad ragdoll of an actor";
     }
-    if (!NOH_ARE_NUMBERS(noh_stage_body, b, bodies, of) || !NOH_ARE_NUMBERS(noh_stage_body, b, offset, hertz) ||
-        !noh_is_number3(b->origin)) {
+    if (!NOH_ARE_SOUND(noh_stage_body, b, bodies, of) || !NOH_ARE_SOUND(noh_stage_body, b, offset, hertz) ||
+        !noh_are_sound(b->origin, 3)) {
         return "state: an actor's ragdoll is not a number";
     }
     for (uint32_t i = 0; i < NOH_RAGDOLL_BODIES_MAX; i++) {

@@ -520,7 +520,7 @@ void noh_stage_run_stagger(const noh_stage_kind *k, noh_stage_body *b, noh_modif
 
 const char *noh_stage_check_stagger(const noh_stage_stagger *s)
 {
-    const int are_numbers = NOH_ARE_NUMBERS(noh_stage_stagger, s, feet, foot);
+    const int are_numbers = NOH_ARE_SOUND(noh_stage_stagger, s, feet, foot);
     return are_numbers && s->arms <= 1.01f && s->weight > 0.0f && s->weight <= 1.0f && s->foot <= 2u && s->last <= 1u &&
                    s->step_ticks <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND && (!s->foot || s->step_lasts) &&
                    s->step_lasts <= NOH_RAGDOLL_TIME_MAX * NOH_TICKS_PER_SECOND && s->rest_ticks < PIECE_TICKS &&
