@@ -116,7 +116,7 @@ noh_result noh_ragdoll_place(noh_ragdolls *set, uint32_t doll, const noh_ragdoll
  * held    bit i: body i moves to its goal, through any obstacle
  * hertz   [body_count] how fast the joint of body i to its parent turns to the goals' angle, critically damped: 0 limp,
  *         20 tracks; NULL: 0
- * errors  ARG a goal is not finite or hertz is below 0; nothing changes */
+ * errors  ARG a goal is not finite, or hertz is not in 0..NOH_NUMBER_MAX; nothing changes */
 noh_result noh_ragdoll_follow(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_pose *goals, uint32_t held,
                               const float *hertz, noh_error *error);
 

@@ -496,7 +496,7 @@ static const float world_origin[3] = { 0.0f, 0.0f, 0.0f };
 static uint32_t first_bad_pose(const noh_ragdoll_pose *bodies, uint32_t count)
 {
     uint32_t i = 0;
-    while (i < count && noh_is_finite3(bodies[i].position) && is_unit4(bodies[i].rotation)) i++;
+    while (i < count && noh_are_sound(bodies[i].position, 3) && is_unit4(bodies[i].rotation)) i++;
     return i;
 }
 
@@ -515,7 +515,7 @@ noh_result noh_ragdoll_place_about(noh_ragdolls *set, uint32_t doll, const float
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
     for (uint32_t i = 0; motions && i < count && bad == count; i++) {
-        if (!noh_is_finite3(motions[i].velocity) || !noh_is_finite3(motions[i].spin)) bad = i;
+        if (!noh_are_sound(motions[i].velocity, 3) || !noh_are_sound(motions[i].spin, 3)) bad = i;
     }
     if (bad < count) {
         return noh_fail(error, NOH_ERR_ARG, "a placed body's position is not finite, or its rotation is not unit", bad,
@@ -560,7 +560,7 @@ noh_result noh_ragdoll_follow_about(noh_ragdolls *set, uint32_t doll, const floa
     noh_ragdoll_doll *d = &noh_ragdoll_dolls(set)[doll];
     NOH_ASSERT(doll < set->count);
     for (uint32_t i = 0; goals && hertz && i < count && bad == count; i++) {
-        if (!(hertz[i] >= 0.0f) || !noh_is_finite(hertz[i])) bad = i;
+        if (!(hertz[i] >= 0.0f && noh_is_number(hertz[i]))) bad = i;
     }
     if (bad < count) {
         return noh_fail(error, NOH_ERR_ARG, "a goal of a body is not finite, or its hertz is below 0", bad, 0);

@@ -48,6 +48,17 @@ SETTER(scale)
     return noh_actor_set_place(stage, actors[0], &place, NULL);
 }
 
+/* It falls as fast as it has jumped. */
+SETTER(fall_after_a_jump)
+{
+    noh_place place = { .scale = 1.0f };
+    fill(place.position, 3, v);
+    if (noh_actor_set_place(stage, actors[0], &place, NULL) != NOH_OK) return NOH_ERR_ARG;
+    assert_int_equal(noh_stage_frame(stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_fall(stage, actors[0], NULL), NOH_OK);
+    return NOH_OK;
+}
+
 SETTER(scale_of_a_fallen)
 {
     const noh_place place = { .scale = v };
@@ -189,6 +200,7 @@ static const struct {
                 ROW(place_of_a_staggering),
                 ROW(place_and_scale),
                 ROW(scale),
+                ROW(fall_after_a_jump),
                 ROW(scale_of_a_fallen),
                 ROW(scale_of_a_staggering),
                 ROW(scale_of_a_matched),
