@@ -543,7 +543,7 @@ noh_result noh_actor_look_at(noh_stage *stage, noh_actor actor, const float poin
     noh_result result;
     noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
-    if (!NOH_PAGE && point && !noh_is_number3(point)) {
+    if (point && !noh_is_number3(point)) {
         return noh_fail(error, NOH_ERR_ARG, "point to look at: not within 10^12", 0, 0);
     }
     f->looks = point ? NOH_LOOKS_AT_POINT : NOH_LOOKS_AHEAD;
