@@ -67,6 +67,14 @@ static inline int noh_are_sound(const float *x, size_t count)
     return all;
 }
 
+/* Results of numbers that a pack alone bounds, kept such that a state with them is taken. */
+static inline void noh_keep_sound(float *x, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        x[i] = x[i] >= -NOH_SOUND_MAX ? (x[i] <= NOH_SOUND_MAX ? x[i] : NOH_SOUND_MAX) : -NOH_SOUND_MAX;
+    }
+}
+
 /* Whether the fields of a struct from one on, before another, are results: all of them are floats. */
 #define NOH_ARE_SOUND(type, of, from, end)                                                     \
     noh_are_sound((const float *)(const void *)((const uint8_t *)(of) + offsetof(type, from)), \

@@ -4,6 +4,7 @@
  * high group's result covers the low one; additive tracks are added in index order; the remaining offset of an inertial
  * transition is added last, since it is the difference between two such results. A single track with full weight skips
  * the blend, which would not change it. */
+#include "core/base/math_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/anim/controller_internal.h"
 #include "motion/anim/controller_pose_internal.h"
@@ -359,6 +360,7 @@ void noh_controller_inertia_store(noh_controller *c, const noh_pose_scratch *scr
     noh_inertia_begin_floats(c->float_count, scratch->float_captured[0], scratch->float_captured[1],
                              scratch->float_captured[2], scratch->float_captured[3], before_s,
                              (noh_inertia_float *)(void *)(base + c->inertia_floats_offset));
+    noh_keep_sound((float *)(void *)(base + c->inertia_offset), 12u * (size_t)c->joint_count + 2u * c->float_count);
     c->inertia_start = c->clock;
     c->inertia_ticks = duration_ticks;
 }
