@@ -652,8 +652,8 @@ static void marks_units_and_numbers(void **state)
 }
 
 /* As C libraries spell them; a comma may begin a line. */
-#define UV_LAYER(number, name, values)                                                                           \
-    "\t\tLayerElementUV: " number " {\n\t\t\tName: \"" name "\"\n\t\t\tMappingInformationType: \"ByPolygonVertex\"\n"   \
+#define UV_LAYER(number, name, values)                                                                                \
+    "\t\tLayerElementUV: " number " {\n\t\t\tName: \"" name "\"\n\t\t\tMappingInformationType: \"ByPolygonVertex\"\n" \
     "\t\t\tReferenceInformationType: \"Direct\"\n\t\t\tUV: *6 {\n\t\t\t\ta: " values "\n\t\t\t}\n\t\t}\n"
 
 /* A picture names its set of texture coordinates; a build may keep others. */
@@ -675,6 +675,10 @@ static void each_picture_has_its_texture_coordinates(void **state)
     assert_near((double)m->meshes[0].uv[0], 0.5);
     assert_near((double)m->meshes[0].uv[1], 0.75);
     assert_true(has_warning(m, "has 2 sets of texture coordinates"));
+    model_free(m);
+    if (fbx_read(test_path("a.fbx"), &keep, &m, &error)) fail_msg("refused: %s", error.what);
+    assert_near((double)m->meshes[0].uv[1], 0.75);
+    assert_near((double)m->meshes[0].extra[NOH_EXTRAS_MAX * 4], 1.0); /* the other set */
     model_free(m);
     memcpy(strstr(text, "\"\", \"light\""), "\"\", \"atlas\"", 11);
     test_write_file(test_path("a.fbx"), text, strlen(text));
@@ -790,7 +794,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(losses_are_warned_of),
     cmocka_unit_test(marks_units_and_numbers),
     cmocka_unit_test(each_picture_has_its_texture_coordinates),
-        cmocka_unit_test(words_in_place_of_numbers_are_zero),
+    cmocka_unit_test(words_in_place_of_numbers_are_zero),
     cmocka_unit_test(damaged_files_are_refused),
     cmocka_unit_test(mutations_never_crash),
 };

@@ -79,10 +79,22 @@ size_t uv_layers::of_material(job &j, size_t model, size_t material) const
 {
     const std::vector<size_t> materials = j.in.below(model, "Material", nullptr);
     if (all.size() < 2 || material >= materials.size()) return 0;
-    const std::string wanted = uv_layer_of(j, materials[material], model);
-    for (size_t i = 0; i < all.size(); ++i)
-        if (all[i].name == wanted) return i;
-    return 0;
+    size_t found = none;
+    for (const std::string &wanted : uv_layers_of(j, materials[material], model))
+        for (size_t i = 0; i < all.size(); ++i) {
+            if (all[i].name != wanted) continue;
+            if (found != none && found != i)
+                j.in.warn(place_of(j.in, materials[material]),
+                          " has pictures on different sets of texture coordinates, and all use '" + all[found].name +
+                              "': put them on one set");
+            if (found == none) found = i;
+        }
+    return found == none ? 0 : found;
+}
+
+size_t uv_layers::further(size_t n, size_t shown) const
+{
+    return n <= shown ? n - 1 : n;
 }
 
 void uv_layers::fill(size_t layer, size_t corner, size_t point, size_t polygon, float uv[2]) const
@@ -110,7 +122,7 @@ uv_layers read_uvs(job &j, size_t geometry)
         j.in.warn(place_of(j.in, geometry),
                   " has " + std::to_string(out.all.size()) +
                       " sets of texture coordinates, and only what its pictures use is kept; --attributes "
-                      "TEXCOORD_1 keeps the second");
+                      "TEXCOORD_1 keeps the next");
     return out;
 }
 

@@ -111,11 +111,13 @@ struct uv_layer {
 };
 struct uv_layers {
     std::vector<uv_layer> all;
-    std::vector<size_t> kept; /* what the build keeps as TEXCOORD_n, n their places */
+    std::vector<size_t> kept; /* n of each TEXCOORD_n that the build keeps, from 1 on */
 
     bool has(size_t layer) const;
     /* The layer that the picture of a node's material uses. */
     size_t of_material(job &j, size_t model, size_t material) const;
+    /* The layer that is TEXCOORD_n where TEXCOORD_0 is the layer `shown`: the others follow in the file's order. */
+    size_t further(size_t n, size_t shown) const;
     /* As glTF has them: from the top of the picture. Left as they are where the layer has none. */
     void fill(size_t layer, size_t corner, size_t point, size_t polygon, float uv[2]) const;
 };
@@ -150,8 +152,8 @@ bool read_skin(job &j, size_t geometry, size_t model, size_t point_count, skin &
 /* --- fbx_material.cpp, fbx_picture.cpp --- */
 /* The material of a node's place, or -1. */
 int material_of(job &j, size_t material, size_t model);
-/* The name of the texture coordinates that the picture of its colours uses; empty: the first. */
-std::string uv_layer_of(job &j, size_t material, size_t model);
+/* The names of the texture coordinates of its pictures, of its colours' first; empty: the first layer. */
+std::vector<std::string> uv_layers_of(job &j, size_t material, size_t model);
 /* The texture of an object, or -1. */
 int texture_of(job &j, size_t texture);
 /* What it is a picture of, for comparison; "" if there is none. */

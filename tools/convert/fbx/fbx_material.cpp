@@ -192,19 +192,22 @@ static size_t texture_of_node(const scene &s, size_t material, size_t model)
     return textures.empty() ? none : textures[std::min(place, textures.size() - 1)];
 }
 
-std::string uv_layer_of(job &j, size_t material, size_t model)
+std::vector<std::string> uv_layers_of(job &j, size_t material, size_t model)
 {
-    const std::vector<value> *name = nullptr;
-    size_t picture = none;
-    for (const link &l : j.in.objects[material].below) {
-        use u;
-        if (j.in.objects[l.other].kind != "Texture" || !use_of(l.property, &u)) continue;
-        if (picture == none || u == USE_COLOR) picture = l.other;
-        if (u == USE_COLOR) break;
-    }
-    if (picture == none) picture = texture_of_node(j.in, material, model);
-    if (picture != none) name = j.in.property(picture, "UVSet");
-    return name && !name->empty() ? text_of((*name)[0]) : "";
+    std::vector<std::string> out;
+    const auto add = [&](size_t picture) {
+        const std::vector<value> *name = j.in.property(picture, "UVSet");
+        if (name && !name->empty()) out.push_back(text_of((*name)[0]));
+    };
+    const size_t of_node = texture_of_node(j.in, material, model);
+    for (int colors = 1; colors >= 0; --colors)
+        for (const link &l : j.in.objects[material].below) {
+            use u;
+            if (j.in.objects[l.other].kind == "Texture" && use_of(l.property, &u) && (u == USE_COLOR) == (colors == 1))
+                add(l.other);
+        }
+    if (out.empty() && of_node != none) add(of_node);
+    return out;
 }
 
 int material_of(job &j, size_t material, size_t model)

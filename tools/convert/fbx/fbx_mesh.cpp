@@ -78,7 +78,8 @@ static void fill_corner(const mesh_job &m, size_t uvs, size_t place, uint32_t po
         for (int k = 0; k < 3; ++k) out.normal[k] = static_cast<float>(length > 0.0 ? sign * turned[k] / length : 0.0);
     }
     m.uvs.fill(uvs, place, point, polygon, out.uv);
-    for (size_t k = 0; k < m.uvs.kept.size(); ++k) m.uvs.fill(m.uvs.kept[k], place, point, polygon, out.more[k]);
+    for (size_t k = 0; k < m.uvs.kept.size(); ++k)
+        m.uvs.fill(m.uvs.further(m.uvs.kept[k], uvs), place, point, polygon, out.more[k]);
     for (size_t k = 0; color && k < 4; ++k) out.color[k] = static_cast<float>(std::min(std::max(color[k], 0.0), 1.0));
     if (m.has_colors && !color) std::fill_n(out.color, 4, 1.0f);
 }
