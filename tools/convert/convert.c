@@ -350,11 +350,21 @@ static int read_all(const char *const *inputs, int count, const convert_options 
     return 0;
 }
 
+static void mark_given(model *m, const char *assignment)
+{
+    const size_t length = (size_t)(strrchr(assignment, '=') - assignment);
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        const char *name = m->materials[i].name;
+        if (strlen(name) == length && memcmp(name, assignment, length) == 0) m->materials[i].surface_given = 1;
+    }
+}
+
 /* The kinds of materials, the size, and shapes that follow from meshes. */
 static int make_surfaces(const convert_options *options, source *s, model_error *error)
 {
     for (uint32_t i = 0; i < options->surface_count; i++) {
         if (surface_kind_assign(s->m, options->surfaces[i], error)) return 1;
+        mark_given(s->m, options->surfaces[i]);
     }
     for (uint32_t i = 0; i < options->tint_count; i++) {
         if (tint_assign(s->m, options->tints[i], error)) return 1;
@@ -364,7 +374,8 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     }
     if (options->only == CONVERT_CLIPS) return 0;
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
-    if (teeth_paint(s->m) || eye_paint(s->m) || lash_strips_hide(s->m)) return out_of_memory(error);
+    if (teeth_paint(s->m)) return out_of_memory(error);
+    if (!options->keep_looks && (eye_paint(s->m) || lash_strips_hide(s->m))) return out_of_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }

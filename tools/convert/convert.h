@@ -43,6 +43,7 @@ typedef struct convert_options {
     uint32_t spring_line_count;
     terrain_options ground; /* of the terrain */
     int choose_levels;      /* 1: LOD levels of a face by choices.h; lod has none then */
+    int keep_looks;         /* 1: eyes, faces and lashes of one colour stay (model/eye_paint.h) */
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */

@@ -106,16 +106,146 @@ static void other_eyes_stay(void **state)
     }
 }
 
-/* What is grey around eyes that were painted becomes skin, unless its name says another thing, or it has a colour. */
+static void add_node(model *m, double x, int is_turned)
+{
+    static const double turned[12] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0 }; /* -90 degrees about x */
+    model_node *nodes = test_zeros((m->node_count + 1u) * sizeof *nodes), *node = &nodes[m->node_count];
+    if (m->node_count) memcpy(nodes, m->nodes, m->node_count * sizeof *nodes);
+    free(m->nodes);
+    m->nodes = nodes;
+    m->node_count++;
+    node->parent = node->skin = MODEL_NONE;
+    node->world[0] = node->world[5] = node->world[10] = node->world[15] = 1.0;
+    if (is_turned) memcpy(node->world, turned, sizeof turned);
+    node->world[12] = x;
+}
+
+/* z is up in the mesh: a node, or a joint, turns it. The iris is where the world's +z is. */
+static void turned_eyes_look_ahead(void **state)
+{
+    (void)state;
+    for (int skinned = 0; skinned < 2; skinned++) {
+        model *m = eyes_of(0.062f);
+        model_mesh *mesh = m->meshes;
+        for (float *p = mesh->position; p < mesh->position + 6u * BALL; p += 3) {
+            const float y = p[1];
+            p[1] = -p[2];
+            p[2] = y;
+        }
+        add_node(m, 0.0, 1);
+        if (skinned) {
+            m->skins = test_zeros(sizeof *m->skins);
+            m->skin_count = m->skins->joint_count = 1;
+            m->skins->joints = test_zeros(sizeof *m->skins->joints);
+            m->skins->inverse_bind = test_zeros(16 * sizeof(float));
+            for (int i = 0; i < 16; i += 5) m->skins->inverse_bind[i] = 1.0f;
+            mesh->joints = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joints);
+            mesh->joint_weights = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joint_weights);
+            add_node(m, 0.0, 0);
+            m->nodes[1].skin = 0;
+            m->nodes[0].mesh = MODEL_NONE;
+            m->nodes[1].mesh = 0;
+        }
+        assert_int_equal(eye_paint(m), 0);
+        assert_int_equal(m->texture_count, 1);
+        for (uint32_t v = 0; v < 2u * BALL; v++) {
+            const float *uv = mesh->uv + 2u * v;
+            const uint8_t green = green_at(m, uv[0] * 0.999f, uv[1] * 0.999f);
+            assert_true(v % BALL / SIDES == 0 ? green < 40 : v % BALL / SIDES < 3 || green > 200);
+        }
+        model_free(m);
+    }
+}
+
+/* One ball that two nodes draw side by side is a pair; far apart, or when one is turned, it is none. */
+static void nodes_pair_eyes(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) {
+        model *m = eyes_of(0.0f);
+        add_node(m, kind == 1 ? -1.0 : -0.031, 0);
+        add_node(m, 0.031, kind == 2);
+        assert_int_equal(eye_paint(m), 0);
+        assert_int_equal(m->texture_count, kind == 0);
+        assert_int_equal(m->materials[0].base_color_texture, kind == 0 ? 0 : MODEL_NONE);
+        model_free(m);
+    }
+}
+
+/* A disc of another material before each pupil. */
+static void eyes_with_an_iris_stay(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 4; kind++) {
+        model *m = eyes_of(0.062f);
+        model_mesh *mesh = m->meshes;
+        model_material *materials = test_zeros(2 * sizeof *materials);
+        model_submesh *parts = test_zeros(2 * sizeof *parts);
+        float *position = test_zeros(3u * (2u * BALL + 6u) * sizeof *position);
+        materials[0] = m->materials[0];
+        materials[1] = model_material_default();
+        materials[1].name = model_string("Iris");
+        materials[1].surface = kind == 1 ? NOH_SURFACE_PLAIN : NOH_SURFACE_EYE;
+        materials[1].alpha = kind == 2 ? MODEL_ALPHA_BLEND : MODEL_ALPHA_OPAQUE;
+        parts[0] = mesh->submeshes[0];
+        parts[1].material = 1;
+        parts[1].first_vertex = 2u * BALL;
+        parts[1].vertex_count = 6;
+        memcpy(position, mesh->position, 6u * BALL * sizeof *position);
+        for (uint32_t i = 0; i < 6; i++) {
+            float *p = position + 6u * BALL + 3u * i;
+            p[0] = i < 3 ? -0.031f : 0.031f;
+            p[1] = 1.6f;
+            p[2] = 0.1f + (kind == 3 ? 1.5f : 1.1f) * RADIUS;
+        }
+        free(mesh->position);
+        free(mesh->uv);
+        free(mesh->submeshes);
+        free(m->materials);
+        mesh->position = position;
+        mesh->uv = test_zeros(2u * (2u * BALL + 6u) * sizeof *mesh->uv);
+        mesh->vertex_count += 6u;
+        mesh->submeshes = parts;
+        m->materials = materials;
+        mesh->submesh_count = m->material_count = 2;
+        assert_int_equal(eye_paint(m), 0);
+        assert_int_equal(m->texture_count, kind != 0);
+        model_free(m);
+    }
+}
+
+/* A mesh of three vertices of one grey, and the second material. */
+static void add_part(model *m, float grey)
+{
+    model_mesh *meshes = test_zeros(2 * sizeof *meshes), *mesh = &meshes[1];
+    meshes[0] = m->meshes[0];
+    free(m->meshes);
+    m->meshes = meshes;
+    m->mesh_count = 2;
+    mesh->name = model_string("face");
+    mesh->vertex_count = 3;
+    mesh->position = test_zeros(9 * sizeof *mesh->position);
+    mesh->color = test_zeros(12 * sizeof *mesh->color);
+    for (int i = 0; i < 12; i++) mesh->color[i] = i % 3 ? 1.0f : grey;
+    mesh->submeshes = test_zeros(sizeof *mesh->submeshes);
+    mesh->submesh_count = 1;
+    mesh->submeshes->material = 1;
+    mesh->submeshes->vertex_count = 3;
+}
+
+/* What is grey around eyes that were painted becomes skin, unless its name says another thing, it has a colour, or its
+ * surface is given. */
 static void grey_faces_become_skin(void **state)
 {
     static const struct {
         const char *name;
         float red;
-        int has_texture, is_skin;
-    } cases[] = { { "M_Face", 0.6f, 0, 1 },       { "M_BackHead", 0.6f, 0, 1 }, { "Kopf", 0.8f, 0, 1 },
-                  { "M_Shirt", 0.6f, 0, 0 },      { "M_Face", 0.9f, 0, 0 },     { "M_Face", 0.6f, 1, 0 },
-                  { "Headband hair", 0.6f, 0, 0 } };
+        int has_texture, is_skin, is_given, has_colors;
+    } cases[] = { { "M_Face", 0.6f, 0, 0, 1, 0 },     { "M_Face", 0.6f, 0, 0, 0, 1 },
+                  { "M_Face", 0.6f, 0, 1, 0, 2 },     { "M_Face", 0.6f, 0, 1, 0, 0 },
+                  { "M_BackHead", 0.6f, 0, 1, 0, 0 }, { "Kopf", 0.8f, 0, 1, 0, 0 },
+                  { "M_Shirt", 0.6f, 0, 0, 0, 0 },    { "M_Face", 0.9f, 0, 0, 0, 0 },
+                  { "M_Face", 0.6f, 1, 0, 0, 0 },     { "Headband hair", 0.6f, 0, 0, 0, 0 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         model *m = eyes_of(0.062f);
@@ -129,6 +259,8 @@ static void grey_faces_become_skin(void **state)
         free(m->materials);
         m->materials = materials;
         m->material_count = 2;
+        face->surface_given = (uint8_t)cases[i].is_given;
+        if (cases[i].has_colors) add_part(m, cases[i].has_colors == 1 ? 0.5f : 1.0f);
         if (cases[i].has_texture) {
             m->textures = test_zeros(sizeof *m->textures);
             m->texture_count = 1;
@@ -141,18 +273,27 @@ static void grey_faces_become_skin(void **state)
     }
 }
 
-/* A strip of 32 triangles is hidden; as 32 lashes it stays. */
+/* Strips of 32 triangles are hidden; 32 lashes stay, 20 of 32 triangles each, and what has a given surface. */
 static void slabs_of_lashes_are_hidden(void **state)
 {
+    static const struct {
+        uint32_t pieces, triangles;
+        int is_given, is_hidden;
+    } cases[] = { { 1, 32, 0, 1 }, { 8, 32, 0, 1 }, { 32, 1, 0, 0 }, { 20, 32, 0, 0 }, { 1, 32, 1, 0 } };
     (void)state;
-    for (uint32_t apart = 0; apart < 2; apart++) {
-        model *m = model_of("Std_Eyelash", NOH_SURFACE_PLAIN, 96, 96);
-        for (uint32_t i = 0; i < 96; i++) m->meshes[0].indices[i] = apart ? i : i / 3u + i % 3u;
-        m->meshes[0].submeshes[0].vertex_count = apart ? 96 : 34;
-        m->meshes[0].submeshes[0].index_count = m->meshes[0].index_count = 96;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        const uint32_t of_piece = cases[i].triangles + 2u, vertices = cases[i].pieces * of_piece;
+        const uint32_t triangles = cases[i].pieces * cases[i].triangles;
+        model *m = model_of("Std_Eyelash", NOH_SURFACE_PLAIN, vertices, 3u * triangles);
+        for (uint32_t t = 0; t < 3u * triangles; t++) {
+            const uint32_t triangle = t / 3u;
+            m->meshes[0].indices[t] = triangle / cases[i].triangles * of_piece + triangle % cases[i].triangles + t % 3u;
+        }
+        m->meshes[0].submeshes[0].index_count = m->meshes[0].index_count = 3u * triangles;
+        m->materials[0].surface_given = (uint8_t)cases[i].is_given;
         assert_int_equal(lash_strips_hide(m), 0);
-        assert_int_equal(m->materials[0].alpha, apart ? MODEL_ALPHA_OPAQUE : MODEL_ALPHA_BLEND);
-        assert_true(m->materials[0].base_color[3] == (apart ? 1.0f : 0.0f));
+        assert_int_equal(m->materials[0].alpha, cases[i].is_hidden ? MODEL_ALPHA_BLEND : MODEL_ALPHA_OPAQUE);
+        assert_true(m->materials[0].base_color[3] == (cases[i].is_hidden ? 0.0f : 1.0f));
         model_free(m);
     }
 }
@@ -160,9 +301,9 @@ static void slabs_of_lashes_are_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blank_eyes_get_an_iris),
-        cmocka_unit_test(other_eyes_stay),
-        cmocka_unit_test(grey_faces_become_skin),
+        cmocka_unit_test(blank_eyes_get_an_iris),     cmocka_unit_test(other_eyes_stay),
+        cmocka_unit_test(turned_eyes_look_ahead),     cmocka_unit_test(nodes_pair_eyes),
+        cmocka_unit_test(eyes_with_an_iris_stay),     cmocka_unit_test(grey_faces_become_skin),
         cmocka_unit_test(slabs_of_lashes_are_hidden),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -546,6 +546,7 @@ static toon_maps read_surface(file &f, size_t index, model_material &out, const 
             leave_out(f, where, ": the extra 'surface' must be plain, skin, eye, teeth, hair or toon, and was ignored");
         else
             kind = named;
+        out.surface_given = named != MODEL_NONE;
     }
     const bool is_named = m.extras.IsObject() && m.extras.Has("surface");
     const toon_maps toon = is_named && kind != NOH_SURFACE_TOON ? toon_maps() : read_toon(f, index, where, out);

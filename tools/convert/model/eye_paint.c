@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/affine.h"
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
@@ -22,17 +23,79 @@
 #define WET 0.1f
 #define GREY_HUE 0.02f
 #define SKIN_ROUGHNESS 0.5f
+#define SAME_WAY 0.9        /* cosine of the angle between gazes of one mesh that several nodes draw */
+#define IRIS_REACH 1.3      /* an iris of its own is within this reach of the ball's centre, in radii */
 #define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
+#define STRIPS_MAX 8u       /* of a part: more are modelled lashes */
 
+/* Balls in the world's space. */
 typedef struct balls {
     eye_sphere spheres[BALLS_MAX];
     uint32_t materials[BALLS_MAX];
     uint32_t count;
 } balls;
 
-/* A ball of a plain eye's material: vertices[count] of the mesh. */
-typedef void ball_visit(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
-                        uint32_t count, balls *b);
+/* A ball of a plain eye's material, in the mesh's space. */
+typedef struct ball {
+    uint32_t mesh, material, count;
+    const uint32_t *vertices; /* [count] */
+    eye_sphere sphere;
+    double right[3], up[3], gaze[3]; /* unit; where the world's x, y and z are */
+} ball;
+
+typedef void ball_visit(model *m, const ball *eye, balls *b);
+
+/* ---- where nodes and joints put a mesh, in the rest pose ---- */
+
+static void place(const model *m, const model_mesh *mesh, const model_node *node, uint32_t vertex, double out[16])
+{
+    const model_skin *skin = node->skin < m->skin_count && mesh->joints ? &m->skins[node->skin] : NULL;
+    const uint32_t joint = skin ? mesh->joints[(size_t)vertex * MODEL_INFLUENCES_MAX] : 0u;
+    if (skin && joint < skin->joint_count) {
+        double bind[16];
+        affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
+        affine_multiply(m->nodes[skin->joints[joint]].world, bind, out);
+    } else {
+        memcpy(out, node->world, sizeof node->world);
+    }
+}
+
+/* For each node that draws the mesh, what moves the vertex to the world; at least one. */
+static uint32_t places_of(const model *m, uint32_t mesh, uint32_t vertex, double out[BALLS_MAX][16])
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < m->node_count && count < BALLS_MAX; i++) {
+        if (m->nodes[i].mesh == mesh) place(m, &m->meshes[mesh], &m->nodes[i], vertex, out[count++]);
+    }
+    if (count == 0) affine_identity(out[count++]);
+    return count;
+}
+
+static void move(const double world[16], const double at[3], double out[3])
+{
+    for (int r = 0; r < 3; r++) {
+        out[r] = world[r] * at[0] + world[4 + r] * at[1] + world[8 + r] * at[2] + world[12 + r];
+    }
+}
+
+/* 0: nodes turn the mesh differently, or make it flat. */
+static int find_gaze(const model *m, ball *eye)
+{
+    double places[BALLS_MAX][16];
+    const uint32_t count = places_of(m, eye->mesh, eye->vertices[0], places);
+    for (uint32_t i = count; i-- > 0;) {
+        double before[3];
+        memcpy(before, eye->gaze, sizeof before);
+        for (int c = 0; c < 3; c++) {
+            eye->right[c] = places[i][4 * c];
+            eye->gaze[c] = places[i][4 * c + 2];
+        }
+        if (!vec_normalize(eye->gaze) || (i + 1u < count && vec_dot(before, eye->gaze) < SAME_WAY)) return 0;
+    }
+    vec_reject(eye->right, eye->gaze);
+    vec_cross(eye->gaze, eye->right, eye->up);
+    return vec_normalize(eye->right) && vec_normalize(eye->up);
+}
 
 /* ---- which eyes ---- */
 
@@ -63,30 +126,34 @@ static int is_plain(const model *m, const model_mesh *mesh, const model_submesh 
 }
 
 /* The vertices lie on a sphere, and on its front, too. */
-static int is_ball(const model_mesh *mesh, const uint32_t *vertices, uint32_t count, eye_sphere *sphere)
+static int is_ball(const model *m, ball *eye)
 {
+    const float *position = m->meshes[eye->mesh].position;
     double front = 0.0;
-    if (count < BALL_VERTICES_MIN || eye_sphere_fit(mesh->position, vertices, count, sphere) ||
-        sphere->residual > BALL_RESIDUAL_MAX) {
+    if (eye->count < BALL_VERTICES_MIN || eye_sphere_fit(position, eye->vertices, eye->count, &eye->sphere) ||
+        eye->sphere.residual > BALL_RESIDUAL_MAX || !find_gaze(m, eye)) {
         return 0;
     }
-    for (uint32_t i = 0; i < count; i++) {
-        front = fmax(front, (double)mesh->position[3 * (size_t)vertices[i] + 2] - sphere->centre[2]);
+    for (uint32_t i = 0; i < eye->count; i++) {
+        double way[3];
+        for (size_t c = 0; c < 3; c++) {
+            way[c] = (double)position[3 * (size_t)eye->vertices[i] + c] - eye->sphere.centre[c];
+        }
+        front = fmax(front, vec_dot(way, eye->gaze));
     }
-    return front > 0.8 * sphere->radius;
+    return front > 0.8 * eye->sphere.radius;
 }
 
 static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, uint32_t *room,
                        ball_visit *visit, balls *b)
 {
     for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
-        uint32_t count = 0;
-        eye_sphere sphere;
+        ball eye = { .mesh = mesh, .material = part->material, .vertices = room };
         if (island[v] != v) continue;
         for (uint32_t w = v; w < part->first_vertex + part->vertex_count; w++) {
-            if (island[w] == v) room[count++] = w;
+            if (island[w] == v) room[eye.count++] = w;
         }
-        if (is_ball(&m->meshes[mesh], room, count, &sphere)) visit(m, mesh, part->material, &sphere, room, count, b);
+        if (is_ball(m, &eye)) visit(m, &eye, b);
     }
 }
 
@@ -113,13 +180,51 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
     return 0;
 }
 
-static void collect(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
-                    uint32_t count, balls *b)
+/* Whether the mesh has a vertex of the part near the centre. */
+static int is_near(const model *m, uint32_t mesh, const model_submesh *part, const eye_sphere *sphere)
 {
-    (void)m, (void)mesh, (void)vertices, (void)count;
-    if (b->count == BALLS_MAX) return;
-    b->materials[b->count] = material;
-    b->spheres[b->count++] = *sphere;
+    double places[BALLS_MAX][16];
+    const uint32_t count = part->vertex_count ? places_of(m, mesh, part->first_vertex, places) : 0u;
+    for (uint32_t i = 0; i < count * part->vertex_count; i++) {
+        const float *p = m->meshes[mesh].position + 3 * (size_t)(part->first_vertex + i / count);
+        const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
+        double way[3];
+        move(places[i % count], at, way);
+        for (int c = 0; c < 3; c++) way[c] -= sphere->centre[c];
+        if (vec_dot(way, way) < pow(IRIS_REACH * sphere->radius, 2.0)) return 1;
+    }
+    return 0;
+}
+
+/* Whether an opaque iris, pupil or cornea of another material is at the ball. */
+static int has_iris(const model *m, uint32_t material, const eye_sphere *sphere)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
+            const model_submesh *part = &m->meshes[i].submeshes[s];
+            const model_material *other = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
+            if (other && part->material != material && other->surface == NOH_SURFACE_EYE &&
+                other->alpha == MODEL_ALPHA_OPAQUE && is_near(m, i, part, sphere)) {
+                return 1;
+            }
+        }
+    }
+    return 0;
+}
+
+static void collect(model *m, const ball *eye, balls *b)
+{
+    double places[BALLS_MAX][16];
+    const uint32_t count = places_of(m, eye->mesh, eye->vertices[0], places);
+    for (uint32_t i = 0; i < count && b->count < BALLS_MAX; i++) {
+        eye_sphere at = eye->sphere;
+        const double *w = places[i];
+        move(w, eye->sphere.centre, at.centre);
+        at.radius *= sqrt(w[2] * w[2] + w[6] * w[6] + w[10] * w[10]);
+        if (has_iris(m, eye->material, &at)) continue;
+        b->materials[b->count] = eye->material;
+        b->spheres[b->count++] = at;
+    }
 }
 
 /* ---- the picture ---- */
@@ -217,20 +322,21 @@ static int is_painted(const balls *b, uint32_t material)
 }
 
 /* Areas of the ball are areas of the picture (Lambert's azimuthal projection about the gaze). */
-static void project(model *m, uint32_t mesh, uint32_t material, const eye_sphere *sphere, const uint32_t *vertices,
-                    uint32_t count, balls *b)
+static void project(model *m, const ball *eye, balls *b)
 {
-    for (uint32_t i = 0; is_painted(b, material) && i < count; i++) {
-        const float *p = m->meshes[mesh].position + 3 * (size_t)vertices[i];
-        float *uv = m->meshes[mesh].uv + 2 * (size_t)vertices[i];
-        double way[3], beside, radius;
-        for (int c = 0; c < 3; c++) way[c] = (double)p[c] - sphere->centre[c];
+    for (uint32_t i = 0; is_painted(b, eye->material) && i < eye->count; i++) {
+        const float *p = m->meshes[eye->mesh].position + 3 * (size_t)eye->vertices[i];
+        float *uv = m->meshes[eye->mesh].uv + 2 * (size_t)eye->vertices[i];
+        double way[3], x, y, beside, radius;
+        for (int c = 0; c < 3; c++) way[c] = (double)p[c] - eye->sphere.centre[c];
         if (!vec_normalize(way)) continue;
-        beside = sqrt(way[0] * way[0] + way[1] * way[1]);
-        radius = sqrt(fmax(1.0 - way[2], 0.0) / (double)REACH);
+        x = vec_dot(way, eye->right);
+        y = vec_dot(way, eye->up);
+        beside = sqrt(x * x + y * y);
+        radius = sqrt(fmax(1.0 - vec_dot(way, eye->gaze), 0.0) / (double)REACH);
         radius = 0.5 * (radius < 1.0 ? radius : 1.0);
-        uv[0] = (float)(0.5 + (beside > 0.0 ? radius * way[0] / beside : 0.0));
-        uv[1] = (float)(0.5 - (beside > 0.0 ? radius * way[1] / beside : 0.0));
+        uv[0] = (float)(0.5 + (beside > 0.0 ? radius * x / beside : 0.0));
+        uv[1] = (float)(0.5 - (beside > 0.0 ? radius * y / beside : 0.0));
     }
 }
 
@@ -270,8 +376,19 @@ static int finish(model *m, const balls *b)
 static int is_grey(const model_material *m)
 {
     const float *c = m->base_color, least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
-    return m->surface == NOH_SURFACE_PLAIN && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE && m->metallic < 0.5f &&
-           most - least < GREY_HUE && least > PALE_MIN;
+    return m->surface == NOH_SURFACE_PLAIN && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE &&
+           m->metallic < 0.5f && most - least < GREY_HUE && least > PALE_MIN;
+}
+
+static int has_white_parts(const model *m, uint32_t material)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
+            const model_submesh *part = &m->meshes[i].submeshes[s];
+            if (part->material == material && !is_white(&m->meshes[i], part)) return 0;
+        }
+    }
+    return 1;
 }
 
 static int make_skin(model *m)
@@ -280,14 +397,14 @@ static int make_skin(model *m)
     int failed = 0;
     for (uint32_t i = 0; i < m->material_count && !failed; i++) {
         model_material *bare = &m->materials[i];
-        if (!is_grey(bare) || !surface_is_bare(bare->name)) continue;
+        if (!is_grey(bare) || !surface_is_bare(bare->name) || !has_white_parts(m, i)) continue;
         memcpy(bare->base_color, skin, sizeof skin);
         surface_kind_set(bare, NOH_SURFACE_SKIN);
         bare->roughness = SKIN_ROUGHNESS;
         failed = model_warn(m,
-                            "material '%s': a grey face with living eyes looks like plaster, so it became skin; "
-                            "rename the material to keep the grey",
-                            bare->name);
+                            "material '%s': a grey face with living eyes looks like plaster, so it became skin "
+                            "(--surface '%s=plain' keeps it)",
+                            bare->name, bare->name);
     }
     return failed;
 }
@@ -321,7 +438,7 @@ static int is_strip(const model_mesh *mesh, const model_submesh *part, uint32_t 
         joined[first_of(joined, indices[i])] = first_of(joined, indices[i / 3u * 3u]);
     }
     for (uint32_t v = part->first_vertex; v < end; v++) pieces += joined[v] == v;
-    return is_white(mesh, part) && part->index_count / 3u >= STRIP_TRIANGLES * pieces;
+    return is_white(mesh, part) && pieces <= STRIPS_MAX && part->index_count / 3u >= STRIP_TRIANGLES * pieces;
 }
 
 /* 1 if all that the material is on are strips, -1 when out of memory. */
@@ -351,7 +468,7 @@ int lash_strips_hide(model *m)
     for (uint32_t i = 0; i < m->material_count; i++) {
         model_material *lashes = &m->materials[i];
         int hidden;
-        if (lashes->alpha != MODEL_ALPHA_OPAQUE || lashes->base_color_texture != MODEL_NONE ||
+        if (lashes->surface_given || lashes->alpha != MODEL_ALPHA_OPAQUE || lashes->base_color_texture != MODEL_NONE ||
             !surface_is_lashes(lashes->name))
             continue;
         hidden = on_strips(m, i);
@@ -359,9 +476,9 @@ int lash_strips_hide(model *m)
         if (!hidden) continue;
         surface_hide(lashes);
         if (model_warn(m,
-                       "material '%s': lashes without a picture would be a slab, so they are left out; rename the "
-                       "material to keep them",
-                       lashes->name))
+                       "material '%s': lashes without a picture would be a slab, so they are left out (--surface "
+                       "'%s=plain' keeps them)",
+                       lashes->name, lashes->name))
             return 1;
     }
     return 0;

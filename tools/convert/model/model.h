@@ -70,6 +70,7 @@ typedef struct model_material {
     uint32_t wrinkle_models; /* NOH_WRINKLE_BY_* */
     uint8_t wrinkle_codes;   /* 1: more_textures[0] is a mask (NOH_MATERIAL_WRINKLE_CODES) */
     uint32_t surface;        /* NOH_SURFACE_* of format.h */
+    uint8_t surface_given;   /* 1: by --surface or the file's extras, so that no guess changes its looks */
     float surface_values[4], surface_more[6];
     uint8_t toon_shade, outline_lit; /* NOH_MATERIAL_TOON_SHADE, NOH_MATERIAL_OUTLINE_LIT */
     uint32_t specular_texture;       /* index into textures or MODEL_NONE */

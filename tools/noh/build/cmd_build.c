@@ -405,6 +405,7 @@ static int set_options(const build_args *a, convert_options *o)
         const unsigned lips = a->face.lips || o->only == CONVERT_CLIPS ? 0u : CHOICE_LIPS;
         o->source.choices = (a->face.eyes ? 0u : CHOICE_EYES) | lips;
     }
+    o->keep_looks = a->plain;
     o->choose_levels = !a->plain && !a->lod.levels;
     o->no_correctives = a->face.no_correctives;
     o->names = a->face.names;
@@ -477,7 +478,7 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, plain),
       .what =
-          "choose none of the following for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins. Teeth of one colour get gums with --plain, too" },
+          "choose none of the following for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins. Blank eyes, grey faces and lashes stay as they are with --plain; teeth of one colour get gums all the same" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--warnings",
       .kind = OPTION_FLAG,
