@@ -74,6 +74,33 @@ check 'tint, too' grep -q "the extra 'tint' must be true or false" "$work/out"
 noh info "$work/extras.noh"
 check 'and the name counts' grep -q "material 'skin': skin" "$work/out"
 
+# Blank eyes and a grey head: what a person says of them counts.
+printf 'newmtl Eyes\nKd 0.9 0.9 0.9\nnewmtl Head\nKd 0.8 0.8 0.8\n' >"$work/blank.mtl"
+awk 'BEGIN {
+    print "mtllib blank.mtl\nvt 0 0\nusemtl Eyes"
+    for (e = 0; e < 2; e++) for (i = 0; i < 12; i++) for (k = 0; k < 16; k++) {
+        d = 3.14159265 * (i + 0.1) / 11.2; a = 3.14159265 * k / 8
+        print "v", 0.012 * sin(d) * cos(a) + 0.062 * e - 0.031, 0.012 * sin(d) * sin(a) + 1.6, 0.012 * cos(d) + 0.1
+    }
+    for (v = 1; v <= 384; v++) if (v % 192 && v % 192 <= 176) {
+        n = v % 16 ? v + 1 : v - 15
+        print "f " v "/1 " v + 16 "/1 " n + 16 "/1 " n "/1"
+    }
+    print "v 0 0 0\nv 0.1 0 0\nv 0 1.7 0\nusemtl Head\nf 385/1 386/1 387/1"
+}' >"$work/blank.obj"
+# shellcheck disable=SC2086 # words
+for row in skin 'plain --surface Head=plain' 'plain --plain' 'skin --surface Head=skin'; do
+    set -- $row
+    head=$1
+    shift
+    noh build "$work/blank.obj" -o "$work/blank.noh" "$@"
+    expect 0 "build blank eyes $*"
+    check "irises: $row" test "$(grep -c 'iris was painted' "$work/out")" = "$(test "${1:-}" = --plain && echo 0 || echo 1)"
+    check "skin: $row" test "$(grep -c 'became skin' "$work/out")" = "$(test $# = 0 && echo 1 || echo 0)"
+    noh info "$work/blank.noh"
+    check "head: $row" grep -q "material 'Head': $head" "$work/out"
+done
+
 for name in named told; do
     noh render "$work/$name.noh" -o "$work/$name.png" --camera face --size 128x128
     expect 0 "render $name"
