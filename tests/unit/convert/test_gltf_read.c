@@ -1407,6 +1407,20 @@ static void damaged_vrm_is_ignored(void **state)
     }
 }
 
+/* No guess may change a surface that the file names; a word that names none is no surface. */
+static void extras_give_a_surface(void **state)
+{
+    scene *s = vrm_scene("\"VRMC_vrm\":{}");
+    (void)state;
+    APPEND(s->rest, "%s",
+           ",\"materials\":[{\"name\":\"skin\",\"extras\":{\"surface\":\"plain\"}},"
+           "{\"name\":\"face\",\"extras\":{\"surface\":\"wood\"}},{\"name\":\"head\",\"extras\":{\"tint\":false}}]");
+    model *m = load(s);
+    assert_int_equal(m->materials[0].surface, NOH_SURFACE_PLAIN);
+    assert_true(m->materials[0].surface_given && !m->materials[1].surface_given && !m->materials[2].surface_given);
+    model_free(m);
+}
+
 /* Tones, rim, outline and textures; the unlit material next to it is for readers that know no MToon. */
 static void mtoon_is_a_toon(void **state)
 {
@@ -2812,6 +2826,7 @@ int main(void)
         cmocka_unit_test(old_vrm_turns_round),
         cmocka_unit_test(damaged_vrm_is_ignored),
         cmocka_unit_test(factors_stay_within_0_and_1),
+        cmocka_unit_test(extras_give_a_surface),
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(large_images_are_counted_first),
