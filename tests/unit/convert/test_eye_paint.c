@@ -120,11 +120,11 @@ static void add_node(model *m, double x, int is_turned)
     node->world[12] = x;
 }
 
-/* z is up in the mesh: a node, or a joint, turns it. The iris is where the world's +z is. */
+/* z is up in the mesh: a node, or a joint, turns it; the joint may tilt the head by 17 degrees, too. The iris is where the world's +z is. */
 static void turned_eyes_look_ahead(void **state)
 {
     (void)state;
-    for (int skinned = 0; skinned < 2; skinned++) {
+    for (int skinned = 0; skinned < 3; skinned++) {
         model *m = eyes_of(0.062f);
         model_mesh *mesh = m->meshes;
         for (float *p = mesh->position; p < mesh->position + 6u * BALL; p += 3) {
@@ -142,6 +142,11 @@ static void turned_eyes_look_ahead(void **state)
             mesh->joints = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joints);
             mesh->joint_weights = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joint_weights);
             add_node(m, 0.0, 0);
+            for (int c = 0; skinned == 2 && c < 12; c += 4) {
+                double *w = m->nodes[0].world + c, x = w[0];
+                w[0] = 0.956 * x - 0.292 * w[1];
+                w[1] = 0.292 * x + 0.956 * w[1];
+            }
             m->nodes[1].skin = 0;
             m->nodes[0].mesh = MODEL_NONE;
             m->nodes[1].mesh = 0;

@@ -24,6 +24,7 @@
 #define GREY_HUE 0.02f
 #define SKIN_ROUGHNESS 0.5f
 #define SAME_WAY 0.9        /* cosine of the angle between gazes of one mesh that several nodes draw */
+#define UNTILTED 0.9999     /* cosine of the angle between an axis and where the rest pose puts it */
 #define IRIS_REACH 1.3      /* an iris of its own is within this reach of the ball's centre, in radii */
 #define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
 #define STRIPS_MAX 8u       /* of a part: more are modelled lashes */
@@ -47,6 +48,22 @@ typedef void ball_visit(model *m, const ball *eye, balls *b);
 
 /* ---- where nodes and joints put a mesh, in the rest pose ---- */
 
+/* The rest pose may tilt a head or turn an eye, the bind pose does not: leave the right angles between them. */
+static void untilt(double world[16])
+{
+    double out[16];
+    int is_tilted = 0;
+    affine_identity(out);
+    for (int r = 0; r < 3; r++) {
+        const double row[3] = { world[r], world[4 + r], world[8 + r] }, length = sqrt(vec_dot(row, row));
+        int most = 0;
+        for (int c = 1; c < 3; c++) most = fabs(row[c]) > fabs(row[most]) ? c : most;
+        for (int c = 0; c < 3; c++) out[4 * c + r] = c == most ? copysign(length, row[c]) : 0.0;
+        is_tilted |= fabs(row[most]) < UNTILTED * length;
+    }
+    if (is_tilted) memcpy(world, out, sizeof out);
+}
+
 static void place(const model *m, const model_mesh *mesh, const model_node *node, uint32_t vertex, double out[16])
 {
     const model_skin *skin = node->skin < m->skin_count && mesh->joints ? &m->skins[node->skin] : NULL;
@@ -55,6 +72,7 @@ static void place(const model *m, const model_mesh *mesh, const model_node *node
         double bind[16];
         affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
         affine_multiply(m->nodes[skin->joints[joint]].world, bind, out);
+        untilt(out);
     } else {
         memcpy(out, node->world, sizeof node->world);
     }
