@@ -350,21 +350,11 @@ static int read_all(const char *const *inputs, int count, const convert_options 
     return 0;
 }
 
-static void mark_given(model *m, const char *assignment)
-{
-    const size_t length = (size_t)(strrchr(assignment, '=') - assignment);
-    for (uint32_t i = 0; i < m->material_count; i++) {
-        const char *name = m->materials[i].name;
-        if (strlen(name) == length && memcmp(name, assignment, length) == 0) m->materials[i].surface_given = 1;
-    }
-}
-
 /* The kinds of materials, the size, and shapes that follow from meshes. */
 static int make_surfaces(const convert_options *options, source *s, model_error *error)
 {
     for (uint32_t i = 0; i < options->surface_count; i++) {
         if (surface_kind_assign(s->m, options->surfaces[i], error)) return 1;
-        mark_given(s->m, options->surfaces[i]);
     }
     for (uint32_t i = 0; i < options->tint_count; i++) {
         if (tint_assign(s->m, options->tints[i], error)) return 1;

@@ -64,6 +64,7 @@ static void names_tell_surfaces(void **state)
                   { "волосы", NOH_SURFACE_HAIR },
                   { "前髪", NOH_SURFACE_HAIR },
                   { "hairbrush", NOH_SURFACE_PLAIN },
+                  { "hair_blend", NOH_SURFACE_HAIR },
                   { "eyebrow hair", NOH_SURFACE_PLAIN },
                   { "", NOH_SURFACE_PLAIN },
                   { "\xff\xc3", NOH_SURFACE_PLAIN } };
@@ -118,6 +119,22 @@ static void strands_run_along_stripes(void **state)
     assert_true(hair.surface_values[0] == 0.0f && hair.surface_values[1] == 1.0f);
 }
 
+/* Each word has to belong to a bare part of the body. */
+static void parts_of_a_body_are_bare(void **state)
+{
+    static const char *const bare[] = { "Head", "head.001", "M_Face_L", "HeadLeft",   "Std_Neck 2",
+                                        "顔",   "顔_01",    "Gesicht",  "FemaleHead", "face (Instance)" };
+    static const char *const others[] = { "",          "M",         "head_scarf", "HeadLight", "Neck.Ring",
+                                          "headlight", "face_mask", "head hair",  "頭巾",      "lid_face" };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(bare); i++) {
+        if (!surface_is_bare(bare[i])) fail_msg("'%s' is not bare", bare[i]);
+    }
+    for (size_t i = 0; i < TEST_COUNT(others); i++) {
+        if (surface_is_bare(others[i])) fail_msg("'%s' is bare", others[i]);
+    }
+}
+
 static void vroid_draws_toons(void **state)
 {
     static const char *const names[] = { "N00_000_00_Body_00_SKIN (Instance)", "F00_000_00_EyeIris_00_EYE",
@@ -156,6 +173,20 @@ static model *model_of(const char *const *names, uint32_t count)
         m->materials[i].name = model_string(names[i]);
     }
     return m;
+}
+
+/* What an author says of a shell counts more than its name. */
+static void a_given_surface_keeps_a_shell(void **state)
+{
+    static const char *const names[] = { "Std_Tearline_R", "Std_Tearline_L" };
+    model *m = model_of(names, 2);
+    model_error error;
+    (void)state;
+    assert_int_equal(surface_kind_assign(m, "Std_Tearline_R=plain", &error), 0);
+    assert_int_equal(surface_shells_set(m), 0);
+    assert_int_equal(m->materials[0].alpha, MODEL_ALPHA_OPAQUE);
+    assert_int_equal(m->materials[1].alpha, MODEL_ALPHA_BLEND);
+    model_free(m);
 }
 
 static void options_name_a_material_and_a_surface(void **state)
@@ -403,6 +434,8 @@ static void shells_of_eyes_do_not_hide_them(void **state)
                   { "eyeEdge_shader", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.0f },
                   { "saliva_shader", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_BLEND, 0.0f },
                   { "Std_Eye_Occlusion_L", MODEL_ALPHA_BLEND, MODEL_ALPHA_BLEND, 1.0f },
+                  { "blade_edge", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
+                  { "Material_Blend", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
                   { "occlusion", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
                   { "eyes", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f },
                   { "eyelashes", MODEL_ALPHA_OPAQUE, MODEL_ALPHA_OPAQUE, 1.0f } };
@@ -430,6 +463,8 @@ int main(void)
         cmocka_unit_test(strands_run_along_stripes),
         cmocka_unit_test(long_names_have_words_too),
         cmocka_unit_test(options_name_a_material_and_a_surface),
+        cmocka_unit_test(parts_of_a_body_are_bare),
+        cmocka_unit_test(a_given_surface_keeps_a_shell),
         cmocka_unit_test(vroid_draws_toons),
         cmocka_unit_test(another_surface_forgets_the_toon),
         cmocka_unit_test(faces_take_no_tint),

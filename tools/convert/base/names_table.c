@@ -102,7 +102,8 @@ const char *const names_table[] = {
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
      * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through.
-     * bare: what is skin where it has no more than a grey. */
+     * eye-edge: beside-eye and tear-shell if another word says eye. bare: what is skin where it has only a grey;
+     * neutral: what else the name of such a part may say. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
     "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras",
     "material eye cornea corneas",
@@ -118,12 +119,15 @@ const char *const names_table[] = {
     "material beside-eye lids eyelid eyelids liner eyeliner eyeline shadow eyeshadow occlusion eyeocclusion shell moisture",
     "material beside-eye eyemoisture tear tears tearline lacrimal glass glasses eyeglasses patch mask socket sockets",
     "material beside-eye eyesocket wimper wimpern braue brauen lider cil cils sourcil sourcils pestaña pestañas ceja cejas",
-    "material beside-eye eyeshell edge eyeedge blend eyeblend saliva",
+    "material beside-eye eyeshell eyeedge eyeblend saliva",
+    "material eye-edge edge blend",
     "material bare face head neck gesicht kopf hals visage tête cou cara cabeza cuello rosto cabeça pescoço viso testa",
     "material bare collo gezicht hoofd nek twarz głowa szyja лицо голова шея *顔 *頭 *首 *脸 *头 *얼굴 *머리",
+    "material neutral m mi mat material mtl std cc base shader sg geo mesh lambert blinn phong instance default",
+    "material neutral l r left right upper lower front back man woman male female human body skin links rechts",
     "material lashes lash lashes eyelash eyelashes wimper wimpern cil cils pestaña pestañas ciglia ресницы *睫",
     "material occlusion-shell occlusion eyeocclusion shell eyeshell",
-    "material tear-shell tear tears tearline lacrimal eyemoisture edge eyeedge blend eyeblend saliva",
+    "material tear-shell tear tears tearline lacrimal eyemoisture eyeedge eyeblend saliva",
     "material beside-eye ciglia sopracciglia ресницы брови *睫 *眉 *影 *眼鏡 *眼镜 *안경 *눈썹",
     NULL
 };

@@ -81,10 +81,15 @@ static int is_of(const char *name, const char *material)
     return names_has_part(material, name);
 }
 
+static int is_eye_edge(const char *name)
+{
+    return is_of(name, "eye") && is_of(name, "eye-edge");
+}
+
 uint32_t surface_kind_of_name(const char *name)
 {
     if (is_of(name, "plain")) return NOH_SURFACE_PLAIN;
-    if (!is_of(name, "beside-eye") && is_of(name, "eye")) return NOH_SURFACE_EYE;
+    if (!is_of(name, "beside-eye") && !is_eye_edge(name) && is_of(name, "eye")) return NOH_SURFACE_EYE;
     if (is_of(name, "teeth")) return NOH_SURFACE_TEETH;
     if (is_of(name, "skin")) return NOH_SURFACE_SKIN;
     if (!is_of(name, "beside-eye") && is_of(name, "hair")) return NOH_SURFACE_HAIR;
@@ -102,9 +107,28 @@ int surface_is_lashes(const char *name)
     return is_of(name, "lashes");
 }
 
+/* A word, or all of one that languages without spaces have as a part. */
+static int is_bare(const char *word, size_t length)
+{
+    char part[WORD_BYTES_MAX + 1u] = "*";
+    if (length > WORD_BYTES_MAX) return 0;
+    memcpy(part + 1, word, length);
+    return is_in("bare", word, length) || names_has_word("bare", part, length + 1u);
+}
+
 int surface_is_bare(const char *name)
 {
-    return !is_of(name, "beside-eye") && !is_of(name, "hair") && is_of(name, "bare");
+    int found = 0;
+    for (const char *at = name; *at;) {
+        const size_t length = word_length(at);
+        if (length && is_bare(at, length)) {
+            found = 1;
+        } else if (length && !is_in("neutral", at, length)) {
+            return 0; /* HeadLight, head_scarf */
+        }
+        at += length ? length : 1u;
+    }
+    return found;
 }
 
 /* Each capital of the pattern stands for one, each 0 for a digit. */
@@ -177,8 +201,9 @@ void surface_hide(model_material *m)
 static int set_shell(model *m, model_material *shell, float alpha, const char *what)
 {
     set_alpha(shell, alpha);
-    return model_warn(m, "material '%s': an opaque shell would hide its eye, so it %s; rename the material to keep it",
-                      shell->name, what);
+    return model_warn(
+        m, "material '%s': an opaque shell would hide its eye, so it %s; to keep it, use --surface '%s=plain'",
+        shell->name, what, shell->name);
 }
 
 int surface_shells_set(model *m)
@@ -186,10 +211,10 @@ int surface_shells_set(model *m)
     int failed = 0;
     for (uint32_t i = 0; i < m->material_count && !failed; i++) {
         model_material *shell = &m->materials[i];
-        if (shell->alpha != MODEL_ALPHA_OPAQUE || !is_of(shell->name, "beside-eye")) continue;
+        if (shell->alpha != MODEL_ALPHA_OPAQUE || shell->surface_given) continue;
         if (is_of(shell->name, "eye") && is_of(shell->name, "occlusion-shell")) {
             failed = set_shell(m, shell, 0.2f, "darkens the eye by a fifth");
-        } else if (is_of(shell->name, "tear-shell")) {
+        } else if (is_of(shell->name, "tear-shell") || is_eye_edge(shell->name)) {
             failed = set_shell(m, shell, 0.0f, "is left out");
         }
     }
@@ -211,6 +236,7 @@ int surface_kind_assign(model *m, const char *assignment, model_error *error)
         const char *name = m->materials[i].name;
         if (strlen(name) == length && memcmp(name, assignment, length) == 0) {
             surface_kind_set(&m->materials[i], kind);
+            m->materials[i].surface_given = 1;
             found = 1;
         }
     }

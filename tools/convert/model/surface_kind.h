@@ -19,7 +19,8 @@ uint32_t surface_kind_of_name(const char *name);
 /* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
 uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
-/* Whether a material's name means lashes, or a part of the body that is skin unless it has a colour. */
+/* Whether a material's name means lashes, or, with all of its words, a part of the body that is skin unless it has a
+ * colour: "M_Face_L", and not "head_scarf". */
 int surface_is_lashes(const char *name);
 int surface_is_bare(const char *name);
 
@@ -36,7 +37,7 @@ void surface_hide(model_material *m);
 
 /* Opaque shells in front of eyes would hide them. Occlusion shells ("Eye_Occlusion") become black with an alpha of 0.2
  * and so darken; tear shells ("Tearline") are not drawn, because eyes gloss by themselves. Each adds a warning to the
- * model. Returns 0, or 1: out of memory. */
+ * model. A surface that --surface gave stays. Returns 0, or 1: out of memory. */
 int surface_shells_set(model *m);
 
 /* --surface MATERIAL=KIND, for all materials of that name. 1 with the error: no material has the name, or no surface.
