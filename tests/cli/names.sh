@@ -143,6 +143,16 @@ check 'and so is the height' grep -q 'the figure is 1.7 m high' "$work/out"
 eyes "$work/dm.obj" 0.315 17
 noh build "$work/dm.obj" -o "$work/dm.noh"
 check 'decimetres' grep -q 'a unit of the model is 10 cm' "$work/out"
+# A doll, a giant, and a figure in hectometres keep their sizes.
+for size in '0.005 0.27 0.27' '0.15 8.2 8.2' '0.000315 0.017 0.017'; do
+    # shellcheck disable=SC2086
+    set -- $size
+    eyes "$work/keep.obj" "$1" "$2"
+    noh build "$work/keep.obj" -o "$work/keep.noh"
+    check "a figure of $3 m keeps its size" grep -q "the figure is $3 m high" "$work/out"
+    check 'and no unit is taken' sh -c '! grep -q "by the distance" "$1"' - "$work/out"
+done
+check 'the last has a warning' grep -q 'more likely a hectometre' "$work/out"
 eyes "$work/x.obj" 50 1
 noh build "$work/x.obj" -o "$work/x.noh"
 check 'eyes wider apart than the model is high are none' sh -c '! grep -q "the figure is" "$1"' - "$work/out"

@@ -13,6 +13,9 @@
 #define HIGHEST_M 4.0   /* of a figure with those eyes */
 #define OFF_BY_EYES 4.0 /* a size that is further off than this factor has another unit */
 #define OFF_BY_HEIGHT 8.0
+#define HUMAN_EYES_MIN_M 0.04
+#define HUMAN_EYES_MAX_M 0.13
+#define HUMAN_HEIGHT_MAX_M 2.5
 #define HEAD_ABOVE_FEET 1.2 /* height over the distance from head joint to foot joint */
 
 typedef struct sizes {
@@ -111,10 +114,10 @@ static const unit *better_unit(const sizes *s)
                                   { 100.0, "a hectometre" } };
     const double scale = s->eyes > 0.0 ? s->eyes / EYES_M : s->height / HEIGHT_M;
     const double off = s->eyes > 0.0 ? OFF_BY_EYES : OFF_BY_HEIGHT;
-    const unit *best = units;
+    const unit *best = NULL;
     if (!(scale > 0.0) || (scale < off && scale > 1.0 / off)) return NULL;
     for (const unit *u = units; u < units + sizeof units / sizeof units[0]; u++) {
-        if (fabs(log(scale * u->metres)) < fabs(log(scale * best->metres))) best = u;
+        if (fabs(log(scale * u->metres)) < fabs(log(scale * (best ? best->metres : 1.0)))) best = u;
     }
     return best;
 }
@@ -123,7 +126,10 @@ double size_unit(const model *m)
 {
     const sizes s = measure(m);
     const unit *best = better_unit(&s);
-    return best ? best->metres : 1.0;
+    const double eyes = best ? s.eyes * best->metres : 0.0;
+    const int is_certain = best && best->metres <= 0.1 && eyes >= HUMAN_EYES_MIN_M && eyes <= HUMAN_EYES_MAX_M &&
+                           s.height * best->metres < HUMAN_HEIGHT_MAX_M;
+    return is_certain ? best->metres : 1.0; /* a doll or a giant keeps its size */
 }
 
 int size_guess(model *m, FILE *report)

@@ -10,8 +10,8 @@
  * when out of memory. */
 int size_guess(model *m, FILE *report);
 
-/* Metres of the unit that the model more likely has, where it was read with 1 m a unit; 1: that fits, or it is no
- * person, or has neither eyes nor joints that are known. Surfaces of materials are known. */
+/* Metres of the unit that the model certainly has, where it was read with 1 m a unit: at most 0.1, and with it both the
+ * distance of its eyes and its height are human. 1: any other model. Surfaces of materials are known. */
 double size_unit(const model *m);
 
 #endif
