@@ -110,6 +110,15 @@ noh speak "$work/silent.wav" --face "$build/mask.noh" -o "$work/silent.noh"
 expect 0 'a silent recording'
 says 'bytes of sound, and 44100 are there: it was cut off'
 check 'stresses nothing' grep -q '^face: 0 stresses' "$work/out"
+{ # a length that was not known when the head was written
+    printf 'RIFF\044\360\377\177'
+    head -c 40 "$work/line.wav" | tail -c 32
+    printf '\000\360\377\177'
+    head -c 44100 /dev/zero
+} >"$work/piped.wav"
+noh speak "$work/piped.wav" --face "$build/mask.noh" -o "$work/piped.noh"
+expect 0 'a recording from a pipe'
+check 'is whole' sh -c '! grep -q "cut off" "$1"' - "$work/err"
 noh info "$work/line.noh"
 check 'one clip, a key for each word' grep -q "clip 'speech': .* 63 floats, .* 5 callback keys" "$work/out"
 

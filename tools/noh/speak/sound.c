@@ -164,7 +164,7 @@ static uint32_t word_at(const uint8_t *b)
 }
 
 /* A WAV whose header counts more bytes than there are was cut off: libsndfile takes what is there. Programs that do not
- * know a length beforehand write 0 or almost 2^32. */
+ * know a length beforehand write 0, almost 2^31 (eSpeak NG, SoX) or almost 2^32. */
 static void warn_if_cut(const char *path)
 {
     noh_file file;
@@ -177,7 +177,7 @@ static void warn_if_cut(const char *path)
             at = next < file.bytes ? (size_t)next : file.bytes;
         }
         const uint32_t told = file.bytes - at >= 8 ? word_at(b + at + 4) : 0;
-        if (told > file.bytes - at - 8u && told < 0xffff0000u) {
+        if (told > file.bytes - at - 8u && told < 0x7fff0000u) {
             fprintf(stderr,
                     "noh: %s: warning: its header at byte %zu counts %u bytes of sound, and %zu are there: it was cut "
                     "off; copy it again\n",
