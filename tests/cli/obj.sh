@@ -44,4 +44,21 @@ printf 'v 0 0 0\nv 1 0 0\nf 1 2 3\n' >"$work/bad.obj"
 noh build "$work/bad.obj" -o "$work/x.noh"
 expect 1 'a corner that is not there'
 says 'line 3'
+
+# A JPEG with all of its pixels and no end marker is a texture, with a warning.
+quant=$(printf '%64s' '' | sed 's/ /\\001/g') zeros='\000\000\000\000\000\000\000\000\000\000\000\000\000\000\000'
+grey="\377\330\377\333\000\103\000$quant\377\300\000\013\010\000\010\000\010\001\001\021\000"
+grey="$grey\377\304\000\024\000\001$zeros\000"
+grey="$grey\377\304\000\024\020\001$zeros\000\377\332\000\010\001\001\000\000\077\000\077"
+printf 'newmtl a\nmap_Kd grey.jpg\n' >"$work/grey.mtl"
+printf 'mtllib grey.mtl\nusemtl a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n' >"$work/grey.obj"
+printf "$grey\377\331" >"$work/grey.jpg"
+noh build "$work/grey.obj" -o "$work/ends.noh"
+expect 0 'a JPEG'
+check 'has no warning' sh -c '! grep -q warning "$1"' - "$work/out"
+printf "$grey" >"$work/grey.jpg"
+noh build "$work/grey.obj" -o "$work/endless.noh"
+expect 0 'and one without its end'
+check 'has one' grep -q "warning: material 'a': grey.jpg: .* has no end marker" "$work/out"
+check 'and the same texture' cmp "$work/ends.noh" "$work/endless.noh"
 finish

@@ -14,11 +14,16 @@ static const unsigned char png[] = { 0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'
 static const unsigned char jpeg[] = { 0xff, 0xd8, 0xff, 0xff, 0xfe, 0, 4,    'h',  'i', 0xff, 0xda, 0, 3,    1,   5,
                                       0xff, 0,    6,    0xff, 0xd3, 7, 0xff, 0xda, 0,   2,    8,    8, 0xff, 0xd9 };
 
-static void expect_cut(const unsigned char *bytes, size_t count, const char *what)
+static void expect_result(const unsigned char *bytes, size_t count, int result, const char *what)
 {
     model_error error = { "", "" };
-    assert_int_equal(image_is_cut(bytes, count, &error), 1);
+    assert_int_equal(image_is_cut(bytes, count, &error), result);
     assert_non_null(strstr(error.what, what));
+}
+
+static void expect_cut(const unsigned char *bytes, size_t count, const char *what)
+{
+    expect_result(bytes, count, 1, what);
 }
 
 static void each_cut_is_told(void **state)
@@ -31,8 +36,9 @@ static void each_cut_is_told(void **state)
         free(cut);
     }
     for (size_t i = 9; i < sizeof jpeg; i++) {
+        const int in_pixels = (i > 14 && i < 23) || i > 25;
         unsigned char *cut = test_aligned(jpeg, i);
-        expect_cut(cut, i, "was cut off");
+        expect_result(cut, i, in_pixels ? IMAGE_NO_END : 1, in_pixels ? "has no end marker" : "it was cut off; save");
         free(cut);
     }
     assert_int_equal(image_is_cut(png, sizeof png, &error), 0);
@@ -49,12 +55,26 @@ static void a_header_alone_is_told(void **state)
     memcpy(bytes, jpeg, 9);
     memcpy(bytes + 9, "\xff\xd9", 2);
     expect_cut(bytes, 11, "no pixels");
-    bytes[9] = 3;
-    expect_cut(bytes, 11, "damaged at byte 9");
+}
+
+/* Decoders skip what stands between segments, until a frame begins. */
+static void padding_is_skipped(void **state)
+{
+    static const unsigned char padded[] = { 0xff, 0xd8, 0xff, 0xe0, 0, 2, 0,    7,    0xff, 0xc0, 0,   2,
+                                            0xff, 0xda, 0,    2,    8, 8, 0xff, 0xd9, 0,    0,    0xff };
+    unsigned char moved[sizeof padded];
+    model_error error = { "", "" };
+    (void)state;
+    assert_int_equal(image_is_cut(padded, sizeof padded, &error), 0);
+    memcpy(moved, padded, sizeof padded);
+    memcpy(moved + 6, padded + 8, 4);
+    memset(moved + 10, 0, 2);
+    expect_cut(moved, sizeof moved, "damaged at byte 10, where no segment begins: save it again");
 }
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(each_cut_is_told), cmocka_unit_test(a_header_alone_is_told) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(each_cut_is_told), cmocka_unit_test(a_header_alone_is_told),
+                                        cmocka_unit_test(padding_is_skipped) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

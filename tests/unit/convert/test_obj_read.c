@@ -213,7 +213,7 @@ static void large_images_are_counted_first(void **state)
     test_write_file(test_path("face.png"), png, sizeof png);
     save("face.mtl", "newmtl a\nmap_Kd face.png\nnewmtl b\nmap_Kd ./face.png\n");
     model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
-    assert_true(has_warning(m, "the texture face.png was left out: the PNG file has no pixels, only a header"));
+    assert_true(has_warning(m, "the texture face.png was left out: the PNG file has no pixels"));
     assert_true(has_warning(m, "the texture ./face.png was left out: the image has 8192 x 8192 pixels; the limit is"));
     model_free(m);
 }

@@ -34,11 +34,9 @@ static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels
     return 0;
 }
 
-static int decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
-                  model_error *error)
+static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
 {
     int width = 0, height = 0, channels = 0;
-    if (check_size(bytes, count, pixels_left, error) || image_is_cut(bytes, count, error)) return 1;
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
     image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
     if (!image->rgba) {
@@ -47,6 +45,17 @@ static int decode(const unsigned char *bytes, size_t count, uint64_t *pixels_lef
     image->width = (uint32_t)width;
     image->height = (uint32_t)height;
     image->channels = (uint32_t)channels;
+    return 0;
+}
+
+static int append_end(char **bytes, size_t *count, image_file *image, model_error *error)
+{
+    char *grown = realloc(*bytes, *count + 2u);
+    if (!grown) return model_fail(error, "", "out of memory");
+    memcpy(grown + *count, IMAGE_END, 2);
+    *bytes = grown;
+    *count += 2u;
+    image->has_no_end = 1;
     return 0;
 }
 
@@ -59,8 +68,11 @@ int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, 
     if (!bytes) {
         return 1;
     }
-    failed = is_png_or_jpeg(bytes, count) ? decode((const unsigned char *)bytes, count, pixels_left, image, error)
+    failed = is_png_or_jpeg(bytes, count) ? check_size((const unsigned char *)bytes, count, pixels_left, error)
                                           : model_fail(error, "", "it is neither PNG nor JPEG");
+    if (!failed) failed = image_is_cut((const unsigned char *)bytes, count, error);
+    if (failed == IMAGE_NO_END) failed = append_end(&bytes, &count, image, error);
+    if (!failed) failed = decode((const unsigned char *)bytes, count, image, error);
     free(bytes);
     return failed;
 }
@@ -68,7 +80,11 @@ int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, 
 int image_read(const char *path, image_file *image, model_error *error)
 {
     uint64_t pixels_left = IMAGE_PIXELS;
-    return image_read_next(path, &pixels_left, image, error);
+    if (image_read_next(path, &pixels_left, image, error)) return 1;
+    if (!image->has_no_end) return 0;
+    free(image->rgba);
+    image->rgba = NULL;
+    return 1;
 }
 
 static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2], uint16_t **grey, model_error *error)

@@ -14,14 +14,16 @@ typedef struct image_file {
     uint32_t width, height;
     uint32_t channels; /* in the file, 1 to 4: grey, grey and alpha, colour, colour and alpha */
     uint32_t bits;     /* of a channel in the file: 8 or 16 */
+    int has_no_end;    /* 1: of a JPEG that ends in pixels; some may be missing, and *error says so */
     uint8_t *rgba;     /* [height][width][4], the top row first; to be freed. Alpha is 255 where the file has none */
 } image_file;
 
-/* Read a file of at most 64 Mi pixels. Returns 0, or 1 and *error; then image->rgba is NULL. */
+/* Read a file of at most 64 Mi pixels that has its end. Returns 0, or 1 and *error; then image->rgba is NULL. */
 int image_read(const char *path, image_file *image, model_error *error);
 
-/* The same for the files of one model, so that a few small ones do not take any memory and time. *pixels_left, at first
- * IMAGE_PIXELS, grows by 64 for each byte of a file, and shrinks by its pixels before they are decoded. */
+/* The same for the files of one model, also those without an end, so that a few small ones do not take any memory and
+ * time. *pixels_left, at first IMAGE_PIXELS, grows by 64 for each byte of a file, and shrinks by its pixels before they
+ * are decoded. */
 #define IMAGE_PIXELS ((uint64_t)64u << 20)
 int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error);
 

@@ -44,21 +44,31 @@ static size_t end_of_scan(const unsigned char *bytes, size_t count, size_t at)
 static int jpeg_is_cut(const unsigned char *bytes, size_t count, model_error *error)
 {
     size_t at = 2;
-    int scans = 0;
+    int scans = 0, frames = 0;
     for (;;) {
+        while (at > 2 && at < count && bytes[at] != 0xff && !frames) at++;         /* padding */
         while (at + 1 < count && bytes[at] == 0xff && bytes[at + 1] == 0xff) at++; /* fill bytes */
         if (count - at < 2) return is_cut("JPEG", count, "the segment", at, error);
         if (bytes[at] != 0xff)
-            return model_fail(error, "", "the JPEG file is damaged at byte %zu: no segment begins", at);
+            return model_fail(error, "", "the JPEG file is damaged at byte %zu, where no segment begins: save it again",
+                              at);
         if (bytes[at + 1] == 0xd9) break;
         if (count - at < 4) return is_cut("JPEG", count, "the segment", at, error);
         const size_t begin = at, length = (size_t)bytes[at + 2] << 8 | bytes[at + 3];
         if (count - at - 2 < length || length < 2) return is_cut("JPEG", count, "the segment", at, error);
         at += 2 + length;
+        frames |= (bytes[begin + 1] & 0xfcu) == 0xc0u;
         if (bytes[begin + 1] != 0xda) continue;
+        if (at == count) return is_cut("JPEG", count, "the pixels", begin, error);
         scans = 1;
         at = end_of_scan(bytes, count, at);
-        if (at == count) return is_cut("JPEG", count, "the pixels", begin, error);
+        if (at == count) {
+            (void)model_fail(error, "",
+                             "the JPEG file ends at byte %zu, in the pixels at byte %zu, and has no end marker: "
+                             "if some of the picture is grey, it was cut off; save or copy it again",
+                             count, begin);
+            return IMAGE_NO_END;
+        }
     }
     return scans ? 0 : model_fail(error, "", "the JPEG file has no pixels, only a header: save or copy it again");
 }

@@ -162,7 +162,7 @@ char *input_read_text(const char *path, size_t *bytes, model_error *error)
     while (*bytes && !text[*bytes - 1]) --*bytes; /* some exporters fill up a block */
     const char *zero = *bytes ? memchr(text, 0, *bytes) : NULL;
     if (zero) {
-        model_fail(error, "", "this is not a text: byte %zu is 0", (size_t)(zero - text));
+        model_fail(error, "", "this is not a text: byte %zu is 0; save it as a text in UTF-8", (size_t)(zero - text));
         free(text);
         return NULL;
     }

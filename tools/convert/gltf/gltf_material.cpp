@@ -98,7 +98,13 @@ static void decode_image(file &f, const image &source, model_texture &out, const
     if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG, JPEG nor WebP");
     check_image_size(f, data, where);
     model_error cut = { "", "" };
-    if (image_is_cut(data.data(), data.size(), &cut)) fail(where, cut.what);
+    const int is_cut = image_is_cut(data.data(), data.size(), &cut);
+    if (is_cut == IMAGE_NO_END) {
+        data.insert(data.end(), IMAGE_END, IMAGE_END + 2);
+        warn(f, "%s: %s", where.c_str(), cut.what);
+    } else if (is_cut) {
+        fail(where, cut.what);
+    }
     tinygltf::Image decoded;
     std::string error, warning;
     if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()),

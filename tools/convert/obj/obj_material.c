@@ -90,6 +90,10 @@ static int add_texture(library *l, const char *name)
     if (read_image(l, name, &image, &error)) {
         return model_warn(l->m, "material '%.60s': the texture %.80s was left out: %s", l->at->name, name, error.what);
     }
+    if (image.has_no_end && model_warn(l->m, "material '%.60s': %.80s: %s", l->at->name, name, error.what)) {
+        free(image.rgba);
+        return 1;
+    }
     t->name = model_string(name);
     t->width = image.width;
     t->height = image.height;
