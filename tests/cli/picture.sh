@@ -28,6 +28,7 @@ done
     noh render "$build/demo/puppet.noh" -o auto.png $small
     noh render "$build/demo/puppet.noh" -o idle.png $small --clip idle
     noh render "$build/demo/puppet.noh" -o rest.png $small --pose rest
+    expect 0 'a figure as modelled'
     check 'it stands as in its clip idle' cmp auto.png idle.png
     check 'unless it is to stand as modelled' sh -c '! cmp -s auto.png rest.png'
     noh render "$build/demo/puppet.noh" -o x.png $small --pose sit
@@ -56,9 +57,14 @@ noh speak hello --face "$puppet" -o line.noh
 # A figure without targets has its head where the joint of that name is.
 LC_ALL=C sed 's/"targets"/"tergets"/g' "$build/demo/puppet.glb" >still.glb
 noh build still.glb -o still.noh --quiet
-noh render still.noh -o still_face.png $small --camera face
-noh render still.noh -o still_full.png $small --camera full
+expect 0 'a figure without targets'
+for frame in face full; do
+    # shellcheck disable=SC2086
+    noh render still.noh -o still_$frame.png $small --camera $frame
+    expect 0 "has a picture: $frame"
+done
 noh info still.noh
+expect 0 'and can be described'
 check 'it has none' sh -c '! grep -q "targets, " "$1"' - "$work/out"
 check 'and its head is framed' sh -c '! cmp -s "$1" "$2"' - still_face.png still_full.png
 
