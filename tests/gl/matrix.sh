@@ -21,20 +21,28 @@ if [ $code != 0 ]; then
     finish
 fi
 
+ran() { # LOG: it has tests that passed; one that skips, or a filter that fits none, ends with 0, too
+    check "$name: tests of it ran" sh -c 'grep -q "^\[ *OK \]\|^ok [0-9]* - " "$1" && ! grep -q "context here" "$1"' - \
+        "$work/$1"
+}
 programs() { # ENVIRONMENT...
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_depth" >"$work/depth" 2>&1
     code=$?
     expect 0 "$name: depth without colour is equal in every bit"
+    ran depth
     check "$name: all of that ran" sh -c '! grep -q "SKIP\|skipped" "$1" || grep -q RGBA32UI "$1"' - "$work/depth"
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_light" >"$work/light" 2>&1
     code=$?
     expect 0 "$name: light is the closed forms'"
+    ran light
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_wrinkles" >"$work/wrinkles" 2>&1
     code=$?
     expect 0 "$name: wrinkles are the CPU's, areas the triangles'"
+    ran wrinkles
     env "$@" NOH_TEST_DRIVER="$driver" "$build/tests/gl/test_gl_share" slots_lend_and_borrow >"$work/share" 2>&1
     code=$?
     expect 0 "$name: stages that share are drawn as they are alone"
+    ran share
 }
 row() { # NAME DRIVER LACKING programs|verify-alone ENVIRONMENT...: LACKING paths cannot run there ('' none)
     name=$1 driver=$2 lacking=$3 more=$4
