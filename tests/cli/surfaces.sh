@@ -60,6 +60,16 @@ noh build "$work/extras.gltf" -o "$work/extras.noh"
 expect 0 'extras'
 noh info "$work/extras.noh"
 check 'extras outdo a name' grep -q "material 'leather': skin" "$work/out"
+gltf Std_Tearline '{}'
+noh build "$work/extras.gltf" -o "$work/extras.noh"
+check 'an opaque tear line is left out' grep -q "material 'Std_Tearline': an opaque shell would hide its eye" "$work/out"
+noh build "$work/extras.gltf" -o "$work/extras.noh" --surface Std_Tearline=plain
+expect 0 'with a surface that is given'
+check 'it stays' sh -c '! grep -q "opaque shell" "$1"' - "$work/out"
+gltf Std_Tearline '{"surface":"plain"}'
+noh build "$work/extras.gltf" -o "$work/extras.noh"
+expect 0 'and with one in extras'
+check 'it stays, too' sh -c '! grep -q "opaque shell" "$1"' - "$work/out"
 gltf robe '{"tint":false}'
 noh build "$work/extras.gltf" -o "$work/extras.noh" --quiet
 expect 0 'extras of tint'
