@@ -122,8 +122,8 @@ static void strands_run_along_stripes(void **state)
 /* Each word has to belong to a bare part of the body. */
 static void parts_of_a_body_are_bare(void **state)
 {
-    static const char *const bare[] = { "Head", "head.001", "M_Face_L", "HeadLeft",   "Std_Neck 2",
-                                        "顔",   "顔_01",    "Gesicht",  "FemaleHead", "face (Instance)" };
+    static const char *const bare[] = { "Head", "head.001", "Wolf3D_Head", "M_Face_L",   "HeadLeft",       "Std_Neck 2",
+                                        "顔",   "顔_01",    "Gesicht",     "FemaleHead", "face (Instance)" };
     static const char *const others[] = { "",          "M",         "head_scarf", "HeadLight", "Neck.Ring",
                                           "headlight", "face_mask", "head hair",  "頭巾",      "lid_face" };
     (void)state;
