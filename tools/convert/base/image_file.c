@@ -52,7 +52,7 @@ static int append_end(char **bytes, size_t *count, image_file *image, model_erro
 {
     char *grown = realloc(*bytes, *count + 2u);
     if (!grown) return model_fail(error, "", "out of memory");
-    memcpy(grown + *count, IMAGE_END, 2);
+    for (size_t i = 0; i < 2u; i++) grown[*count + i] = IMAGE_END[i];
     *bytes = grown;
     *count += 2u;
     image->has_no_end = 1;

@@ -301,8 +301,9 @@ static uint32_t add_picture(model *m)
     t->wrap_s = t->wrap_t = 33071;
     t->use = MODEL_TEXTURE_COLOR;
     for (uint32_t i = 0; t->rgba && i < SIDE * SIDE; i++) {
-        const float x = ((float)(i % SIDE) + 0.5f) * 2.0f / (float)SIDE - 1.0f;
-        const float y = ((float)(i / SIDE) + 0.5f) * 2.0f / (float)SIDE - 1.0f;
+        const uint32_t column = i % SIDE, row = i / SIDE;
+        const float x = ((float)column + 0.5f) * 2.0f / (float)SIDE - 1.0f;
+        const float y = ((float)row + 0.5f) * 2.0f / (float)SIDE - 1.0f;
         const float square = x * x + y * y, radius = sqrtf(square), along = 1.0f - REACH * square;
         float color[3];
         eye_color(along > 0.0f ? sqrtf(1.0f - along * along) / IRIS : 1.0f / IRIS, x / radius, y / radius, color);
