@@ -100,7 +100,7 @@ static void decode_image(file &f, const image &source, model_texture &out, const
     model_error cut = { "", "" };
     const int is_cut = image_is_cut(data.data(), data.size(), &cut);
     if (is_cut == IMAGE_NO_END) {
-        data.insert(data.end(), IMAGE_END, IMAGE_END + 2);
+        for (size_t i = 0; i < 2; ++i) data.push_back(static_cast<unsigned char>(IMAGE_END[i]));
         warn(f, "%s: %s", where.c_str(), cut.what);
     } else if (is_cut) {
         fail(where, cut.what);
