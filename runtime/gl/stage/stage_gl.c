@@ -415,7 +415,7 @@ static noh_result visit(measure *m, noh_error *error)
     carve_slots(m);
     if (!NOH_PAGE && m->desc->texture_reserve && result == NOH_OK) result = visit_streamed(m, error);
     if (result == NOH_OK && m->gl) result = noh_gl_covers_create(m->desc, m->plan, &m->gl->device, m->gl->kinds, error);
-    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, m->gl, error) : result;
+    return result == NOH_OK && m->gl ? noh_gl_pictures_create(m->desc, m->gl, NOH_NONE, error) : result;
 }
 
 noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *plan, const noh_gl_caps *caps,
@@ -629,7 +629,7 @@ static noh_result restore_slots(noh_stage *stage, int hidden, noh_error *error)
         noh_gl_kind *k = &gl->kinds[i];
         if (!k->slot || !k->items || stage->kinds[i].finer.hidden != hidden) continue;
         memset(&k->filling, 0, sizeof k->filling);
-        result = noh_gl_pictures_create_empty(&stage->desc, gl, i, error);
+        result = noh_gl_pictures_create(&stage->desc, gl, i, error);
         if (result == NOH_OK && !hidden) result = noh_gl_slot_fill_all(stage, i, error);
     }
     return result;
@@ -648,7 +648,7 @@ static noh_result restore_all(noh_stage *stage, noh_error *error)
         result = restore_kind(stage, i, error);
     }
     if (result == NOH_OK && gl->light) result = noh_gl_light_restore(gl->light, error);
-    if (result == NOH_OK) result = noh_gl_pictures_create(&stage->desc, gl, error);
+    if (result == NOH_OK) result = noh_gl_pictures_create(&stage->desc, gl, NOH_NONE, error);
     if (result == NOH_OK) result = noh_gl_covers_create(&stage->desc, stage->plan, &gl->device, gl->kinds, error);
     for (int hidden = 0; hidden < 2 && result == NOH_OK; hidden++) result = restore_slots(stage, hidden, error);
     return result == NOH_OK && gl->renderer->gl ? noh_gl_renderer_restore(gl->renderer, NULL, 0, error) : result;

@@ -327,11 +327,9 @@ void noh_gl_choose_covers(noh_stage *stage);
 noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const noh_gl_caps *caps, uint64_t *bytes,
                                 uint64_t *shared, noh_error *error);
 uint32_t noh_gl_pictures_count(const noh_kind_desc *kind); /* of all sets */
-/* Make the textures of all kinds that stay, also in a new context. Of a slot: make them without pixels, fill them by a
- * piece. Delete the textures of a kind, or of all kinds (NOH_NONE). */
-noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error);
-noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
-                                        noh_error *error);
+/* Make the textures of all kinds that stay (NOH_NONE), also in a new context; of a slot: make them without pixels, fill
+ * them by a piece. Delete the textures of a kind, or of all kinds (NOH_NONE). */
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_error *error);
 int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_gl_filling *f,
                          uint32_t *bytes);
 void noh_gl_pictures_delete(const noh_stage_desc *desc, const noh_gl_device *device, const noh_stage_gl *gl,

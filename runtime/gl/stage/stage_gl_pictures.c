@@ -192,8 +192,7 @@ noh_result noh_gl_pictures_plan(const noh_stage_desc *desc, uint32_t kind, const
     return result;
 }
 
-/* kind: of a slot: without pixels; NOH_NONE: of all kinds that stay. */
-static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_error *error)
+noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_error *error)
 {
     const noh_gl_device *d = &gl->device;
     noh_gl_kind *kinds = gl->kinds;
@@ -222,17 +221,6 @@ static noh_result make(const noh_stage_desc *desc, const noh_stage_gl *gl, uint3
         }
     }
     return result;
-}
-
-noh_result noh_gl_pictures_create(const noh_stage_desc *desc, const noh_stage_gl *gl, noh_error *error)
-{
-    return make(desc, gl, NOH_NONE, error);
-}
-
-noh_result noh_gl_pictures_create_empty(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind,
-                                        noh_error *error)
-{
-    return make(desc, gl, kind, error);
 }
 
 int noh_gl_pictures_fill(const noh_stage_desc *desc, const noh_stage_gl *gl, uint32_t kind, noh_gl_filling *f,

@@ -194,7 +194,7 @@ noh_result noh_gl_slot_open(noh_stage *s, uint32_t kind, noh_error *error)
         memset(&k->filling, 0, sizeof k->filling);
         result = noh_gl_visit_slot(&s->desc, s->plan, caps, gl, kind, k->slot, &room, NULL, error);
     }
-    if (result == NOH_OK) result = noh_gl_pictures_create_empty(&s->desc, gl, kind, error);
+    if (result == NOH_OK) result = noh_gl_pictures_create(&s->desc, gl, kind, error);
     return result == NOH_OK ? noh_gl_covers_create(&s->desc, s->plan, &gl->device, gl->kinds, error) : result;
 }
 
