@@ -36,6 +36,12 @@ struct noh_bank_clip {
     uint32_t joint_count;
 };
 
+/* What bytes of the bank take in it: a multiple of 16. */
+static inline size_t noh_clip_bank_align(size_t bytes)
+{
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
 /* ---- clips that come and go (clip_bank_reserve.c) ---- */
 
 /* From now on the packs' clips are not read: all are absent. */
@@ -49,8 +55,8 @@ uint64_t noh_clip_bank_touched(const noh_clip_bank *bank, uint32_t *absent);
 /* Copy the bytes of an absent clip into the reserve. Clips that were not touched since the last tick make room, the
  * least recently used first; of equal ones the first.
  * bytes   [byte_count] those that the bank was made with
- * errors  DATA byte_count is not the clip's; MEMORY what is in use leaves too little (where: bytes in use, need: bytes).
- *         Nothing has then changed */
+ * errors  DATA byte_count is not the clip's; MEMORY what is in use leaves too little (where: bytes in use, need:
+ *         bytes). Nothing has then changed */
 noh_result noh_clip_bank_bring(noh_clip_bank *bank, uint32_t clip, const uint8_t *bytes, uint32_t byte_count,
                                noh_error *error);
 

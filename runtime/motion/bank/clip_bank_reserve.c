@@ -1,8 +1,9 @@
 /* clip_bank_reserve.c: the bytes of clips that are in memory only while they are needed.
  *
- * What a clip's header says (durations, keys, floats, which joints move) is opened with the bank and stays. Its segments,
- * most of its bytes, are read when they are decoded. They lie in the reserve one after another; a clip that goes lets
- * those behind it move down, so the free bytes are always in one piece. Which clips are there depends on calls alone. */
+ * What a clip's header says (durations, keys, floats, which joints move) is opened with the bank and stays. Its
+ * segments, most of its bytes, are read when they are decoded. They lie in the reserve one after another; a clip that
+ * goes lets those behind it move down, so the free bytes are always in one piece. Which clips are there depends on
+ * calls alone. */
 #include <string.h>
 
 #include "core/base/assert_internal.h"
@@ -12,11 +13,6 @@
 #include "motion/clip/clip_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
-
-static uint32_t aligned(uint32_t bytes)
-{
-    return (bytes + 15u) & ~15u;
-}
 
 /* Clips are opened in the bank's own memory; only others read them. */
 static noh_clip *clip_of(const noh_clip_bank *bank, uint32_t clip)
@@ -63,7 +59,7 @@ uint64_t noh_clip_bank_touched(const noh_clip_bank *bank, uint32_t *absent)
     *absent = 0;
     for (uint32_t i = 0; i < bank->clips.clip_count; i++) {
         if (r->clips[i].used != r->clock) continue;
-        bytes += aligned(bytes_of(bank, i));
+        bytes += noh_clip_bank_align(bytes_of(bank, i));
         *absent += r->clips[i].absent;
     }
     return bytes;
@@ -111,7 +107,7 @@ noh_result noh_clip_bank_bring(noh_clip_bank *bank, uint32_t clip, const uint8_t
                                noh_error *error)
 {
     noh_clip_reserve *r = bank->clips.reserve;
-    const uint32_t need = aligned(byte_count);
+    const uint32_t need = (uint32_t)noh_clip_bank_align(byte_count);
     uint32_t stays = 0;
     NOH_ASSERT(r && clip < bank->clips.clip_count && r->clips[clip].absent);
     if (byte_count != bytes_of(bank, clip)) {
