@@ -55,6 +55,11 @@ void affine_cofactors(const double m[16], double out[9])
     vec_cross(m, m + 4, out + 6);
 }
 
+void affine_point(const double m[16], const double point[3], double out[3])
+{
+    for (int r = 0; r < 3; r++) out[r] = m[r] * point[0] + m[4 + r] * point[1] + m[8 + r] * point[2] + m[12 + r];
+}
+
 double affine_determinant(const double m[16])
 {
     double cofactors[9];

@@ -18,6 +18,7 @@ void affine_multiply(const double a[16], const double b[16], double out[16]);
  */
 int affine_invert(const double in[16], double out[16]);
 double affine_determinant(const double m[16]);
+void affine_point(const double m[16], const double point[3], double out[3]); /* out is not point */
 /* The matrix that turns normals as m turns points: the inverse transposed times the determinant; [3][3] columns.
  * The matrix itself would tilt normals under unequal scales. */
 void affine_cofactors(const double m[16], double out[9]);

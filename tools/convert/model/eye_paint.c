@@ -26,8 +26,6 @@
 #define SAME_WAY 0.9        /* cosine of the angle between gazes of one mesh that several nodes draw */
 #define UNTILTED 0.9999     /* cosine of the angle between an axis and where the rest pose puts it */
 #define IRIS_REACH 1.3      /* an iris of its own is within this reach of the ball's centre, in radii */
-#define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
-#define STRIPS_MAX 8u       /* of a part: more are modelled lashes */
 
 /* Balls in the world's space. */
 typedef struct balls {
@@ -89,13 +87,6 @@ static uint32_t places_of(const model *m, uint32_t mesh, uint32_t vertex, double
     return count;
 }
 
-static void move(const double world[16], const double at[3], double out[3])
-{
-    for (int r = 0; r < 3; r++) {
-        out[r] = world[r] * at[0] + world[4 + r] * at[1] + world[8 + r] * at[2] + world[12 + r];
-    }
-}
-
 /* 0: nodes turn the mesh differently, or make it flat. */
 static int find_gaze(const model *m, ball *eye)
 {
@@ -126,21 +117,11 @@ static int is_plain_material(const model_material *m)
            fmaxf(c[0], fmaxf(c[1], c[2])) - fminf(c[0], fminf(c[1], c[2])) < HUES;
 }
 
-static int is_white(const model_mesh *mesh, const model_submesh *part)
-{
-    for (uint32_t v = part->first_vertex; mesh->color && v < part->first_vertex + part->vertex_count; v++) {
-        for (size_t c = 0; c < 3; c++) {
-            if (mesh->color[4 * (size_t)v + c] < 1.0f - HUES) return 0;
-        }
-    }
-    return 1;
-}
-
 /* Whether the part is of a plain eye's material, and its vertex colours are white. */
 static int is_plain(const model *m, const model_mesh *mesh, const model_submesh *part)
 {
     return mesh->uv && part->material != MODEL_NONE && is_plain_material(&m->materials[part->material]) &&
-           is_white(mesh, part);
+           surface_is_white(mesh, part);
 }
 
 /* The vertices lie on a sphere, and on its front, too. */
@@ -207,7 +188,7 @@ static int is_near(const model *m, uint32_t mesh, const model_submesh *part, con
         const float *p = m->meshes[mesh].position + 3 * (size_t)(part->first_vertex + i / count);
         const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
         double way[3];
-        move(places[i % count], at, way);
+        affine_point(places[i % count], at, way);
         for (int c = 0; c < 3; c++) way[c] -= sphere->centre[c];
         if (vec_dot(way, way) < pow(IRIS_REACH * sphere->radius, 2.0)) return 1;
     }
@@ -237,7 +218,7 @@ static void collect(model *m, const ball *eye, balls *b)
     for (uint32_t i = 0; i < count && b->count < BALLS_MAX; i++) {
         eye_sphere at = eye->sphere;
         const double *w = places[i];
-        move(w, eye->sphere.centre, at.centre);
+        affine_point(w, eye->sphere.centre, at.centre);
         at.radius *= sqrt(w[2] * w[2] + w[6] * w[6] + w[10] * w[10]);
         if (has_iris(m, eye->material, &at)) continue;
         b->materials[b->count] = eye->material;
@@ -404,7 +385,7 @@ static int has_white_parts(const model *m, uint32_t material)
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
             const model_submesh *part = &m->meshes[i].submeshes[s];
-            if (part->material == material && !is_white(&m->meshes[i], part)) return 0;
+            if (part->material == material && !surface_is_white(&m->meshes[i], part)) return 0;
         }
     }
     return 1;
@@ -437,68 +418,4 @@ int eye_paint(model *m)
     if (b.count == 0) return 0;
     whiten(m, &b);
     return visit_balls(m, project, &b) || finish(m, &b) || (is_blank && make_skin(m));
-}
-
-/* ---- lashes ---- */
-
-static uint32_t first_of(uint32_t *joined, uint32_t v)
-{
-    while (joined[v] != v) v = joined[v] = joined[joined[v]];
-    return v;
-}
-
-/* Triangles that share vertices are one piece; lashes may touch the skin. joined: [vertex_count] */
-static int is_strip(const model_mesh *mesh, const model_submesh *part, uint32_t *joined)
-{
-    const uint32_t end = part->first_vertex + part->vertex_count, *indices = mesh->indices + part->first_index;
-    uint32_t pieces = 0;
-    for (uint32_t v = part->first_vertex; v < end; v++) joined[v] = v;
-    for (uint32_t i = 0; i < part->index_count; i++) {
-        joined[first_of(joined, indices[i])] = first_of(joined, indices[i / 3u * 3u]);
-    }
-    for (uint32_t v = part->first_vertex; v < end; v++) pieces += joined[v] == v;
-    return is_white(mesh, part) && pieces <= STRIPS_MAX && part->index_count / 3u >= STRIP_TRIANGLES * pieces;
-}
-
-/* 1 if all that the material is on are strips, -1 when out of memory. */
-static int on_strips(const model *m, uint32_t material)
-{
-    uint32_t strips = 0, others = 0;
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const model_mesh *mesh = &m->meshes[i];
-        for (uint32_t s = 0; s < mesh->submesh_count; s++) {
-            uint32_t *joined;
-            if (mesh->submeshes[s].material != material) continue;
-            joined = model_zeros(mesh->vertex_count, sizeof *joined);
-            if (!joined) return -1;
-            if (is_strip(mesh, &mesh->submeshes[s], joined)) {
-                strips++;
-            } else {
-                others++;
-            }
-            free(joined);
-        }
-    }
-    return strips > 0 && others == 0;
-}
-
-int lash_strips_hide(model *m)
-{
-    for (uint32_t i = 0; i < m->material_count; i++) {
-        model_material *lashes = &m->materials[i];
-        int hidden;
-        if (lashes->surface_given || lashes->alpha != MODEL_ALPHA_OPAQUE || lashes->base_color_texture != MODEL_NONE ||
-            !surface_is_lashes(lashes->name))
-            continue;
-        hidden = on_strips(m, i);
-        if (hidden < 0) return 1;
-        if (!hidden) continue;
-        surface_hide(lashes);
-        if (model_warn(m,
-                       "material '%s': lashes without a picture would be a slab, so they are left out (--surface "
-                       "'%s=plain' keeps them)",
-                       lashes->name, lashes->name))
-            return 1;
-    }
-    return 0;
 }

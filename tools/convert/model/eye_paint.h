@@ -4,17 +4,18 @@
 
 #include "model.h"
 
-/* Paint pale eyes that have no texture, glow not, and have one vertex colour: two balls of one size, side by side, get
- * a texture that is made here and texture coordinates about the world's +z, where they look, by the first node that draws
- * them. The outermost is the one that is seen. Eyes with an iris, pupil or cornea of another opaque material stay. Such
- * materials become white and wet, and add a warning. Meshes without texture coordinates are left as they are.
- * Surfaces of materials are known. If the model has no texture of its own, grey materials named as a face, head or neck
- * become skin, each with a warning, unless their surface is given or they have vertex colours: a living eye in plaster looks uncanny.
+/* Paint pale eyes that have no texture, do not glow, and have one vertex colour: two balls of one size, side by side,
+ * get a texture that is made here, and texture coordinates about the world's +z, where they look, by the first node
+ * that draws them. The outermost is the one that is seen. Eyes with an iris, pupil or cornea of another opaque material
+ * stay. Such materials become white and wet, and add a warning. Meshes without texture coordinates are left as they
+ * are. Surfaces of materials are known. If the model has no texture of its own, grey materials named as a face, head or
+ * neck become skin, each with a warning, unless their surface is given or they have vertex colours: a living eye in
+ * plaster looks uncanny.
  * returns  1: out of memory */
 int eye_paint(model *m);
 
 /* Strips of lashes that lack the picture that cuts them are slabs: opaque ones without a texture and vertex colours are
- * not drawn, with a warning. Lashes of one island each stay, and those whose surface is given.
+ * not drawn, with a warning. Modelled lashes, of many small pieces, stay, and so do those whose surface is given.
  * returns  1: out of memory */
 int lash_strips_hide(model *m);
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static uint32_t root(uint32_t *parent, uint32_t v)
+uint32_t islands_root(uint32_t *parent, uint32_t v)
 {
     while (parent[v] != v) {
         parent[v] = parent[parent[v]];
@@ -14,8 +14,8 @@ static uint32_t root(uint32_t *parent, uint32_t v)
 
 static void unite(uint32_t *parent, uint32_t a, uint32_t b)
 {
-    a = root(parent, a);
-    b = root(parent, b);
+    a = islands_root(parent, a);
+    b = islands_root(parent, b);
     parent[a > b ? a : b] = a > b ? b : a;
 }
 
@@ -41,5 +41,5 @@ void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work)
         unite(island, mesh->indices[i], mesh->indices[i + 1]);
         unite(island, mesh->indices[i], mesh->indices[i + 2]);
     }
-    for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = root(island, v);
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = islands_root(island, v);
 }

@@ -8,4 +8,7 @@
  * normals and UVs. island, work: [vertex_count] */
 void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work);
 
+/* The root of a vertex in a union-find; what is passed on the way moves nearer to it. */
+uint32_t islands_root(uint32_t *parent, uint32_t v);
+
 #endif

@@ -6,6 +6,8 @@
 #include "convert/model/model_build.h"
 #include "noh/format.h"
 
+#define WHITE_MIN (1.0f - 0.05f)
+
 static const char *const names[] = {
     "plain", "skin", "eye", "teeth", "toon", "hair"
 }; /* in the order of NOH_SURFACE_* */
@@ -100,6 +102,16 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha)
 {
     const uint32_t kind = surface_kind_of_name(name);
     return kind == NOH_SURFACE_HAIR && alpha == MODEL_ALPHA_OPAQUE ? NOH_SURFACE_PLAIN : kind;
+}
+
+int surface_is_white(const model_mesh *mesh, const model_submesh *part)
+{
+    for (uint32_t v = part->first_vertex; mesh->color && v < part->first_vertex + part->vertex_count; v++) {
+        for (size_t c = 0; c < 3; c++) {
+            if (mesh->color[4 * (size_t)v + c] < WHITE_MIN) return 0;
+        }
+    }
+    return 1;
 }
 
 int surface_is_lashes(const char *name)

@@ -19,6 +19,9 @@ uint32_t surface_kind_of_name(const char *name);
 /* The same of a material: hair that is opaque is plain, because only cards are known to have strands. */
 uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 
+/* Whether a part has no vertex colours, or white ones. */
+int surface_is_white(const model_mesh *mesh, const model_submesh *part);
+
 /* Whether a material's name means lashes, or, with all of its words, a part of the body that is skin unless it has a
  * colour: "M_Face_L", and not "head_scarf". */
 int surface_is_lashes(const char *name);

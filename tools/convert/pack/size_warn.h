@@ -1,5 +1,5 @@
-/* size_warn.h: warnings of sizes: of a figure that cannot be seen, of a clip's tolerance that does not fit its figure, of
- * weights. */
+/* size_warn.h: warnings of sizes: of a figure that cannot be seen, of a clip's tolerance that does not fit its figure,
+ * of weights. */
 #ifndef NOH_CONVERT_PACK_SIZE_WARN_H
 #define NOH_CONVERT_PACK_SIZE_WARN_H
 
@@ -8,7 +8,7 @@
 /* The longest side of a box about a mesh, in the world; 0: there are none. */
 double meshes_cm(const model *m);
 
-/* Warn of meshes that are too small, or too far from the origin, to be drawn. Returns 1 when out of memory, as below. */
+/* Warn of meshes that are too small, or too far from the origin, to be drawn. Returns 1: out of memory. */
 int extent_warn(model *m);
 
 /* Warn of clips whose targets' weights are far beyond what a target is for. */

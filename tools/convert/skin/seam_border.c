@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/model/affine.h"
+#include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 
 void skin_rest_matrix(const model *m, const model_skin *skin, const uint16_t *joints, const float *weights,
@@ -61,12 +62,6 @@ static int edges_find(const model_mesh *mesh, const uint32_t *weld, edge_table *
 }
 
 /* ---- borders ---- */
-
-static uint32_t root_of(uint32_t *parent, uint32_t v)
-{
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
 
 typedef struct finder {
     const model *m;
@@ -138,11 +133,11 @@ static int make_room(finder *f, border_list *out)
     for (size_t i = 0; i <= f->table.mask; i++) {
         const edge_slot *slot = &f->table.slots[i];
         if (!is_border(slot)) continue;
-        const uint32_t a = root_of(f->parent, slot->a), b = root_of(f->parent, slot->b);
+        const uint32_t a = islands_root(f->parent, slot->a), b = islands_root(f->parent, slot->b);
         f->parent[a > b ? a : b] = a > b ? b : a;
     }
     for (size_t i = 0; i <= f->table.mask; i++) { /* point holds the count until the borders are there */
-        if (is_border(&f->table.slots[i])) f->point[root_of(f->parent, f->table.slots[i].a)]++;
+        if (is_border(&f->table.slots[i])) f->point[islands_root(f->parent, f->table.slots[i].a)]++;
     }
     for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
         border *grown, *b;
@@ -167,7 +162,7 @@ static int make_room(finder *f, border_list *out)
 static void mark_hard(const finder *f, border_list *out)
 {
     for (uint32_t v = 0; v < f->mesh->vertex_count; v++) {
-        const uint32_t point = f->point[f->weld[v]], at = f->border[root_of(f->parent, f->weld[v])];
+        const uint32_t point = f->point[f->weld[v]], at = f->border[islands_root(f->parent, f->weld[v])];
         double own[3], first[3];
         if (!at || point == MODEL_NONE) continue;
         vec_posed(f->mesh->normal, NULL, v, own);
@@ -184,7 +179,7 @@ static int find_in_mesh(finder *f, border_list *out)
         const uint32_t a = f->weld[f->mesh->indices[c]], b = f->weld[f->mesh->indices[next_corner(c)]];
         const edge_slot *slot = a == b ? NULL : slot_of(&f->table, a < b ? a : b, a < b ? b : a);
         if (!slot || !is_border(slot)) continue;
-        const uint32_t at = f->border[root_of(f->parent, slot->a)];
+        const uint32_t at = f->border[islands_root(f->parent, slot->a)];
         if (at) add_edge(f, &out->all[at - 1u], slot);
     }
     mark_hard(f, out);

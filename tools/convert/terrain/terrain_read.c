@@ -6,6 +6,7 @@
 
 #include "convert/base/file_kind.h"
 #include "convert/base/image_file.h"
+#include "convert/model/affine.h"
 #include "convert/model/model.h"
 
 #define POINTS 257u
@@ -60,14 +61,6 @@ static size_t count_triangles(const model *m)
     return count;
 }
 
-static void place(const double world[16], const float position[3], double out[3])
-{
-    for (int k = 0; k < 3; k++) {
-        out[k] = world[k] * (double)position[0] + world[4 + k] * (double)position[1] +
-                 world[8 + k] * (double)position[2] + world[12 + k];
-    }
-}
-
 static void add_corner(surface *s, size_t corner, const double at[3])
 {
     for (int k = 0; k < 3; k++) {
@@ -89,7 +82,9 @@ static int surface_of(const model *m, surface *s, model_error *error)
         const model_mesh *mesh = &m->meshes[m->nodes[i].mesh];
         for (uint32_t k = 0; k < mesh->index_count / 3u * 3u; k++) {
             double at[3];
-            place(m->nodes[i].world, mesh->position + 3u * (size_t)mesh->indices[k], at);
+            const float *p = mesh->position + 3u * (size_t)mesh->indices[k];
+            const double point[3] = { (double)p[0], (double)p[1], (double)p[2] };
+            affine_point(m->nodes[i].world, point, at);
             add_corner(s, corner++, at);
         }
     }

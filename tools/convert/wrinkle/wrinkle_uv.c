@@ -3,6 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "convert/model/islands.h"
+
 #define REPEAT 10497u
 #define BEYOND 1e-4 /* of a tile: rounding by the exporter */
 
@@ -18,22 +20,13 @@ typedef struct parts {
     part *all;    /* [vertex_count] */
 } parts;
 
-static uint32_t find(parts *p, uint32_t v)
-{
-    while (p->of[v] != v) {
-        p->of[v] = p->of[p->of[v]];
-        v = p->of[v];
-    }
-    return v;
-}
-
 static void join_triangles(parts *p, const model_mesh *mesh)
 {
     for (uint32_t v = 0; v < mesh->vertex_count; v++) p->of[v] = v;
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        const uint32_t root = find(p, mesh->indices[i]);
-        p->of[find(p, mesh->indices[i + 1])] = root;
-        p->of[find(p, mesh->indices[i + 2])] = root;
+        const uint32_t root = islands_root(p->of, mesh->indices[i]);
+        p->of[islands_root(p->of, mesh->indices[i + 1])] = root;
+        p->of[islands_root(p->of, mesh->indices[i + 2])] = root;
     }
 }
 
@@ -50,7 +43,7 @@ static void measure(parts *p, const model *m, const model_mesh *mesh, const wrin
         p->all[v] = (part){ { HUGE_VAL, HUGE_VAL }, { -HUGE_VAL, -HUGE_VAL }, 0, { 0, 0 } };
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        part *at = &p->all[find(p, v)];
+        part *at = &p->all[islands_root(p->of, v)];
         for (uint32_t axis = 0; axis < 2; axis++) {
             const double uv = (double)mesh->uv[2 * (size_t)v + axis];
             at->low[axis] = fmin(at->low[axis], uv);
@@ -61,7 +54,7 @@ static void measure(parts *p, const model *m, const model_mesh *mesh, const wrin
         const model_submesh *sub = &mesh->submeshes[s];
         for (uint32_t i = 0; i < sub->index_count && sub->material < m->material_count; i += 3) {
             const model_material *material = &m->materials[sub->material];
-            part *at = &p->all[find(p, mesh->indices[sub->first_index + i])];
+            part *at = &p->all[islands_root(p->of, mesh->indices[sub->first_index + i])];
             at->wrinkles |= sub->material == field->material;
             fix_by(m, material->base_color_texture, at);
             fix_by(m, material->normal_texture, at);
@@ -84,7 +77,7 @@ static void settle_axis(parts *p, model_mesh *mesh, uint32_t axis, uint8_t *clam
 {
     *clamped = 1;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-        const part *at = &p->all[find(p, v)];
+        const part *at = &p->all[islands_root(p->of, v)];
         float *uv = &mesh->uv[2 * (size_t)v + axis];
         int in;
         const double tile = tile_of(at, axis, &in);
