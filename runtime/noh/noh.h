@@ -285,10 +285,11 @@ typedef struct noh_stage_desc {
     /* Reflections and the shadow map (noh_gl.h). Shaders are then lit by noh_stage_set_lighting. Must outlive the
      * stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
-    /* Bytes on the GPU for textures whose finer levels come as the size on screen needs them, in pieces within load_bytes,
-     * and go where the room is needed; until then coarser levels are shown. Levels up to 64 x 64 are always there. Their
-     * packs are read by frames. At least all these small levels, the largest texture whole, and small ones once more.
-     * Textures of kinds that change, masks at vertices and toons' ramps stay whole. Default (0) all textures whole */
+    /* Bytes on the GPU for textures whose finer levels come as the size on screen needs them, in pieces within
+     * load_bytes, and go where the room is needed; until then coarser levels are shown. Levels up to 64 x 64 are always
+     * there. Their packs are read by frames. At least all these small levels, the largest texture whole, and small ones
+     * once more. Textures of kinds that change, masks at vertices and toons' ramps stay whole. Default (0) all textures
+     * whole */
     uint64_t texture_reserve;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of noh_gl.h; default (NULL) nothing is drawn */
     /* With the other stages of the same ledger that share, what a pack has on the GPU exists once (noh_gl.h). Default
@@ -865,20 +866,20 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
 
 /* ---- clips loaded later ---- */
 
-/* Bring a clip of a kind with clip_reserve into the reserve, or ask for it. What plays keeps its clips. Others make room
- * for the new one, the least recently used first, ended or never played. Kinds with the same clips share them. Until a
- * clip is there, what would start it fails with NOT_FOUND and leaves the actor as it was: noh_actor_play, a graph with
- * such a clip, walkers; motion matching stays with what it plays, and getting up takes another clip. What failed is in
- * noh_stage_stats.wanted; durations, keys and names of absent clips are known. Clips that have to be there together
- * (of a graph, of walkers, an additive clip and its reference) fail with MEMORY if what plays leaves too little for all
- * (need: the bytes of clip_reserve), and are not in `wanted`. Which clips are there depends on the order of calls
- * alone, not on jobs or time, and is not part of the state.
+/* Bring a clip of a kind with clip_reserve into the reserve, or ask for it. What plays keeps its clips. Others make
+ * room for the new one, the least recently used first, ended or never played. Kinds with the same clips share them.
+ * Until a clip is there, what would start it fails with NOT_FOUND and leaves the actor as it was: noh_actor_play, a
+ * graph with such a clip, walkers; motion matching stays with what it plays, and getting up takes another clip. What
+ * failed is in noh_stage_stats.wanted; durations, keys and names of absent clips are known. Clips that have to be there
+ * together (of a graph, of walkers, an additive clip and its reference) fail with MEMORY if what plays leaves too
+ * little for all (need: the bytes of clip_reserve), and are not in `wanted`. Which clips are there depends on the order
+ * of calls alone, not on jobs or time, and is not part of the state.
  * clip    as noh_stage_find has it
  * chunk   the whole chunk, as in the pack's file: noh_wanted_clip.bytes, copied. Any alignment. Bytes with the checksum
  *         that the pack has for them are trusted as the pack is. NULL: ask for the clip, which puts it into
  *         noh_stage_stats.wanted if it is absent
- * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no clip_reserve; NOT_FOUND no such clip
- *         (need: their count); DATA the bytes differ from those that the stage was made with; MEMORY what plays
+ * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no clip_reserve; NOT_FOUND no such
+ *         clip (need: their count); DATA the bytes differ from those that the stage was made with; MEMORY what plays
  *         leaves too little of the reserve (where: bytes that play, need: bytes). Nothing has then changed */
 noh_result noh_stage_load_clip(noh_stage *stage, uint32_t kind, uint32_t clip, const void *chunk, noh_error *error);
 

@@ -415,8 +415,8 @@ static void plans_have_every_byte(void **state)
     gpu_close(&g);
 }
 
-/* Each stage has its own meshes where finer levels are loaded later: one stage loads its levels and drops them while the
- * other one waits, is drawn and ends. */
+/* Each stage has its own meshes where finer levels are loaded later: one stage loads its levels and drops them while
+ * the other one waits, is drawn and ends. */
 static void levels_that_are_loaded_later_are_not_shared(void **state)
 {
     static gpu g;
@@ -469,7 +469,8 @@ static const char *const functions[] = {
     "glUseProgram",   "glTexParameteri"
 };
 
-/* Make `room` while the level is there, calls 0, 1, 3, 7 and so on of each function refused. Returns how often it failed. */
+/* Make `room` while the level is there, calls 0, 1, 3, 7 and so on of each function refused. Returns how often it
+ * failed. */
 static uint32_t refuse_each(gpu *g, show *level, show *room)
 {
     uint32_t refused = 0;

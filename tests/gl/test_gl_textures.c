@@ -202,7 +202,7 @@ static void wear_the_other(const show *w)
     assert_int_equal(noh_actor_set_appearance(w->stage, w->actors[1], &look, &said), NOH_OK);
 }
 
-/* From afar the small levels are all that the whole texture shows. Near, frames show them until finer ones are there. */
+/* From afar the small levels are all that the whole texture shows. Near, they are shown until finer ones come. */
 static void coarser_levels_are_shown_until_the_finer_come(void **state)
 {
     gpu *g = fixture_gpu();

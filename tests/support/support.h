@@ -136,8 +136,8 @@ noh_mesh test_mesh(const noh_pack *pack, uint32_t index);
 /* Layers in malloc'ed memory of the exact size; layers->position is the block to free. */
 noh_morph_layers test_layers(const noh_mesh *mesh);
 
-/* A hash of bytes (FNV-1a, 64 bits), continued from `hash`; start with TEST_HASH. For files that hold a CRC of their own
- * bytes, whose CRC is the same whatever they say. */
+/* A hash of bytes (FNV-1a, 64 bits), continued from `hash`; start with TEST_HASH. For files that hold a CRC of their
+ * own bytes, whose CRC is the same whatever they say. */
 #define TEST_HASH 0xcbf29ce484222325ull
 uint64_t test_hash(uint64_t hash, const void *bytes, size_t count);
 

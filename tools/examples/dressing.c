@@ -1,6 +1,6 @@
 /* dressing.c: a dressing room. Two figures walk on the spot; one puts a coat on, takes it off and lends it to the
- * other, each in one frame, and what the coat hides of them is not drawn. Then the street opens, with the room's packs on
- * the GPU, and the room is closed. Saves a picture of each change.
+ * other, each in one frame, and what the coat hides of them is not drawn. Then the street opens, with the room's packs
+ * on the GPU, and the room is closed. Saves a picture of each change.
  *
  *   dressing BODY.noh GARMENT.noh [MESH] [-o NAME]
  *

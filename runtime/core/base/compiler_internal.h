@@ -6,8 +6,8 @@
  *   NOH_UNROLL           before a short loop over an array of registers
  *   NOH_TRAP             ends the program, without a library
  *   NOH_UNUSED           for a function that a file may leave unused
- *   NOH_PAGE             1: for a program that is one small stage, as the web page: no worlds for springs, no stages that
- *                        share, no clips or levels of textures by need, no checks of states that others made
+ *   NOH_PAGE             1: for a program that is one small stage, as the web page: no worlds for springs, no stages
+ *                        that share, no clips or levels of textures by need, no checks of states that others made
  *   NOH_AVX2, NOH_SSE2, NOH_NEON   which vector instructions the kernels may use; undefined: none
  *   noh_leading_zeros, noh_trailing_zeros   of a nonzero word
  *

@@ -2,9 +2,9 @@
  *
  * A texture begins with its small levels. Each frame compares what it has with the size at which its meshes are shown,
  * and makes at most one new object at a time: a finer one where one is needed and the reserve has room, otherwise a
- * coarser one where more is there than is needed. Frames fill it in pieces; then it takes the place of the old one, so a
- * picture never shows a level that is not complete. Storage of OpenGL ES is immutable: a base level would hide levels but
- * keep their memory, so fewer bytes need another object. */
+ * coarser one where more is there than is needed. Frames fill it in pieces; then it takes the place of the old one, so
+ * a picture never shows a level that is not complete. Storage of OpenGL ES is immutable: a base level would hide levels
+ * but keep their memory, so fewer bytes need another object. */
 #include <string.h>
 
 #include "core/base/math_internal.h"

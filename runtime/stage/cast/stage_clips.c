@@ -1,7 +1,7 @@
 /* stage_clips.c: clips that are brought into a kind's reserve while the stage runs, and those that are wanted.
  *
- * A bank knows all its clips, and which of their bytes are in memory (clip_bank_reserve.c). What would start one that is
- * not asks here first. Clips in use stay: what tracks play that are on, or will be by a change that waits, and all
+ * A bank knows all its clips, and which of their bytes are in memory (clip_bank_reserve.c). What would start one that
+ * is not asks here first. Clips in use stay: what tracks play that are on, or will be by a change that waits, and all
  * clips of a graph that plays. What is asked for together was used last, and is asked for only where it has room with
  * what plays: so bringing the rest of it takes none of it away. */
 #include <string.h>

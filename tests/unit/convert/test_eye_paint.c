@@ -120,7 +120,8 @@ static void add_node(model *m, double x, int is_turned)
     node->world[12] = x;
 }
 
-/* z is up in the mesh: a node, or a joint, turns it; the joint may tilt the head by 17 degrees, too. The iris is where the world's +z is. */
+/* z is up in the mesh: a node, or a joint, turns it; the joint may tilt the head by 17 degrees, too. The iris is where
+ * the world's +z is. */
 static void turned_eyes_look_ahead(void **state)
 {
     (void)state;

@@ -22,8 +22,8 @@
 static const uint32_t formats[FORMATS] = { NOH_TEXTURE_ETC2_RGB, NOH_TEXTURE_ETC2_RGBA, NOH_TEXTURE_EAC_RG,
                                            NOH_TEXTURE_ETC2_RGBA1 };
 
-/* What a texel of a picture is: 0 waves, 1 two colours in every block, 2 noise, 3 a slope with a grain, whose blocks are
- * halves of near colours. */
+/* What a texel of a picture is: 0 waves, 1 two colours in every block, 2 noise, 3 a slope with a grain, whose blocks
+ * are halves of near colours. */
 static uint8_t value_of(int kind, uint32_t x, uint32_t y, uint32_t c, test_random *r)
 {
     const uint32_t color = (x / 4u * 7u + y / 4u * 13u + (x * 5u + y * 3u) % 7u % 2u * 101u) * (c + 3u);
