@@ -23,9 +23,10 @@
 #define WET 0.1f
 #define GREY_HUE 0.02f
 #define SKIN_ROUGHNESS 0.5f
-#define SAME_WAY 0.9        /* cosine of the angle between gazes of one mesh that several nodes draw */
-#define UNTILTED 0.9999     /* cosine of the angle between an axis and where the rest pose puts it */
-#define IRIS_REACH 1.3      /* an iris of its own is within this reach of the ball's centre, in radii */
+#define SAME_WAY 0.9    /* cosine of the angle between gazes of one mesh that several nodes draw */
+#define UNTILTED 0.9999 /* cosine of the angle between an axis and where the rest pose puts it */
+#define IRIS_REACH 1.3  /* an iris of its own is within this reach of the ball's centre, in radii */
+#define COVERED 0.97    /* a ball whose front is here, in radii, has no hole that shows what is inside */
 
 /* Balls in the world's space. */
 typedef struct balls {
@@ -40,6 +41,7 @@ typedef struct ball {
     const uint32_t *vertices; /* [count] */
     eye_sphere sphere;
     double right[3], up[3], gaze[3]; /* unit; where the world's x, y and z are */
+    double front;                    /* how far it reaches along the gaze, in radii */
 } ball;
 
 typedef void ball_visit(model *m, const ball *eye, balls *b);
@@ -128,7 +130,6 @@ static int is_plain(const model *m, const model_mesh *mesh, const model_submesh 
 static int is_ball(const model *m, ball *eye)
 {
     const float *position = m->meshes[eye->mesh].position;
-    double front = 0.0;
     if (eye->count < BALL_VERTICES_MIN || eye_sphere_fit(position, eye->vertices, eye->count, &eye->sphere) ||
         eye->sphere.residual > BALL_RESIDUAL_MAX || !find_gaze(m, eye)) {
         return 0;
@@ -138,9 +139,9 @@ static int is_ball(const model *m, ball *eye)
         for (size_t c = 0; c < 3; c++) {
             way[c] = (double)position[3 * (size_t)eye->vertices[i] + c] - eye->sphere.centre[c];
         }
-        front = fmax(front, vec_dot(way, eye->gaze));
+        eye->front = fmax(eye->front, vec_dot(way, eye->gaze) / eye->sphere.radius);
     }
-    return front > 0.8 * eye->sphere.radius;
+    return eye->front > 0.8;
 }
 
 static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, uint32_t *room,
@@ -179,8 +180,8 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
     return 0;
 }
 
-/* Whether the mesh has a vertex of the part near the centre. */
-static int is_near(const model *m, uint32_t mesh, const model_submesh *part, const eye_sphere *sphere)
+/* Whether the mesh has a vertex of the part that is seen at the ball. */
+static int is_seen(const model *m, uint32_t mesh, const model_submesh *part, const eye_sphere *sphere, double front)
 {
     double places[BALLS_MAX][16];
     const uint32_t count = part->vertex_count ? places_of(m, mesh, part->first_vertex, places) : 0u;
@@ -190,20 +191,21 @@ static int is_near(const model *m, uint32_t mesh, const model_submesh *part, con
         double way[3];
         affine_point(places[i % count], at, way);
         for (int c = 0; c < 3; c++) way[c] -= sphere->centre[c];
-        if (vec_dot(way, way) < pow(IRIS_REACH * sphere->radius, 2.0)) return 1;
+        const double from = sqrt(vec_dot(way, way)) / sphere->radius;
+        if (from < IRIS_REACH && (front < COVERED || from > fmax(front, 1.0))) return 1;
     }
     return 0;
 }
 
 /* Whether an opaque iris, pupil or cornea of another material is at the ball. */
-static int has_iris(const model *m, uint32_t material, const eye_sphere *sphere)
+static int has_iris(const model *m, uint32_t material, const eye_sphere *sphere, double front)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
             const model_submesh *part = &m->meshes[i].submeshes[s];
             const model_material *other = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
             if (other && part->material != material && other->surface == NOH_SURFACE_EYE &&
-                other->alpha == MODEL_ALPHA_OPAQUE && is_near(m, i, part, sphere)) {
+                other->alpha == MODEL_ALPHA_OPAQUE && is_seen(m, i, part, sphere, front)) {
                 return 1;
             }
         }
@@ -220,7 +222,7 @@ static void collect(model *m, const ball *eye, balls *b)
         const double *w = places[i];
         affine_point(w, eye->sphere.centre, at.centre);
         at.radius *= sqrt(w[2] * w[2] + w[6] * w[6] + w[10] * w[10]);
-        if (has_iris(m, eye->material, &at)) continue;
+        if (has_iris(m, eye->material, &at, eye->front)) continue;
         b->materials[b->count] = eye->material;
         b->spheres[b->count++] = at;
     }

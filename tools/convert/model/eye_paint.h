@@ -5,12 +5,12 @@
 #include "model.h"
 
 /* Paint pale eyes that have no texture, do not glow, and have one vertex colour: two balls of one size, side by side,
- * get a texture that is made here, and texture coordinates about the world's +z, where they look, by the first node
- * that draws them. The outermost is the one that is seen. Eyes with an iris, pupil or cornea of another opaque material
- * stay. Such materials become white and wet, and add a warning. Meshes without texture coordinates are left as they
- * are. Surfaces of materials are known. If the model has no texture of its own, grey materials named as a face, head or
- * neck become skin, each with a warning, unless their surface is given or they have vertex colours: a living eye in
- * plaster looks uncanny.
+ * get a texture that is made here, and texture coordinates about the world's +z, where they look, by the first node that
+ * draws them. Of balls in each other the outermost is seen; an iris, pupil or cornea of another opaque material that is
+ * seen, too, leaves its eye as it is. Painted materials become white and wet, and add a warning. Meshes without texture
+ * coordinates are left as they are. Surfaces of materials are known. If the model has no texture of its own, grey
+ * materials named as a face, head or neck become skin, each with a warning, unless their surface is given or they have
+ * vertex colours: a living eye in plaster looks uncanny.
  * returns  1: out of memory */
 int eye_paint(model *m);
 

@@ -7,7 +7,7 @@
 #include "convert/model/surface_kind.h"
 
 #define STRIP_TRIANGLES 16u /* a lash of its own has fewer */
-#define STRIPS_MAX 8u       /* of a part: more are modelled lashes */
+#define STRIPS_MAX 16u      /* of a part: four lids with a few layers; more are modelled lashes */
 
 /* Triangles that share vertices are one piece; lashes may touch the skin. joined: [vertex_count] */
 static int is_strip(const model_mesh *mesh, const model_submesh *part, uint32_t *joined)
