@@ -457,42 +457,54 @@ static void state_segments(const planner *p)
     }
 }
 
-/* Of the packs of a kind's texture sets, each once. */
-static uint64_t count_set_packs(const noh_kind_desc *d)
+/* Packs of a kind: its mesh, its clips, its texture sets. NULL: past the last; a set of its own textures gives its mesh. */
+static const noh_pack *pack_at(const noh_kind_desc *d, uint32_t index)
 {
-    uint64_t bytes = 0;
-    for (uint32_t i = 0; i < d->texture_set_count; i++) {
-        const noh_pack *pack = d->texture_sets[i].pack;
-        int seen = !pack || pack->bytes == d->mesh->bytes;
-        for (uint32_t k = 0; k < i && !seen; k++) {
-            seen = d->texture_sets[k].pack && d->texture_sets[k].pack->bytes == pack->bytes;
-        }
-        bytes += seen ? 0 : pack->byte_count;
-    }
-    return bytes;
+    const uint32_t clip_count = d->clip_packs ? d->clip_pack_count : 1u;
+    if (index == 0) return d->mesh;
+    if (index <= clip_count) return d->clip_packs ? d->clip_packs[index - 1u] : d->clips;
+    index -= 1u + clip_count;
+    if (index >= d->texture_set_count) return NULL;
+    return d->texture_sets[index].pack ? d->texture_sets[index].pack : d->mesh;
 }
 
 static int plays_from(const noh_kind_desc *d, const noh_pack *pack)
 {
-    const noh_pack *clips = d->clips || d->clip_packs ? d->clips : d->mesh;
-    int plays = clips && clips->bytes == pack->bytes;
-    for (uint32_t i = 0; d->clip_packs && i < d->clip_pack_count; i++) plays |= d->clip_packs[i]->bytes == pack->bytes;
+    int plays = 0;
+    for (uint32_t i = 1; i <= (d->clip_packs ? d->clip_pack_count : 1u); i++)
+        plays |= pack_at(d, i)->bytes == pack->bytes;
     return plays;
 }
 
-/* Without its clips, if no kind reads them in place. */
+/* Without its clips, if only kinds with a reserve play them. */
 static uint64_t pack_bytes(const noh_stage_desc *desc, const noh_pack *pack)
 {
     const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
     uint64_t bytes = pack->byte_count;
-    int in_place = NOH_PAGE;
+    int in_place = NOH_PAGE, reserved = 0;
     for (uint32_t i = 0; !NOH_PAGE && i < desc->kind_count; i++) {
-        in_place |= !desc->kinds[i].clip_reserve && plays_from(&desc->kinds[i], pack);
+        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+        if (!plays_from(&d, pack)) continue;
+        in_place |= !d.clip_reserve;
+        reserved |= d.clip_reserve != 0;
     }
-    for (uint32_t i = 0; !in_place && i < run.count; i++) {
+    for (uint32_t i = 0; reserved && !in_place && i < run.count; i++) {
         bytes -= pack->chunks[run.first + i].bytes;
     }
     return bytes;
+}
+
+/* Whether a kind before this one, or this one before `index`, has the pack. */
+static int is_counted(const noh_stage_desc *desc, uint32_t kind, uint32_t index, const noh_pack *pack)
+{
+    for (uint32_t i = 0; i <= kind; i++) {
+        const noh_kind_desc d = noh_stage_kind_desc(desc, i);
+        const noh_pack *other = pack_at(&d, 0);
+        for (uint32_t k = 0; other && (i < kind || k < index); other = pack_at(&d, ++k)) {
+            if (other->bytes == pack->bytes) return 1;
+        }
+    }
+    return 0;
 }
 
 static uint64_t count_packs(const noh_stage_desc *desc)
@@ -500,15 +512,9 @@ static uint64_t count_packs(const noh_stage_desc *desc)
     uint64_t bytes = 0;
     for (uint32_t i = 0; i < desc->kind_count; i++) {
         const noh_kind_desc d = noh_stage_kind_desc(desc, i);
-        int seen = 0;
-        for (uint32_t k = 0; k < i; k++) {
-            seen |= desc->kinds[k].mesh->bytes == d.mesh->bytes;
-        }
-        bytes += seen ? 0 : d.clips == d.mesh ? pack_bytes(desc, d.mesh) : d.mesh->byte_count;
-        bytes += seen ? 0 : count_set_packs(&d);
-        if (!seen && d.clips && d.clips->bytes != d.mesh->bytes) bytes += pack_bytes(desc, d.clips);
-        for (uint32_t c = 0; !seen && d.clip_packs && c < d.clip_pack_count; c++) {
-            bytes += d.clip_packs[c]->bytes != d.mesh->bytes ? pack_bytes(desc, d.clip_packs[c]) : 0;
+        const noh_pack *pack = pack_at(&d, 0);
+        for (uint32_t k = 0; pack; pack = pack_at(&d, ++k)) {
+            if (!is_counted(desc, i, k, pack)) bytes += pack_bytes(desc, pack);
         }
     }
     return bytes;

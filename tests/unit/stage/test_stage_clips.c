@@ -550,6 +550,46 @@ static void clips_read_in_place_stay_in_the_pack(void **state)
     assert_int_equal(bytes[1][1], bytes[0][0] - clips);
 }
 
+/* Whichever kinds, lists and texture sets name it. */
+static void each_pack_counts_once(void **state)
+{
+    const noh_pack *lists[2][3];
+    uint64_t clips = 0;
+    noh_pack again;
+    show w;
+    (void)state;
+    open_show(&w, 0, 1);
+    again = w.pack; /* the same bytes under another address */
+    lists[0][0] = lists[1][0] = lists[0][2] = &again;
+    lists[0][1] = lists[1][2] = &w.c.packs[PUPPETS];
+    lists[1][1] = &w.c.packs[MASKS];
+    for (uint32_t i = 0; i < CLIPS; i++) clips += w.pack.chunks[w.pack.runs[NOH_CHUNK_CLIP].first + i].bytes;
+    w.c.kinds[0].graphs = noh_graph_module(NULL);
+    w.c.kinds[1] = w.c.kinds[0];
+    w.c.desc.kind_count = 2;
+    for (uint32_t i = 0; i < 2; i++) w.c.kinds[i].clip_packs = lists[i];
+    for (uint32_t first = 1; first <= 3; first++) {
+        for (uint32_t second = 1; second <= 3; second++) {
+            for (uint32_t reserve = 0; reserve < 2; reserve++) {
+                const int puppets = first > 1 || second > 2, masks = second > 1;
+                for (uint32_t i = 0; i < 2; i++) {
+                    w.c.kinds[i].clip_pack_count = i ? second : first;
+                    w.c.kinds[i].clip_reserve = reserve ? 1u << 15 : 0;
+                }
+                if (noh_stage_plan_make(&w.c.desc, NULL, &w.c.plan, &said)) fail_msg("%s", said.what);
+                uint64_t expected = w.pack.byte_count * (puppets ? 2u : 1u) -
+                                    (reserve ? clips * (puppets ? 2u : 1u) : 0);
+                if (masks) expected += w.c.packs[MASKS].byte_count;
+                for (uint32_t i = 0; masks && reserve && i < w.c.packs[MASKS].runs[NOH_CHUNK_CLIP].count; i++) {
+                    expected -= w.c.packs[MASKS].chunks[w.c.packs[MASKS].runs[NOH_CHUNK_CLIP].first + i].bytes;
+                }
+                assert_int_equal(w.c.plan.pack_bytes, expected);
+            }
+        }
+    }
+    close_show(&w);
+}
+
 static void the_plan_states_the_reserve(void **state)
 {
     noh_stage_bytes parts[32];
@@ -669,6 +709,7 @@ int main(void)
         cmocka_unit_test(a_slot_has_a_reserve_of_its_own),
         cmocka_unit_test(a_slot_of_a_plan_without_reserves_takes_none),
         cmocka_unit_test(clips_read_in_place_stay_in_the_pack),
+        cmocka_unit_test(each_pack_counts_once),
         cmocka_unit_test(the_plan_states_the_reserve),
         cmocka_unit_test(what_is_wrong_is_refused),
         cmocka_unit_test(places_in_a_chunk_are_checked),
