@@ -236,7 +236,7 @@ static void bad_lines_are_told_by_number(void **state)
         { "bytes_max 18446744073709551616\n", ":1", "bytes_max is 18446744073709551616: it must be 1 to" },
         { "bytes_max 0\n", ":1", "bytes_max is 0" },
         { "jobs 65\n", ":1", "jobs is 65: it must be 1 to 64" },
-        { "halves 2\n", ":1", "halves is 2: it must be 0 to 1" },
+        { "halves 2\n", ":1", "halves has no value '2'" },
         { "pixels 0\n", ":1", "pixels must be a number above 0" },
         { "pixels nan\n", ":1", "pixels must be a number" },
         { "jobs 1\njobs 2\n", ":2", "'jobs' is given twice; the first is in line 1" },

@@ -6,10 +6,12 @@
 #include "noh/base.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
+#include "noh/noh_gl.h"
 #include "noh/pack.h"
 
-#define STAGE_DESC_CLIPS_MAX 32u /* packs of clips of one kind */
-#define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + 2u))
+#define STAGE_DESC_CLIPS_MAX 32u        /* packs of clips of one kind */
+#define STAGE_DESC_TEXTURE_SETS_MAX 16u /* of one kind */
+#define STAGE_DESC_PACKS_MAX (NOH_STAGE_KINDS_MAX * (STAGE_DESC_CLIPS_MAX + STAGE_DESC_TEXTURE_SETS_MAX + 2u))
 #define STAGE_DESC_PEERS_MAX 4u
 
 /* The desc points into the rest: neither is copied. */
@@ -21,6 +23,11 @@ typedef struct stage_desc_file {
     noh_layer_desc layers[NOH_STAGE_KINDS_MAX][NOH_LAYERS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     noh_kind_ragdoll ragdolls[NOH_STAGE_KINDS_MAX];
+    noh_modifier modifiers[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX];
+    noh_texture_set texture_sets[NOH_STAGE_KINDS_MAX][STAGE_DESC_TEXTURE_SETS_MAX];
+    uint32_t nodes[NOH_STAGE_KINDS_MAX][NOH_STAGE_MESHES_MAX];
+    noh_reflection reflection; /* without texels */
+    noh_gl_light_desc light;
     const noh_pack *clips[NOH_STAGE_KINDS_MAX][STAGE_DESC_CLIPS_MAX];
     pack_file packs[STAGE_DESC_PACKS_MAX]; /* each file once, so that kinds share it */
     char *pack_paths[STAGE_DESC_PACKS_MAX];
