@@ -157,18 +157,6 @@ static void fill_cover(const noh_stage *s, uint32_t kind, noh_gl_cover *cover, u
     gl->BindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
 }
 
-/* The kinds of the garments that are seen on an actor and may hide something. */
-static uint32_t garments_on(const noh_stage *s, uint32_t index)
-{
-    uint32_t garments = 0;
-    for (uint32_t g = s->shown[index].worn; g; g = s->shown[g - 1u].next_worn) {
-        const noh_stage_kind *k = noh_stage_kind_of(s, g - 1u);
-        if (s->shown[g - 1u].views && !k->finer.hidden && k->desc->mesh->runs[NOH_CHUNK_COVER].count)
-            garments |= 1u << (uint32_t)(k - s->kinds);
-    }
-    return garments;
-}
-
 static uint8_t find_cover(const noh_stage *s, uint32_t kind, uint32_t garments, int fills)
 {
     noh_gl_cover *covers = ((const noh_stage_gl *)s->gpu)->kinds[kind].covers;
@@ -191,7 +179,7 @@ void noh_gl_choose_covers(noh_stage *s)
         const noh_stage_kind *k = &s->kinds[i];
         for (uint32_t p = 0; k->desc->cover_count && p < 2u * noh_stage_seen(k); p++) {
             const uint32_t index = k->first_actor + k->order[p % noh_stage_seen(k)];
-            const uint32_t garments = garments_on(s, index);
+            const uint32_t garments = noh_stage_garments_on(s, index);
             s->shown[index].cover = garments ? find_cover(s, i, garments, p >= noh_stage_seen(k)) : 0;
         }
     }

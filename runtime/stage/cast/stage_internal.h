@@ -270,6 +270,7 @@ typedef struct noh_stage_shown {
     uint16_t worn;               /* 1 + the first garment on it that is posed or shown in this frame; 0: none */
     uint16_t next_worn;          /* of a garment: 1 + the next one on its wearer; 0: the last */
     uint8_t cover;               /* what draws: 1 + the set of garments that hides parts of it; 0: none */
+    uint8_t look;                /* while places are given: its look among those of its kind */
 } noh_stage_shown;
 
 #define NOH_STAGE_MOVED 2u
@@ -573,7 +574,9 @@ int noh_stage_can_wear(const noh_stage_kind *garment, uint32_t wearer_kind);
 int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_stage_kind *wearer);
 /* What a garment's pack hides of a mesh, which has all levels of its pack; NULL: nothing. */
 const noh_pack_cover_header *noh_stage_cover_of(const noh_pack *garment, const noh_mesh *mesh);
-/* Before updates are chosen: list the garments of each wearer that are posed or shown. */
+/* The kinds of the garments that are seen on an actor and may hide something of it. */
+uint32_t noh_stage_garments_on(const noh_stage *s, uint32_t index);
+/* Before places are given: list the garments of each wearer that are posed or shown. */
 void noh_stage_link_worn(noh_stage *s);
 void noh_stage_update_worn(noh_stage *s); /* and after: they are updated when their wearers are */
 /* In a job: the local pose of a garment from job->wearer; its floats after the wearer's. Actors that are not worn stay

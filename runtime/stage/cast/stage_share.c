@@ -97,22 +97,100 @@ static uint32_t run_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i)
                : shown->level * noh_stage_influence_levels(k) + noh_stage_character(k, i)->lod.influences;
 }
 
-/* The next place in its run for each seen actor of a texture set. */
-static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t set, uint32_t *next)
+/* What keeps actors of a run from being drawn together, the most telling first. */
+typedef struct look_key {
+    uint32_t texture_set, garments, hidden_meshes, wrinkles;
+} look_key;
+
+#define LOOKS_MAX 80u /* above NOH_TEXTURE_SETS_MAX */
+
+/* whole: otherwise its textures alone. */
+static look_key key_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i, int whole)
+{
+    const noh_appearance *look = &k->actors[i].look;
+    look_key key = { look->texture_set, 0, 0, 0 };
+    if (!whole) return key;
+    if (k->desc->cover_count) key.garments = noh_stage_garments_on(s, k->first_actor + i);
+    key.hidden_meshes = look->hidden_meshes;
+    key.wrinkles = (uint32_t)look->wrinkle_models << 8 | look->smoothed;
+    return key;
+}
+
+static int compare_looks(const look_key *a, const look_key *b)
+{
+    if (a->texture_set != b->texture_set) return a->texture_set < b->texture_set ? -1 : 1;
+    if (a->garments != b->garments) return a->garments < b->garments ? -1 : 1;
+    if (a->hidden_meshes != b->hidden_meshes) return a->hidden_meshes < b->hidden_meshes ? -1 : 1;
+    return a->wrinkles < b->wrinkles ? -1 : a->wrinkles > b->wrinkles;
+}
+
+/* The place of a look among sorted ones, or where it would be. */
+static uint32_t find_look(const look_key *looks, uint32_t count, const look_key *key)
+{
+    uint32_t first = 0;
+    while (count) {
+        const uint32_t half = count / 2u;
+        if (compare_looks(&looks[first + half], key) < 0) {
+            first += half + 1u;
+            count -= half + 1u;
+        } else {
+            count = half;
+        }
+    }
+    return first;
+}
+
+/* Sort the looks of seen actors. Returns how many there are; 0: more than fit. */
+static uint32_t sort_looks(const noh_stage *s, const noh_stage_kind *k, int whole, look_key *looks)
+{
+    uint32_t count = 0, last = 0;
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        if (!s->shown[k->first_actor + i].views) continue;
+        const look_key key = key_of(s, k, i, whole);
+        if (count && !compare_looks(&looks[last], &key)) continue;
+        last = find_look(looks, count, &key);
+        if (last < count && !compare_looks(&looks[last], &key)) continue;
+        if (count == LOOKS_MAX) return 0;
+        memmove(&looks[last + 1u], &looks[last], (count - last) * sizeof *looks);
+        looks[last] = key;
+        count++;
+    }
+    return count ? count : 1u;
+}
+
+/* Number the looks of seen actors. In a crowd of too many they are told apart by their textures alone. */
+NOH_NEVER_INLINE static uint32_t number_looks(noh_stage *s, const noh_stage_kind *k)
+{
+    look_key looks[LOOKS_MAX];
+    uint32_t count = sort_looks(s, k, 1, looks);
+    const int whole = count != 0;
+    if (!whole) count = sort_looks(s, k, 0, looks);
+    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+        noh_stage_shown *shown = &s->shown[k->first_actor + i];
+        if (!shown->views) continue;
+        const look_key key = key_of(s, k, i, whole);
+        shown->look = (uint8_t)find_look(looks, count, &key);
+    }
+    return count;
+}
+
+/* The next place in its run for each seen actor of a look. */
+static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t look, uint32_t *next)
 {
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_shown *shown = &s->shown[k->first_actor + i];
-        if (shown->views && k->actors[i].look.texture_set == set) {
+        if (shown->views && (NOH_PAGE ? k->actors[i].look.texture_set : shown->look) == look) {
             shown->place = (uint16_t)next[run_of(s, k, i)]++;
             k->order[shown->place] = i;
         }
     }
 }
 
-/* A counting sort by run, in a run by texture set; stable, so that neighbours in memory stay neighbours. */
+/* A counting sort by run, in a run by look; stable, so that neighbours in memory stay neighbours. */
 static void put_in_order(noh_stage *s, noh_stage_kind *k)
 {
     const uint32_t runs = noh_stage_run_count(k);
+    const uint32_t looks = NOH_PAGE ? k->desc->texture_set_count + 1u : number_looks(s, k);
     uint32_t next[NOH_LOD_LEVELS_MAX * 4u + 1u] = { 0 }, count = 0;
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         if (s->shown[k->first_actor + i].views) next[run_of(s, k, i)]++;
@@ -123,7 +201,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
         next[r] = k->runs[r];
     }
     k->runs[runs + 1u] = count;
-    for (uint32_t set = 0; set <= k->desc->texture_set_count; set++) take_places(s, k, set, next);
+    for (uint32_t look = 0; look < looks; look++) take_places(s, k, look, next);
 }
 
 /* ---- updates ---- */
@@ -160,7 +238,6 @@ static void offer(noh_stage *s, noh_stage_kind *k, uint32_t i)
 static void choose_updates(noh_stage *s)
 {
     uint32_t index;
-    noh_stage_link_worn(s);
     noh_schedule_begin(&s->schedule, s->head->step_ticks, s->desc.update_budget_ns);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) {
         const noh_stage_kind *k = &s->kinds[i];
@@ -300,6 +377,7 @@ void noh_stage_share(noh_stage *s)
         }
     }
     leave_out_attached(s);
+    noh_stage_link_worn(s);
     for (uint32_t i = 0; i < s->desc.kind_count; i++) put_in_order(s, &s->kinds[i]);
     count_levels(s);
     choose_updates(s);

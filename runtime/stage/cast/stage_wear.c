@@ -182,6 +182,17 @@ void noh_stage_update_worn(noh_stage *s)
     }
 }
 
+uint32_t noh_stage_garments_on(const noh_stage *s, uint32_t index)
+{
+    uint32_t garments = 0;
+    for (uint32_t g = s->shown[index].worn; g; g = s->shown[g - 1u].next_worn) {
+        const noh_stage_kind *k = noh_stage_kind_of(s, g - 1u);
+        if (s->shown[g - 1u].views && !k->finer.hidden && k->desc->mesh->runs[NOH_CHUNK_COVER].count)
+            garments |= 1u << (uint32_t)(k - s->kinds);
+    }
+    return garments;
+}
+
 /* ---- a pose ---- */
 
 /* b within a, without shear. */
