@@ -580,6 +580,15 @@ noh_result noh_pack_bind_clip(const noh_pack *pack, const noh_pack_clip *clip, n
  * The poses are bit-identical. A view never changes the bank: it decodes missing segments for itself only, so prefetch
  * what plays. There is no lock; the caller orders work before posing, and posing before the next frame. */
 
+/* Clips of another skeleton for a skeleton, as noh_retarget_init (low_life.h) makes it: the first field of a
+ * noh_retarget. */
+typedef struct noh_clip_map {
+    const noh_skeleton *source, *target; /* borrowed */
+    float ratio;                         /* of the target's size to the source's, each in its own unit */
+    /* private: a pose of the source as one of the target, or its first joint_count joints */
+    void (*pose)(const struct noh_clip_map *map, const noh_transform *from, uint32_t joint_count, noh_transform *to);
+} noh_clip_map;
+
 typedef struct noh_clip_bank_desc {
     const noh_pack *clips; /* the pack whose clips are played; NULL if clip_packs is set */
     /* the pack with the skeleton and nodes that the clips move; default (NULL) `clips`, or the first of clip_packs */
@@ -600,6 +609,8 @@ typedef struct noh_clip_bank_desc {
      * time (low_motion.h); default (0) the full rate */
     uint32_t sample_rate_needed;
     uint32_t reserve_bytes; /* private, as noh_kind_desc.clip_reserve (noh.h); 0 */
+    /* clips of map->source play, too, as poses of the skeleton. Must outlive the bank. Default (NULL) none */
+    const noh_clip_map *map;
 } noh_clip_bank_desc;
 
 /* Sizes and counts, known before any memory is allocated. */
@@ -629,6 +640,8 @@ typedef struct noh_clip_bank {
     const struct noh_bank_clip *bound; /* [clips.clip_count] private */
     float *sampled;                    /* private: the floats of one clip */
     uint32_t sampled_count;            /* private */
+    const noh_clip_map *map;           /* private: NULL: no clip needs it */
+    noh_transform *mapped;             /* private: a pose of its source */
 } noh_clip_bank;
 
 /* Check a desc and the headers of all clips; find the clips that fit and all sizes.
@@ -673,6 +686,7 @@ typedef struct noh_clip_bank_view {
     const noh_clip_bank *bank;
     noh_clip_view *samples; /* counts its late decodes */
     float *sampled;         /* private: the floats of one clip */
+    noh_transform *mapped;  /* private: a pose of the map's source */
 } noh_clip_bank_view;
 
 /* Exact size of a view in bytes: two segments, and the floats of a clip. */

@@ -574,7 +574,6 @@ typedef struct noh_reach {
  *   noh_retarget_rig_make   find the bones of a pack's skeleton
  *   noh_retarget_init       make the map from both reference poses
  *   noh_retarget_pose       a pose of the source as a pose of the target
- *   noh_retarget_play       the source's clips as a set for the target's controllers
  *
  * A joint turns as its counterpart does, from a target's reference pose whose arms and legs point along the source's. So
  * limbs have the source's directions, whatever the two bind poses are. Hands take the source's twist by their knuckles,
@@ -650,12 +649,11 @@ typedef struct noh_retarget_limb {
 } noh_retarget_limb;
 
 typedef struct noh_retarget {
-    const noh_skeleton *source, *target; /* borrowed */
+    noh_clip_map clips; /* for noh_kind_desc.map and noh_clip_bank_desc.map: they then play clips of the source */
     const noh_transform *rest;           /* [target->joint_count] borrowed: the target's reference pose */
     const noh_retarget_joint *joints;    /* [target->joint_count] borrowed */
     uint32_t flags;                      /* NOH_RETARGET_*; may be changed at any time */
     uint32_t bone_count;                 /* bones that both have */
-    float ratio;                         /* of the target's legs to the source's, each in its own unit */
     /* how much higher than the source's reference pose its clips' ground is, in its unit; 0 unless changed */
     float ground;
     float facing[4];            /* turns the source's reference pose to face as the target's does */
@@ -678,20 +676,6 @@ noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *sou
  * ranges   joint_count at most the target's: a LOD level uses the first joints only */
 void noh_retarget_pose(const noh_retarget *retarget, const noh_transform *from, const float (*feet)[3],
                        uint32_t joint_count, noh_transform *to);
-
-/* A source's clips for controllers of the target. */
-typedef struct noh_retarget_set {
-    noh_clip_set clips; /* with the source's names, keys, markers and floats; without masks and root motion */
-    const noh_clip_set *source;
-    const noh_retarget *retarget;
-    noh_transform *scratch; /* [source->joint_count] */
-} noh_retarget_set;
-
-/* Play a set through a map. All arguments must outlive the set; `set` must not be moved.
- * shapes   scratch[source->joint_count], of one thread
- * ranges   source has all joints of retarget->source */
-void noh_retarget_play(noh_retarget_set *set, const noh_retarget *retarget, const noh_clip_set *source,
-                       noh_transform *scratch);
 
 #ifdef __cplusplus
 }

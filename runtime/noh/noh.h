@@ -154,7 +154,7 @@ typedef struct noh_kind_desc {
      * reserves room for them, and noh_stage_load_level loads them. Read by plans and init, not kept. Default (NULL):
      * only the levels of `mesh` are shown */
     const noh_pack *finer;
-    const noh_pack *clips;             /* default (NULL) `mesh`. Clips of other skeletons are ignored */
+    const noh_pack *clips;             /* default (NULL) `mesh`. Clips of other skeletons: see `map` */
     const noh_pack *const *clip_packs; /* [clip_pack_count] several packs instead of `clips`; a clip in a later pack
                                         * replaces one of the same name. Must outlive the stage */
     uint32_t clip_pack_count;          /* 0 with `clips`; 0 with clip_packs: no clips at all */
@@ -162,6 +162,11 @@ typedef struct noh_kind_desc {
      * largest clip's. Plans and init then read the clips' chunks, and nothing reads them later: only the rest of the
      * packs must outlive the stage. Default (0): clips are read in place */
     uint32_t clip_reserve;
+    /* Clips of another skeleton in its packs play, too, as poses of its own: &retarget.clips of a noh_retarget
+     * (low_life.h), which must outlive the stage. They play like the kind's own, on any layer, with their keys, floats
+     * and root motion. While one plays, its actor is posed every frame, and with a map joints are never left out by
+     * LOD. Bytes: 40 for each joint of that skeleton, and as many for each job. Default (NULL): such clips are ignored */
+    const noh_clip_map *map;
     const uint32_t *nodes; /* [node_count] draws only these nodes of `mesh`; in a pack without nodes, these meshes.
                             * Default (NULL) all. Read by plans and init */
     uint32_t node_count;

@@ -110,7 +110,7 @@ static void find_ratio(making *m)
     if (!(sizes[SOURCE] > 0.0f && sizes[TARGET] > 0.0f)) { /* without legs: by height */
         for (int side = 0; side < 2; side++) sizes[side] = hips[side].position[1];
     }
-    m->r->ratio = sizes[SOURCE] > 0.0f && sizes[TARGET] > 0.0f ? sizes[TARGET] / sizes[SOURCE] : 1.0f;
+    m->r->clips.ratio = sizes[SOURCE] > 0.0f && sizes[TARGET] > 0.0f ? sizes[TARGET] / sizes[SOURCE] : 1.0f;
 }
 
 /* ---- alignment ---- */
@@ -287,7 +287,7 @@ static void make_leg(const making *m, uint32_t upper, noh_retarget_limb *limb)
     if (!is_common(m, upper + 3u)) return; /* toes */
     way_of(m, TARGET, upper + 2u, upper + 3u, limb->sole);
     way_of(m, SOURCE, upper + 2u, upper + 3u, way);
-    noh_madd3(limb->sole, -m->r->ratio, way, limb->shorter);
+    noh_madd3(limb->sole, -m->r->clips.ratio, way, limb->shorter);
 }
 
 static int is_below(const making *m, int side, uint32_t bone, uint32_t above)
@@ -341,6 +341,11 @@ static noh_result check_rigs(const making *m, noh_error *error)
     return NOH_OK;
 }
 
+static void pose_of_clip(const noh_clip_map *map, const noh_transform *from, uint32_t joint_count, noh_transform *to)
+{
+    noh_retarget_pose((const noh_retarget *)(const void *)map, from, NULL, joint_count, to);
+}
+
 noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *source, const noh_retarget_rig *target,
                              uint32_t flags, noh_retarget_joint *joints, noh_error *error)
 {
@@ -358,8 +363,9 @@ noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *sou
     m.r = retarget;
     const noh_result result = check_rigs(&m, error);
     if (result) return result;
-    retarget->source = source->skeleton;
-    retarget->target = target->skeleton;
+    retarget->clips.source = source->skeleton;
+    retarget->clips.target = target->skeleton;
+    retarget->clips.pose = pose_of_clip;
     retarget->rest = m.rest[TARGET];
     retarget->joints = joints;
     retarget->flags = flags;

@@ -71,7 +71,7 @@ static void bend_limb(const noh_retarget *r, const noh_retarget_limb *limb, cons
     noh_quat_mul(turns.start, b->middle.rotation, at);
     turn_local(at, turns.middle, &pose[limb->target[1]]);
     if (limb->is_apart) {
-        noh_retarget_put(r->target, pose, limb->target[2], b->goal);
+        noh_retarget_put(r->clips.target, pose, limb->target[2], b->goal);
         return;
     }
     noh_quat_mul(turns.middle, turns.start, both);
@@ -89,7 +89,7 @@ static void place_foot(const noh_retarget *r, const noh_retarget_limb *limb, con
 {
     noh_retarget_place source;
     float turned[4], heading[4], v[3], sole[3];
-    noh_retarget_place_of(r->source, from, limb->source[2], NOH_JOINT_ROOT, &source);
+    noh_retarget_place_of(r->clips.source, from, limb->source[2], NOH_JOINT_ROOT, &source);
     noh_retarget_point(r, source.position, goal);
     noh_quat_mul(foot->rotation, limb->rest, turned);
     noh_quat_twist(turned, 1u, heading);
@@ -129,9 +129,9 @@ static void hips_for(const noh_retarget_limb *limb, const bent *b, float move[3]
 static void move_hips(const noh_retarget *r, const float by[3], bent legs[2], noh_transform *to)
 {
     noh_retarget_place hips;
-    noh_retarget_place_of(r->target, to, r->moved[1][1], NOH_JOINT_ROOT, &hips);
+    noh_retarget_place_of(r->clips.target, to, r->moved[1][1], NOH_JOINT_ROOT, &hips);
     noh_madd3(hips.position, 1.0f, by, hips.position);
-    noh_retarget_put(r->target, to, r->moved[1][1], hips.position);
+    noh_retarget_put(r->clips.target, to, r->moved[1][1], hips.position);
     for (int i = 0; i < 2; i++) {
         noh_madd3(legs[i].start.position, 1.0f, by, legs[i].start.position);
         noh_madd3(legs[i].middle.position, 1.0f, by, legs[i].middle.position);
@@ -150,7 +150,7 @@ static void bend_legs(const noh_retarget *r, const noh_transform *from, const fl
         const noh_retarget_limb *limb = &r->limbs[i];
         used[i] = limb->exists && limb->target[2] < joint_count;
         if (!used[i]) continue;
-        place_limb(r->target, to, limb, &legs[i]);
+        place_limb(r->clips.target, to, limb, &legs[i]);
         place_foot(r, limb, from, &legs[i].end, legs[i].goal, &legs[i].stands);
         if (feet) noh_madd3(legs[i].goal, 1.0f, feet[i], legs[i].goal);
         hips_for(limb, &legs[i], by);
@@ -173,9 +173,9 @@ static void bend_arms(const noh_retarget *r, const noh_transform *from, uint32_t
         float d[3];
         used[i] = limb->exists && limb->target[2] < joint_count;
         if (!used[i]) continue;
-        place_limb(r->target, to, limb, &arms[i]);
-        noh_retarget_place_of(r->source, from, limb->source[0], NOH_JOINT_ROOT, &start);
-        noh_retarget_place_below(r->source, from, limb->source[2], limb->source[0], &start, &hands[i]);
+        place_limb(r->clips.target, to, limb, &arms[i]);
+        noh_retarget_place_of(r->clips.source, from, limb->source[0], NOH_JOINT_ROOT, &start);
+        noh_retarget_place_below(r->clips.source, from, limb->source[2], limb->source[0], &start, &hands[i]);
         noh_sub3(hands[i].position, start.position, d);
         noh_quat_rotate(r->facing, d, d);
         noh_madd3(arms[i].start.position, limb->ratio, d, arms[i].goal);

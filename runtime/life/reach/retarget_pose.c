@@ -84,14 +84,14 @@ static void turn_joint(const noh_retarget *r, const noh_transform *from, uint32_
     unpack(m->after, part);
     product(from[at].rotation, part, q);
     for (uint32_t above = m->above & ~NOH_RETARGET_WHOLE; above; above--) {
-        at = r->source->parents[at];
+        at = r->clips.source->parents[at];
         product(from[at].rotation, q, q);
     }
     unpack(m->before, part);
     product(part, q, q);
-    if ((m->above & NOH_RETARGET_WHOLE) && r->target->parents[joint] != NOH_JOINT_ROOT) {
+    if ((m->above & NOH_RETARGET_WHOLE) && r->clips.target->parents[joint] != NOH_JOINT_ROOT) {
         noh_retarget_place up;
-        noh_retarget_place_of(r->target, to, r->target->parents[joint], NOH_JOINT_ROOT, &up);
+        noh_retarget_place_of(r->clips.target, to, r->clips.target->parents[joint], NOH_JOINT_ROOT, &up);
         noh_quat_conjugate(up.rotation, part);
         product(part, q, q);
     }
@@ -105,25 +105,25 @@ void noh_retarget_point(const noh_retarget *r, const float source[3], float out[
     noh_sub3(source, r->from[1], d);
     d[1] -= r->ground;
     noh_quat_rotate(r->facing, d, d);
-    noh_madd3(r->to[1], r->ratio, d, out);
+    noh_madd3(r->to[1], r->clips.ratio, d, out);
 }
 
 static void move_joint(const noh_retarget *r, const noh_transform *from, uint32_t moved, noh_transform *to)
 {
     noh_retarget_place at;
     float d[3];
-    noh_retarget_place_of(r->source, from, r->moved[moved][0], NOH_JOINT_ROOT, &at);
+    noh_retarget_place_of(r->clips.source, from, r->moved[moved][0], NOH_JOINT_ROOT, &at);
     noh_sub3(at.position, r->from[moved], d);
     d[1] -= moved ? r->ground : 0.0f; /* a root stays on its own ground */
     noh_quat_rotate(r->facing, d, d);
-    noh_madd3(r->to[moved], r->ratio, d, d);
-    noh_retarget_put(r->target, to, r->moved[moved][1], d);
+    noh_madd3(r->to[moved], r->clips.ratio, d, d);
+    noh_retarget_put(r->clips.target, to, r->moved[moved][1], d);
 }
 
 void noh_retarget_pose(const noh_retarget *r, const noh_transform *from, const float (*feet)[3], uint32_t joint_count,
                        noh_transform *to)
 {
-    NOH_ASSERT(r && from && to && joint_count <= r->target->joint_count);
+    NOH_ASSERT(r && from && to && joint_count <= r->clips.target->joint_count);
     memcpy(to, r->rest, joint_count * sizeof *to);
     for (uint32_t j = 0; j < joint_count; j++) {
         if (r->joints[j].source != NOH_JOINT_ROOT) turn_joint(r, from, j, to);
@@ -132,33 +132,4 @@ void noh_retarget_pose(const noh_retarget *r, const noh_transform *from, const f
         if (r->moved[i][1] < joint_count) move_joint(r, from, i, to);
     }
     noh_retarget_bend(r, from, feet, joint_count, to);
-}
-
-/* ---- clips ---- */
-
-static void sample(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
-                   uint32_t float_count, float *floats)
-{
-    const noh_retarget_set *s = user;
-    s->source->sample(s->source->user, clip, clip_tick, joint_count ? s->retarget->source->joint_count : 0u, s->scratch,
-                      float_count, floats);
-    if (joint_count) noh_retarget_pose(s->retarget, s->scratch, NULL, joint_count, pose);
-}
-
-void noh_retarget_play(noh_retarget_set *set, const noh_retarget *retarget, const noh_clip_set *source,
-                       noh_transform *scratch)
-{
-    NOH_ASSERT(set && retarget && source && scratch && source->joint_count == retarget->source->joint_count);
-    set->source = source;
-    set->retarget = retarget;
-    set->scratch = scratch;
-    set->clips = *source;
-    set->clips.joint_count = retarget->target->joint_count;
-    set->clips.bind_pose = retarget->rest;
-    set->clips.mask_count = 0;
-    set->clips.masks = NULL;
-    set->clips.roots = NULL;
-    set->clips.root_ends = NULL;
-    set->clips.sample = sample;
-    set->clips.user = set;
 }

@@ -35,6 +35,7 @@ typedef struct counts {
     int roots;
     uint32_t reserve_bytes; /* 0: none */
     size_t clip_max;        /* bytes of the largest clip in its pack */
+    uint32_t mapped;        /* joints of the map's source; 0: no clip needs it */
 } counts;
 
 /* The layout. NULL while measuring. */
@@ -56,6 +57,7 @@ typedef struct parts {
     noh_reserved_clip *reserved;
     uint32_t *event_names;
     uint8_t *reserve_memory;
+    noh_transform *mapped;
 } parts;
 
 /* ---- counting ---- */
@@ -103,6 +105,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
                         noh_bank_where(found->at), (uint64_t)c->shape.clip_count + 1u);
     }
     c->shape.clip_count++;
+    if (found->is_mapped) c->mapped = b->map->source->joint_count;
     if (!NOH_PAGE && found->clip.byte_count > c->clip_max) c->clip_max = found->clip.byte_count;
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;
@@ -201,6 +204,7 @@ static size_t carve(noh_arena *arena, const counts *c, parts *p)
     p->runs = noh_arena_carve(arena, c->runs * sizeof *p->runs, 2u);
     p->clip_memory = noh_arena_carve(arena, c->clip_bytes, 16u);
     p->cache_memory = noh_arena_carve(arena, c->cache_bytes, 16u);
+    p->mapped = c->mapped ? noh_arena_carve(arena, c->mapped * sizeof *p->mapped, 4u) : NULL;
     if (!NOH_PAGE && c->reserve_bytes) {
         p->reserve = noh_arena_carve(arena, sizeof *p->reserve, 16u);
         p->reserved = noh_arena_carve(arena, n->clip_count * sizeof *p->reserved, 4u);
@@ -261,6 +265,7 @@ static size_t view_bytes(const counts *c)
     (void)noh_arena_carve(&arena, sizeof(noh_clip_bank_view), 16u);
     (void)noh_arena_carve(&arena, noh_clip_view_needs_size(&c->cache), 16u);
     (void)noh_arena_carve(&arena, c->sampled * sizeof(float), 4u);
+    if (c->mapped) (void)noh_arena_carve(&arena, c->mapped * sizeof(noh_transform), 4u);
     return arena.used;
 }
 
@@ -385,8 +390,11 @@ static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, par
     p->opened[m] = clip;
     p->packs[m] = from->at.pack;
     p->pack_clips[m] = from->at.index;
-    p->bound[m].joint_count = clip->info.joint_count;
-    if (p->root_ends) p->root_ends[m] = clip->info.joint_count ? &from->packed.header->root_ends : NULL;
+    p->bound[m].joint_count = (uint16_t)clip->info.joint_count;
+    p->bound[m].is_mapped = (uint16_t)from->is_mapped;
+    if (p->root_ends) {
+        p->root_ends[m] = clip->info.joint_count && !from->is_mapped ? &from->packed.header->root_ends : NULL;
+    }
     memset(to, 0, sizeof *to);
     to->name_hash = noh_hash_name(from->packed.name);
     to->duration_ticks = (uint32_t)clip->info.duration_ticks;
@@ -428,6 +436,8 @@ static void join(const noh_bank_binding *b, const counts *c, parts *p)
     bank->clips.events = p->events;
     bank->clips.markers = p->markers;
     bank->clips.root_ends = p->root_ends;
+    bank->map = c->mapped ? b->map : NULL;
+    bank->mapped = p->mapped;
     bank->clips.bind_pose = b->header ? b->skeleton.bind_pose
                                       /* not NULL, although there are no joints */
                                       : (const noh_transform *)(const void *)p->clips;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/base/name_internal.h"
+#include "core/base/compiler_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
 #include "noh/format.h"
@@ -49,11 +50,18 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
     b->pack_count = desc->clips ? 1u : desc->clip_pack_count;
     b->mesh = desc->mesh ? desc->mesh : b->packs[0];
     b->sample_rate_needed = desc->sample_rate_needed;
+    b->map = NOH_PAGE ? NULL : desc->map;
     r = bind_skeleton(desc->skeleton, b, error);
     for (uint32_t i = 0; !r && i < b->pack_count; i++) {
         r = check_units(b, i, error);
     }
     return r;
+}
+
+static int is_same(const noh_skeleton *a, const noh_skeleton *b)
+{
+    return a->joint_count == b->joint_count && !memcmp(a->parents, b->parents, a->joint_count * sizeof *a->parents) &&
+           !memcmp(a->bind_pose, b->bind_pose, a->joint_count * sizeof *a->bind_pose);
 }
 
 /* Whether the clip at found->at fits, and the desc to open it with. A clip without joints always fits. A clip with
@@ -72,15 +80,17 @@ static int fits(const noh_bank_binding *b, noh_bank_found *found)
     clip->joint_count = h->joint_count;
     clip->sample_rate_needed = b->sample_rate_needed;
     clip->bind = NULL;
+    found->is_mapped = 0;
     if (h->joint_count == 0) {
         return 1;
     }
-    if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
-        (b->mesh == pack && h->skeleton != b->skeleton_index)) {
-        return 0;
-    }
     if (noh_pack_skeleton_at(pack, h->skeleton, &built_with, NULL, NULL)) return 0;
     clip->bind = built_with.bind_pose;
+    if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
+        (b->mesh == pack && h->skeleton != b->skeleton_index)) {
+        found->is_mapped = b->map && is_same(&built_with, b->map->source);
+        return found->is_mapped;
+    }
     return 1;
 }
 

@@ -21,6 +21,7 @@ typedef struct noh_bank_binding {
     const noh_skeleton_header *header; /* NULL: none */
     uint32_t skeleton_index;
     uint32_t sample_rate_needed;
+    const noh_clip_map *map; /* NULL: none */
 } noh_bank_binding;
 
 /* A clip: its pack, and its index there. */
@@ -39,6 +40,7 @@ typedef struct noh_bank_found {
     noh_bank_place at;
     noh_pack_clip packed;
     noh_clip_desc clip;
+    int is_mapped;
 } noh_bank_found;
 
 /* Bind the clips of desc's packs to its skeleton.

@@ -33,7 +33,8 @@ typedef struct noh_bank_floats {
 struct noh_bank_clip {
     const noh_bank_floats *floats; /* [float_runs] */
     uint32_t float_runs;
-    uint32_t joint_count;
+    uint16_t joint_count;
+    uint16_t is_mapped; /* 1: its joints are of the map's source */
 };
 
 /* What bytes of the bank take in it: a multiple of 16. */

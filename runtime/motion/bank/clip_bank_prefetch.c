@@ -4,6 +4,7 @@
  * of play from its position to where it will be after `ahead_ticks` is cut at the ends of legs; each piece covers one
  * run of frames, and all segments with those frames are requested. Three pieces are enough: the rest of this leg and
  * one whole leg cover the whole clip, and anything later needs no other segment. */
+#include "motion/bank/clip_bank_internal.h"
 #include "motion/clip/clip_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/anim/clip_set_internal.h"
@@ -22,6 +23,7 @@ typedef struct stretch {
 
 static uint32_t want_stretch(const noh_clip_bank *bank, uint32_t index, stretch s, uint32_t joint_count)
 {
+    if (!NOH_PAGE && bank->bound[index].is_mapped) joint_count = bank->map->source->joint_count;
     const noh_clip *clip = noh_clip_cache_clip(bank->cache, index);
     float fraction;
     uint32_t first = noh_clip_frame_at(clip, s.from, &fraction), last = noh_clip_frame_at(clip, s.to, &fraction);

@@ -42,6 +42,24 @@ static const struct noh_bank_clip *bound_clip(const noh_clip_bank *bank, uint32_
     return noh_clip_is_absent(&bank->clips, index) ? &nothing : &bank->bound[index];
 }
 
+/* How many joints of a clip are read for the first joint_count of the skeleton: of another skeleton all. */
+static uint32_t joints_of(const noh_clip_bank *bank, const struct noh_bank_clip *clip, uint32_t joint_count)
+{
+    if (!NOH_PAGE && clip->is_mapped && joint_count) return bank->map->source->joint_count;
+    return clip->joint_count ? joint_count : 0u;
+}
+
+static noh_transform *pose_of(const struct noh_bank_clip *clip, noh_transform *mapped, noh_transform *pose)
+{
+    return !NOH_PAGE && clip->is_mapped ? mapped : pose;
+}
+
+static void take_mapped(const noh_clip_bank *bank, const struct noh_bank_clip *clip, const noh_transform *mapped,
+                        uint32_t joint_count, noh_transform *pose)
+{
+    if (!NOH_PAGE && clip->is_mapped && joint_count) bank->map->pose(bank->map, mapped, joint_count, pose);
+}
+
 static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
                          uint32_t float_count, float *floats)
 {
@@ -50,9 +68,10 @@ static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_
     const int moves_floats = float_count && clip->float_runs;
     check_request(bank, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {
-        noh_clip_sample(bank->cache, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
-                        moves_floats ? bank->sampled : NULL);
+        noh_clip_sample(bank->cache, index, clip_tick, joints_of(bank, clip, joint_count),
+                        pose_of(clip, bank->mapped, pose), moves_floats ? bank->sampled : NULL);
     }
+    take_mapped(bank, clip, bank->mapped, joint_count, pose);
     complete(bank, clip, bank->sampled, joint_count, pose, float_count, floats);
 }
 
@@ -64,9 +83,10 @@ static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t
     const int moves_floats = float_count && clip->float_runs;
     check_request(view->bank, index, joint_count, float_count);
     if (clip->joint_count || moves_floats) {
-        noh_clip_view_sample(view->samples, index, clip_tick, clip->joint_count ? joint_count : 0u, pose,
-                             moves_floats ? view->sampled : NULL);
+        noh_clip_view_sample(view->samples, index, clip_tick, joints_of(view->bank, clip, joint_count),
+                             pose_of(clip, view->mapped, pose), moves_floats ? view->sampled : NULL);
     }
+    take_mapped(view->bank, clip, view->mapped, joint_count, pose);
     complete(view->bank, clip, view->sampled, joint_count, pose, float_count, floats);
 }
 
@@ -82,11 +102,12 @@ void noh_clip_bank_sample_cache(noh_clip_bank *bank)
  * and threads share everything else. */
 
 static size_t carve(noh_arena *arena, const noh_clip_bank *bank, noh_clip_bank_view **view, void **clips,
-                    float **sampled)
+                    float **sampled, noh_transform **mapped)
 {
     *view = noh_arena_carve(arena, sizeof **view, 16u);
     *clips = noh_arena_carve(arena, noh_clip_view_size(bank->cache), 16u);
     *sampled = noh_arena_carve(arena, bank->sampled_count * sizeof **sampled, 4u);
+    *mapped = bank->map ? noh_arena_carve(arena, bank->map->source->joint_count * sizeof **mapped, 4u) : NULL;
     return arena->used;
 }
 
@@ -96,7 +117,8 @@ size_t noh_clip_bank_view_size(const noh_clip_bank *bank)
     noh_clip_bank_view *view;
     void *clips;
     float *sampled;
-    return carve(&arena, bank, &view, &clips, &sampled);
+    noh_transform *mapped;
+    return carve(&arena, bank, &view, &clips, &sampled, &mapped);
 }
 
 noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_bank *bank, noh_clip_bank_view **view,
@@ -106,9 +128,10 @@ noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_ba
     noh_clip_bank_view *made;
     void *clips;
     float *sampled;
+    noh_transform *mapped;
     noh_result r = noh_arena_open(&arena, memory, bytes, noh_clip_bank_view_size(bank), error);
     if (r) return r;
-    (void)carve(&arena, bank, &made, &clips, &sampled);
+    (void)carve(&arena, bank, &made, &clips, &sampled, &mapped);
     r = noh_clip_view_init(clips, noh_clip_view_size(bank->cache), bank->cache, &made->samples, error);
     if (r) return r;
     made->clips = bank->clips;
@@ -116,6 +139,7 @@ noh_result noh_clip_bank_view_init(void *memory, size_t bytes, const noh_clip_ba
     made->clips.user = made;
     made->bank = bank;
     made->sampled = sampled;
+    made->mapped = mapped;
     *view = made;
     return NOH_OK;
 }

@@ -198,6 +198,15 @@ static const char *bad_layer(const noh_layer_desc *layer)
                                                      : NULL;
 }
 
+static int bad_map(const noh_kind_desc *d)
+{
+    noh_skeleton own;
+    return d->map && (!d->map->source || !d->map->target || !d->map->pose ||
+                      noh_pack_skeleton_at(d->mesh, d->skeleton, &own, NULL, NULL) ||
+                      own.joint_count != d->map->target->joint_count ||
+                      memcmp(own.parents, d->map->target->parents, own.joint_count * sizeof *own.parents) != 0);
+}
+
 static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
 {
     noh_kind_desc filled;
@@ -229,6 +238,7 @@ static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
     filled = filled_kind(d);
     if (filled.skeleton != NOH_NONE && filled.skeleton >= d->mesh->runs[NOH_CHUNK_SKELETON].count)
         return "skeleton of a kind is not in the mesh's pack";
+    if (!NOH_PAGE && bad_map(&filled)) return "map of a kind is for another skeleton than the kind's";
     const uint32_t job_count = desc->job_count ? desc->job_count : 1u;
     const char *bad_module = noh_stage_bad_modules(&filled, job_count);
     if (bad_module) return bad_module;
@@ -316,7 +326,7 @@ static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
 static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 {
     return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
-           a->sample_rate_needed == b->sample_rate_needed && a->clip_reserve == b->clip_reserve;
+           a->sample_rate_needed == b->sample_rate_needed && a->clip_reserve == b->clip_reserve && a->map == b->map;
 }
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
@@ -350,6 +360,7 @@ noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_sta
                                 .root_up = d.root_up,
                                 .sample_rate_needed = d.sample_rate_needed,
                                 .reserve_bytes = d.clip_reserve,
+                                .map = d.map,
                                 .cached_segment_count = plan->kinds[kind].cached_segment_count };
     if (bank.cached_segment_count == 1u) { /* of a clip of one segment: a cache is asked for two or more */
         bank.cached_segment_count = NOH_CLIP_CACHE_SEGMENTS_MIN;

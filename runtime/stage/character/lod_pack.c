@@ -1,6 +1,7 @@
 #include "core/base/assert_internal.h"
 #include "motion/clip/clip_cache_internal.h"
 #include "stage/character/bounds_internal.h"
+#include "motion/bank/clip_bank_internal.h"
 #include "stage/character/lod_pack_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
@@ -135,6 +136,19 @@ static void add_joint_errors(const noh_pack *pack, const noh_pack_clip *clip, fl
     }
 }
 
+#define UNKNOWN_M 1e6f
+
+/* How many times as large the skeleton is as the one of a clip that plays through the bank's map. */
+static float size_by_map(const noh_clip_bank *bank, const source *s, const noh_pack *pack, const noh_clip_header *h)
+{
+    noh_skeleton skeleton;
+    const noh_skeleton_header *own, *other;
+    if (noh_pack_skeleton_at(s->pack, s->skeleton, &skeleton, &own, NULL) ||
+        noh_pack_skeleton_at(pack, h->skeleton, &skeleton, &other, NULL))
+        return 1.0f;
+    return bank->map->ratio * (float)(own->unit_cm / other->unit_cm);
+}
+
 /* The update errors of each clip, the joint errors of all clips, and the largest error of their compression. radius:
  * the largest joint radius of the mesh. */
 static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float radius, parts *p, noh_lod_table *table)
@@ -146,14 +160,21 @@ static void fill_clips(const noh_lod_pack_desc *desc, const source *s, float rad
         float metres, clip_error_m;
         (void)noh_pack_clip_at(pack, desc->set->pack_clips[m], &clip, NULL);
         metres = to_metres(pack, clip.header, radius);
+        const int is_mapped = !NOH_PAGE && desc->set->bound[m].is_mapped;
         for (uint32_t r = 0; r < NOH_UPDATE_RATE_COUNT; r++) {
-            p->update_errors[m * (uint32_t)NOH_UPDATE_RATE_COUNT + r] = clip.header->update_rate_error[r] * metres;
+            /* what a map makes of poses between frames is not known */
+            p->update_errors[m * (uint32_t)NOH_UPDATE_RATE_COUNT + r] = is_mapped ? r ? UNKNOWN_M : 0.0f
+                                                                                  : clip.header->update_rate_error[r] *
+                                                                                        metres;
         }
-        if (clip.header->joint_count) {
+        if (is_mapped) {
+            if (table->joint_level_count > 1u) table->joint_level_count = 1;
+        } else if (clip.header->joint_count) {
             add_joint_errors(pack, &clip, metres, p->joints, &table->joint_level_count);
         }
         noh_clip_info_of(noh_clip_cache_clip(desc->set->cache, m), &info);
-        clip_error_m = (float)info.max_error_cm * 0.01f;
+        clip_error_m = (float)info.max_error_cm * 0.01f *
+                       (is_mapped ? size_by_map(desc->set, s, pack, clip.header) : 1.0f);
         table->clip_error_m = clip_error_m > table->clip_error_m ? clip_error_m : table->clip_error_m;
     }
 }

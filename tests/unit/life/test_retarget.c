@@ -298,42 +298,6 @@ static void what_cannot_be_mapped_is_refused(void **state)
     assert_int_equal(noh_retarget_init(&map, &a.rig, &b.rig, BOTH, joints, &error), NOH_ERR_NOT_FOUND);
 }
 
-/* ---- clips ---- */
-
-static void sample(void *user, uint32_t clip, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
-                   uint32_t float_count, float *floats)
-{
-    (void)clip, (void)float_count, (void)floats;
-    if (joint_count) move(user, clip_tick / 100u, pose);
-}
-
-static void clips_play_through_a_map(void **state)
-{
-    static const humanoid_form other = { .unit = 100.0f, .shin = 1.2f, .axes = 4 };
-    static const noh_clip_entry entry = { .name_hash = 5, .duration_ticks = 4000, .loop = NOH_LOOP_REPEAT };
-    pair p;
-    noh_clip_set clips;
-    noh_retarget_set set;
-    noh_transform scratch[HUMANOID_JOINTS], pose[HUMANOID_JOINTS];
-    (void)state;
-    open_pair(&p, &usual, &other, BOTH);
-    memset(&clips, 0, sizeof clips);
-    clips.clip_count = 1;
-    clips.joint_count = p.from.skeleton.joint_count;
-    clips.clips = &entry;
-    clips.bind_pose = p.from.bind;
-    clips.sample = sample;
-    clips.user = &p.from;
-    noh_retarget_play(&set, &p.map, &clips, scratch);
-    assert_int_equal(noh_clip_set_check(&set.clips, NULL), NOH_OK);
-    assert_int_equal(noh_clip_set_find(&set.clips, 5), 0);
-    for (uint32_t f = 0; f < 40; f += 13) {
-        play(&p, f);
-        set.clips.sample(set.clips.user, 0, f * 100u, p.to.skeleton.joint_count, pose, 0, NULL);
-        assert_memory_equal(pose, p.target, p.to.skeleton.joint_count * sizeof *pose);
-    }
-}
-
 /* ---- packs ---- */
 
 /* A pack of a recording's skeleton alone. */
@@ -400,7 +364,6 @@ static const struct CMUnitTest tests[] = { cmocka_unit_test(one_person_keeps_its
                                            cmocka_unit_test(roots_and_spines_may_differ),
                                            cmocka_unit_test(a_lower_level_has_the_first_joints_alone),
                                            cmocka_unit_test(what_cannot_be_mapped_is_refused),
-                                           cmocka_unit_test(clips_play_through_a_map),
                                            cmocka_unit_test(bones_of_packs_are_found_by_names) };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -118,6 +118,7 @@ static const row rows[] = {
     KIND(clip_packs, ""),
     KIND(clip_pack_count, ""),
     KIND(clip_reserve, "clip_reserve 900000"),
+    KIND(map, "map puppet.noh"),
     KIND(nodes, "nodes 0"),
     KIND(node_count, "nodes 0"),
     KIND(skeleton, "skeleton none"),

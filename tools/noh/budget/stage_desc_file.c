@@ -151,7 +151,7 @@ static int end_kind(reader *r)
     if (!k->mesh) return desc_fail_at(r, r->kind_line, "kind '%.60s' has no mesh: add a line 'mesh PATH'", k->name);
     if (!k->actor_count)
         return desc_fail_at(r, r->kind_line, "kind '%.60s' has no actor_count: add a line 'actor_count N'", k->name);
-    return 0;
+    return desc_make_map(r);
 }
 
 static int begin_kind(reader *r)

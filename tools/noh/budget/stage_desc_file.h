@@ -4,6 +4,7 @@
 
 #include "file/pack_file.h"
 #include "noh/base.h"
+#include "noh/low_life.h"
 #include "noh/modules.h"
 #include "noh/noh.h"
 #include "noh/noh_gl.h"
@@ -23,6 +24,10 @@ typedef struct stage_desc_file {
     noh_layer_desc layers[NOH_STAGE_KINDS_MAX][NOH_LAYERS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX];
     noh_kind_ragdoll ragdolls[NOH_STAGE_KINDS_MAX];
+    const noh_pack *map_packs[NOH_STAGE_KINDS_MAX]; /* with the skeleton of clips that play through a map; NULL: none */
+    noh_retarget maps[NOH_STAGE_KINDS_MAX];
+    noh_skeleton map_skeletons[NOH_STAGE_KINDS_MAX][2];
+    noh_retarget_joint map_joints[NOH_STAGE_KINDS_MAX][NOH_JOINTS_MAX];
     noh_modifier modifiers[NOH_STAGE_KINDS_MAX][NOH_MODIFIERS_MAX];
     noh_texture_set texture_sets[NOH_STAGE_KINDS_MAX][STAGE_DESC_TEXTURE_SETS_MAX];
     uint32_t nodes[NOH_STAGE_KINDS_MAX][NOH_STAGE_MESHES_MAX];

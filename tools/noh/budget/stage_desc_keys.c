@@ -77,6 +77,7 @@ typedef enum setting_kind {
     SET_MESH,
     SET_CLIPS,
     SET_FINER,
+    SET_MAP,
     SET_OTHER_OF,
     SET_GRAPHS,
     SET_FACE,
@@ -154,6 +155,7 @@ static const setting settings[] = {
     { "root_axes", SET_ROOT, 1, 0, 0, 0, 0 },
     { "root_up", SET_COUNT, 1, 0, offsetof(noh_kind_desc, root_up), 0, 2 },
     { "layer", SET_LAYER, 1, 1, 0, 0, 0 },
+    { "map", SET_MAP, 1, 0, 0, 0, 0 },
     { "finer", SET_FINER, 1, 0, 0, 0, 0 },
     { "changes", SET_FLAG, 1, 0, offsetof(noh_kind_desc, changes), 0, 2 },
     { "other_of", SET_OTHER_OF, 1, 0, 0, 0, 0 },
@@ -314,6 +316,7 @@ static int set(reader *r, const setting *s)
     case SET_MESH: return desc_pack(r, text, &r->kind->mesh);
     case SET_CLIPS: return add_clips(r, text);
     case SET_LAYER: return desc_add_layer(r);
+    case SET_MAP: return desc_pack(r, text, &r->file->map_packs[r->kind - r->file->kinds]);
     case SET_FINER: return desc_pack(r, text, &r->kind->finer);
     case SET_OTHER_OF: return set_other_of(r, text);
     case SET_GRAPHS: r->kind->graphs = noh_graph_module(text); return 0;

@@ -61,6 +61,7 @@ int desc_one_of(const reader *r, const char *key, const char *text, const char *
 int desc_add_layer(reader *r);
 int desc_add_texture_set(reader *r);
 int desc_add_modifier(reader *r);
+int desc_make_map(reader *r); /* of a kind that ends */
 int desc_set_face(reader *r);
 int desc_set_light(reader *r);
 int desc_set_nodes(reader *r);

@@ -179,3 +179,34 @@ int desc_add_modifier(reader *r)
     k->modifier_count++;
     return 0;
 }
+
+static int read_rig(const reader *r, const noh_pack *pack, uint32_t skeleton, noh_skeleton *joints,
+                    noh_retarget_rig *rig)
+{
+    noh_ragdoll_source source;
+    noh_error error = { NOH_OK, "the pack has no skeleton", 0, 0 };
+    memset(&source, 0, sizeof source);
+    source.pack = pack;
+    source.skeleton = skeleton;
+    if (noh_pack_skeleton_at(pack, skeleton, &source.joints, NULL, NULL) || noh_retarget_rig_make(&source, rig, &error))
+        return desc_fail_at(r, r->kind_line, "map of kind '%.60s': %s", r->kind->name, error.what);
+    *joints = source.joints;
+    rig->skeleton = joints;
+    return 0;
+}
+
+int desc_make_map(reader *r)
+{
+    stage_desc_file *f = r->file;
+    const size_t at = (size_t)(r->kind - f->kinds);
+    noh_retarget_rig from, to;
+    noh_error error;
+    if (!f->map_packs[at]) return 0;
+    if (read_rig(r, f->map_packs[at], 0, &f->map_skeletons[at][0], &from) ||
+        read_rig(r, r->kind->mesh, r->kind->skeleton, &f->map_skeletons[at][1], &to))
+        return EXIT_FAILED;
+    if (noh_retarget_init(&f->maps[at], &from, &to, NOH_RETARGET_FEET | NOH_RETARGET_HANDS, f->map_joints[at], &error))
+        return desc_fail_at(r, r->kind_line, "map of kind '%.60s': %s", r->kind->name, error.what);
+    r->kind->map = &f->maps[at].clips;
+    return 0;
+}

@@ -253,6 +253,7 @@ const char *const help_formats_text[] = {
     "   kind NAME                                   begins a kind of character; then:",
     "     mesh PATH                                   its pack",
     "     clips PATH                                  a pack of clips instead of mesh's own clips; may repeat",
+    "     map PACK                                    clips of the skeleton of PACK, a person's, play, too, through a map",
     "     actor_count N                               characters of this kind at one time",
     "     visible_max N                                  most of them drawn in one frame (all)",
     "     near_count N                                most of them at the finest level at once",
