@@ -86,6 +86,7 @@ static void drive(noh_stage_actor *a, const noh_root_pose *moved, uint32_t up)
     noh_root_drive(up, moved, (double)a->place.scale, position, rotation);
     for (int i = 0; i < 3; i++) noh_split(position[i], &a->place.position[i], &a->rest[i]);
     for (int i = 0; i < 4; i++) noh_split(rotation[i], &a->place.rotation[i], &a->rotation_rest[i]);
+    if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
 }
 
 /* Apply the root motion of an actor's clips, and of its graph as far as it plays. */
@@ -140,9 +141,6 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
         for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
             const noh_module_type *type = k->modules[slot].type;
             if (type && type->step) type->step(k, ticks);
-        }
-        for (uint32_t a = 0; !NOH_PAGE && a < k->desc->actor_count; a++) {
-            if (k->actors[a].alive) noh_stage_keep_within(&k->actors[a].place, k->actors[a].rest);
         }
     }
     stage->head->clock += ticks;

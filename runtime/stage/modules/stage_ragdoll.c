@@ -231,6 +231,7 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
     if (moved) take_offset(k, b, &a->place);
     noh_ragdoll_bodies_local(shared->dolls, b->doll - 1u, b->origin, b->bodies[0]);
     for (int i = 0; i < 3 && noh_stage_falls_free(b); i++) a->place.position[i] = carried_to(k, b, i);
+    if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
     if (b->dead && noh_ragdoll_sleeps(shared->dolls, b->doll - 1u)) {
         b->state = NOH_BODY_LIES;
         b->doll = 0;
