@@ -144,6 +144,9 @@ int main(int argc, char **argv)
     if (argc == 3 && !strcmp(argv[1], "--roam")) {
         return make_part(argv[2], roam_write) ? 0 : 1;
     }
+    if (argc == 3 && !strcmp(argv[1], "--roam-all")) {
+        return make_part(argv[2], roam_all_write) ? 0 : 1;
+    }
     if (argc == 3 && !strcmp(argv[1], "--coat")) {
         return make_part(argv[2], coat_write) ? 0 : 1;
     }
@@ -158,7 +161,7 @@ int main(int argc, char **argv)
     }
     fprintf(
         stderr,
-        "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--arm] OUT.glb, demo_assets --flush OUT.png, or "
+        "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--roam-all|--arm] OUT.glb, demo_assets --flush OUT.png, or "
         "demo_assets --festival OUT\n");
     return 2;
 }

@@ -149,14 +149,20 @@ static const int8_t *boxes_at(const search *s, uint32_t level, uint32_t group)
     return s->table->boxes[level] + (size_t)group * 2u * NOH_MATCH_GROUP_BYTES;
 }
 
+/* The boxes of 16 rows in one of 512: eight are computed at a time, for two of 64. */
+typedef struct fine_boxes {
+    int32_t costs[4][8];
+    uint32_t known; /* a bit for each eight */
+} fine_boxes;
+
 /* A box of 64 rows: four of 16. */
-static void search_64(search *s, uint32_t box)
+static void search_64(search *s, uint32_t box, fine_boxes *fine)
 {
-    const uint32_t count = boxes_of(s, 16u), groups = (s->table->header->row_count + 7u) / 8u;
-    int32_t costs[8];
-    cost_boxes(s, boxes_at(s, 0, box / 2u), costs);
+    const uint32_t count = boxes_of(s, 16u), groups = (s->table->header->row_count + 7u) / 8u, at = box / 2u % 4u;
+    if (!(fine->known >> at & 1u)) cost_boxes(s, boxes_at(s, 0, box / 2u), fine->costs[at]);
+    fine->known |= 1u << at;
     for (uint32_t i = box * 4u; i < box * 4u + 4u && i < count; i++) {
-        if (costs[i % 8u] > s->hit.cost) continue;
+        if (fine->costs[at][i % 8u] > s->hit.cost) continue;
         take_rows(s, 2u * i);
         if (2u * i + 1u < groups) take_rows(s, 2u * i + 1u);
     }
@@ -176,12 +182,14 @@ static void search_512(search *s, uint32_t box)
 {
     const uint32_t all = boxes_of(s, 64u) - 8u * box, count = all < 8u ? all : 8u;
     int32_t costs[8];
+    fine_boxes fine;
+    fine.known = 0;
     cost_boxes(s, boxes_at(s, 1, box), costs);
     const uint32_t first = nearest(costs, count);
     if (costs[first] > s->hit.cost) return;
-    search_64(s, 8u * box + first);
+    search_64(s, 8u * box + first, &fine);
     for (uint32_t i = 0; i < count; i++) {
-        if (i != first && costs[i] <= s->hit.cost) search_64(s, 8u * box + i);
+        if (i != first && costs[i] <= s->hit.cost) search_64(s, 8u * box + i, &fine);
     }
 }
 

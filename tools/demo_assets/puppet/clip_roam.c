@@ -162,7 +162,7 @@ static FootStance foot_at(const Roam *roam, int side, double moment, double *lif
 
 static Stance stance(int number, double time_s)
 {
-    static Roam roams[ROAM_COUNT];
+    static Roam roams[ROAM_ALL];
     Roam *roam = &roams[number];
     if (!roam->is_made) {
         roam->is_made = 1;
@@ -189,7 +189,7 @@ static Stance stance(int number, double time_s)
 
 /* --- one clip for each number --- */
 
-#define NUMBERS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9)
+#define NUMBERS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7) X(8) X(9) X(10) X(11) X(12) X(13) X(14) X(15)
 
 #define STANCE(n)                           \
     static Stance stance_##n(double time_s) \
@@ -198,7 +198,7 @@ static Stance stance(int number, double time_s)
     }
 NUMBERS(STANCE)
 #define CLIP(n) { "roam_" #n, ROAM_STEPS, stance_##n, NULL, NULL, 1 },
-static const Clip clips[ROAM_COUNT] = { NUMBERS(CLIP) };
+static const Clip clips[ROAM_ALL] = { NUMBERS(CLIP) };
 
 const Clip *roam_number(int number)
 {

@@ -152,6 +152,11 @@ PuppetCensus roam_write(Buffer *file)
     return clips_write(file, roam_number, ROAM_COUNT);
 }
 
+PuppetCensus roam_all_write(Buffer *file)
+{
+    return clips_write(file, roam_number, ROAM_ALL);
+}
+
 PuppetCensus puppet_write(Buffer *file)
 {
     const MaskWearer wearer = { mask_origin(), HEAD, JAW };

@@ -15,6 +15,7 @@ typedef struct {
 PuppetCensus puppet_write(Buffer *file);
 PuppetCensus get_up_write(Buffer *file);
 PuppetCensus roam_write(Buffer *file);
+PuppetCensus roam_all_write(Buffer *file); /* 476 s, for measurements */
 
 /* A coat that the puppet can wear: it has some of the puppet's joints, and a tail with two joints of its own. */
 PuppetCensus coat_write(Buffer *file);
