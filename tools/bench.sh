@@ -1,6 +1,6 @@
 #!/bin/sh
-# bench.sh BUILD: `noh bench` on the mask, the puppet, its motion matching and a stage of it, and, where $NOH_ASSETS has them, on hero/head.glb,
-# hero/body.glb, a crowd and a stage of it with four LOD levels, and five captured clips at 30 Hz.
+# bench.sh BUILD: `noh bench` on the mask, the puppet, its motion matching and a stage of it, and, where $NOH_ASSETS has
+# them, on hero/head.glb, hero/body.glb, a crowd and a stage of it with four LOD levels, and five captured clips at 30 Hz.
 # Everything after BUILD goes to `noh bench`: --json, --rounds N, --driver D.
 set -eu
 

@@ -95,7 +95,7 @@ cross: deps-cross
 	@NOH_BUILD="$(BUILD)" JOBS="$(JOBS)" sh tests/cross.sh
 
 bench: deps-build
-	@$(MAKE) --no-print-directory -j$(JOBS) $(BUILD)/noh $(addprefix $(BUILD)/,mask.noh demo/puppet.noh demo/puppet_levels.noh demo/roam.noh) $(BUILD)/lod_compare
+	@$(MAKE) --no-print-directory -j$(JOBS) $(addprefix $(BUILD)/,noh demo_assets mask.noh demo/puppet.noh demo/puppet_levels.noh demo/roam.noh) $(BUILD)/lod_compare
 	@NOH_ASSETS="$(ASSETS)" sh tools/bench.sh $(BUILD)
 	@NOH_ASSETS="$(ASSETS)" sh tools/lod_compare/compare.sh $(BUILD)
 
