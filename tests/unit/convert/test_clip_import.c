@@ -898,6 +898,30 @@ static void weights_of_a_skinned_mesh(void **state)
     loaded_free(&l);
 }
 
+/* A node that a file leaves at rest stays there, though the weights of another node with the same mesh, or with targets
+ * of the same made names, move: nodes 1 (its own weights) and 2 (its mesh's). Node 3 has names of the file. */
+static void weights_of_other_nodes_stay(void **state)
+{
+    (void)state;
+    scene *s = morphing("{\"mesh\":0},{\"mesh\":0,\"weights\":[0.75,0.5]},{\"mesh\":1},{\"mesh\":2}");
+    s->meshes = MORPHED
+        ",{\"weights\":[0,0.25],\"primitives\":[{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1},"
+        "{\"POSITION\":2}]}]},{\"extras\":{\"targetNames\":[\"a\",\"b\"]},\"primitives\":[{\"attributes\":"
+        "{\"POSITION\":0},\"targets\":[{\"POSITION\":1},{\"POSITION\":2}]}]}";
+    add_channel(s, 0, "weights", "LINEAR", weight_times, 3, weight_values, 6, 1);
+    loaded l = load(s, 4.0);
+    const raw_clip *clip = only_clip(&l);
+    const float rests[2][2] = { { 0.75f, 0.5f }, { 0, 0.25f } };
+    assert_int_equal(clip->float_count, 3);
+    assert_int_equal(clip->frame_count, 5);
+    assert_true(clip->floats[0].node == 0 && clip->floats[0].values[8] == 1.0f);
+    for (uint32_t n = 1; n < 3; ++n) {
+        assert_int_equal(clip->floats[n].node, n);
+        for (uint32_t k = 0; k < 5; ++k) assert_memory_equal(clip->floats[n].values + 2 * k, rests[n - 1], 8);
+    }
+    loaded_free(&l);
+}
+
 static void what_moves_nothing_is_a_warning(void **state)
 {
     (void)state;
@@ -1272,6 +1296,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_alone_make_clips_without_joints),
     cmocka_unit_test(weights_below_a_growing_joint),
     cmocka_unit_test(weights_of_a_skinned_mesh),
+    cmocka_unit_test(weights_of_other_nodes_stay),
     cmocka_unit_test(what_moves_nothing_is_a_warning),
     cmocka_unit_test(keys_in_extras),
     cmocka_unit_test(markers_in_extras),

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <set>
 
+#include "noh/low_motion.h"
+
 namespace gltf
 {
 
@@ -215,6 +217,71 @@ static void try_channel(file &f, const tinygltf::Animation &a, const tinygltf::A
     --out.channel_count;
 }
 
+/* --- weights that stay --- */
+
+/* A float that no clip moves follows the float of its name that one moves: teeth follow the jaw of a face. Names that
+ * this reader made, and nodes with the same mesh, mean no such thing. */
+static bool would_follow(const model &m, const model_channel &moved, uint32_t node)
+{
+    const uint32_t from = m.nodes[moved.node].mesh, mesh = m.nodes[node].mesh;
+    if (moved.path != MODEL_PATH_WEIGHTS || mesh == MODEL_NONE || !m.meshes[mesh].target_count) return false;
+    for (uint32_t t = 0; from != mesh && t < m.meshes[mesh].target_count; ++t) {
+        const std::string made = name_or("", "target", t);
+        if (t < m.meshes[from].target_count && made == m.meshes[from].targets[t].name &&
+            made == m.meshes[mesh].targets[t].name)
+            return true;
+    }
+    return from == mesh;
+}
+
+/* The channel whose weights a node would follow, or null. */
+static const model_channel *follows(const model &m, const model_clip &clip, uint32_t node)
+{
+    const model_channel *found = nullptr;
+    for (uint32_t i = 0; i < clip.channel_count; ++i) {
+        const model_channel &c = clip.channels[i];
+        if (c.path == MODEL_PATH_WEIGHTS && c.node == node) return nullptr;
+        if (!found && would_follow(m, c, node)) found = &c;
+    }
+    return found;
+}
+
+static void hold_weights(file &f, uint32_t node, float time_s, const std::string &where, model_channel &out)
+{
+    const model_node &n = f.out->nodes[node];
+    const model_mesh &mesh = f.out->meshes[n.mesh];
+    out.node = node;
+    out.path = MODEL_PATH_WEIGHTS;
+    out.interpolation = MODEL_STEP;
+    out.key_count = 1;
+    out.width = mesh.target_count;
+    out.times = allocate<float>(f, 1, where);
+    out.times[0] = time_s;
+    out.values = allocate<float>(f, mesh.target_count, where);
+    std::copy_n(n.weights ? n.weights : mesh.weights, mesh.target_count, out.values);
+}
+
+/* Nodes that would follow others by name keep their own weights, if a clip can hold them all. */
+static void hold_others(file &f, const std::string &where, model_clip &out)
+{
+    std::vector<std::pair<uint32_t, float>> held;
+    size_t floats = 0;
+    for (uint32_t i = 0; i < out.channel_count; ++i)
+        if (out.channels[i].path == MODEL_PATH_WEIGHTS) floats += out.channels[i].width;
+    for (uint32_t n = 0; floats && n < f.out->node_count; ++n)
+        if (const model_channel *c = follows(*f.out, out, n)) {
+            floats += f.out->meshes[f.out->nodes[n].mesh].target_count;
+            if (floats > NOH_CLIP_FLOATS_MAX || held.size() >= NOH_CLIP_GROUPS_MAX / 2) return;
+            held.push_back({ n, c->times[0] });
+        }
+    if (held.empty()) return;
+    model_channel *channels = allocate<model_channel>(f, out.channel_count + held.size(), where);
+    std::copy_n(out.channels, out.channel_count, channels);
+    free(out.channels);
+    out.channels = channels;
+    for (const auto &h : held) hold_weights(f, h.first, h.second, where, out.channels[out.channel_count++]);
+}
+
 static void read_channels(file &f, const tinygltf::Animation &a, const std::string &clip_where, model_clip &out)
 {
     std::set<std::pair<uint32_t, int>> taken;
@@ -236,6 +303,7 @@ static void read_channels(file &f, const tinygltf::Animation &a, const std::stri
                 ": it has a matrix and is animated, which glTF forbids; the matrix was used for what is not animated");
         try_channel(f, a, a.channels[i], where, out);
     }
+    hold_others(f, clip_where, out);
     for (uint32_t i = 0; i < out.channel_count; ++i) {
         const float last = out.channels[i].times[out.channels[i].key_count - 1];
         out.duration_s = i == 0 || last > out.duration_s ? last : out.duration_s;
