@@ -209,6 +209,7 @@ typedef enum noh_half_mode {
 #define NOH_STAGE_JOBS_MAX 64u
 #define NOH_TEXTURE_SETS_MAX 64u /* of a kind, besides its own */
 #define NOH_STAGE_VIEWS_MAX 8u
+#define NOH_VIEW_NUMBER_MAX 1e18f         /* of a view, so that squares stay finite */
 #define NOH_ATTACH_DEPTH_MAX 8u           /* length of a chain of attachments */
 #define NOH_LAYERS_MAX 16u                /* of a kind */
 #define NOH_MODIFIERS_MAX 16u             /* of a kind */

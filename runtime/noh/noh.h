@@ -138,8 +138,8 @@ struct noh_modifier;
 struct noh_module_type;
 
 /* What actors of a kind can do beyond layers of clips. A function of the module makes it: noh_graph_module,
- * noh_face_module, noh_ragdoll_module, noh_springs_module, noh_match_module. A program that calls none of these links none of their
- * code. All zeros: none. */
+ * noh_face_module, noh_ragdoll_module, noh_springs_module, noh_match_module. A program that calls none of these links
+ * none of their code. All zeros: none. */
 typedef struct noh_module {
     const struct noh_module_type *type; /* private, as `desc` */
     const void *desc;
@@ -818,7 +818,7 @@ void noh_stage_origin(const noh_stage *stage, float origin[3]);
 
 /* Begin a frame with views[view_count], 0..NOH_STAGE_VIEWS_MAX. An actor is shown if any view sees it, in the finest
  * detail that any view needs.
- * errors  ARG a matrix is not finite, or a frame has begun */
+ * errors  ARG a number of a view is not finite or beyond NOH_VIEW_NUMBER_MAX, or a frame has begun */
 noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error);
 
 /* Begin a frame between the last two steps, for a game that steps at a fixed rate and draws at another. The frame

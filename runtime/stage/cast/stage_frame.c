@@ -6,15 +6,25 @@
 #include "noh/base.h"
 #include "noh/noh.h"
 
+/* Squares of larger numbers are not finite. */
+static int are_numbers(const float *v, uint32_t count)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        if (!(v[i] >= -NOH_VIEW_NUMBER_MAX && v[i] <= NOH_VIEW_NUMBER_MAX)) return 0;
+    }
+    return 1;
+}
+
 static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
 {
     if (s->phase != NOH_STAGE_IDLE) return "cannot begin a frame during a step or a frame";
     if (count > NOH_STAGE_VIEWS_MAX) return "view_count is above NOH_STAGE_VIEWS_MAX";
     for (uint32_t v = 0; v < count; v++) {
-        for (int i = 0; i < 16; i++) {
-            const float x = views[v].view_projection[i];
-            if (x - x != 0.0f) return "view_projection of a view is not finite";
-        }
+        const noh_stage_view *view = &views[v];
+        if (!are_numbers(view->view_projection, 16)) return "view_projection of a view: not finite, or too large";
+        if (!are_numbers(view->eye, 3) || !are_numbers(view->light, 3) || !are_numbers(view->column_rest, 4) ||
+            !are_numbers(view->eye_rest, 3))
+            return "eye, light or a rest of a view: not finite, or too large";
     }
     return NULL;
 }

@@ -2,6 +2,7 @@
  * to its camera, so that all is as it is at the origin. */
 #include "support/support.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -315,12 +316,57 @@ static void a_shift_is_not_seen(void **state)
     assert_true(worst < 1e-4f && fallen < 0.05f);
 }
 
+/* Views are numbers of the game: what is not finite, or so large that its square is not, is refused; with any others,
+ * the largest too, a frame runs, and what it says of its actors are numbers. */
+static void wild_views_are_refused(void **state)
+{
+    static const float wild[] = { NAN, INFINITY, -INFINITY, 3e18f, -FLT_MAX };
+    test_random r = test_random_from(19);
+    noh_actor actors[CAST_ACTORS];
+    noh_stage_view view = cast_view(0, 8.0f);
+    cast c;
+    (void)state;
+    cast_open(&c);
+    cast_make(&c, NULL);
+    cast_enter(&c, actors);
+    for (uint32_t i = 0; i < 29u; i++) { /* of view_projection, eye, light, column_rest, eye_rest */
+        float *at = i < 16   ? &view.view_projection[i]
+                    : i < 19 ? &view.eye[i - 16]
+                    : i < 22 ? &view.light[i - 19]
+                    : i < 26 ? &view.column_rest[i - 22]
+                             : &view.eye_rest[i - 26];
+        const float kept = *at;
+        for (uint32_t w = 0; w < sizeof wild / sizeof *wild; w++) {
+            noh_error error;
+            *at = wild[w];
+            assert_int_equal(noh_stage_frame_begin(c.stage, &view, 1, &error), NOH_ERR_ARG);
+            assert_non_null(strstr(error.what, "of a view: not finite, or too large"));
+        }
+        *at = kept;
+    }
+    for (uint32_t round = 0; round < 60; round++) {
+        static const float sizes[] = { 0.0f, 1e-30f, 1e-9f, 1.0f, 1e9f, 1e18f };
+        for (uint32_t i = 0; i < 16; i++)
+            view.view_projection[i] = test_random_float(&r, -1.0f, 1.0f) * sizes[test_random_below(&r, 6)];
+        for (uint32_t i = 0; i < 3; i++)
+            view.eye[i] = test_random_float(&r, -1.0f, 1.0f) * sizes[test_random_below(&r, 6)];
+        view.height_px = round & 1 ? 1080 : 0xffffffffu;
+        assert_int_equal(noh_stage_frame(c.stage, 800, &view, NULL, NULL, NULL), NOH_OK);
+        for (uint32_t i = 0; i < CAST_ACTORS; i++) {
+            noh_actor_detail detail;
+            if (noh_actor_detail_of(c.stage, actors[i], &detail, NULL) != NOH_OK) continue;
+            assert_true(detail.pixels_per_metre >= 0.0f && detail.error_m >= 0.0f);
+        }
+    }
+    cast_close(&c);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(root_motion_goes_all_the_way), cmocka_unit_test(a_day_of_turns_adds_nothing),
         cmocka_unit_test(frames_are_the_same_anywhere), cmocka_unit_test(cameras_without_rests_are_taken),
-        cmocka_unit_test(a_shift_is_not_seen),
+        cmocka_unit_test(a_shift_is_not_seen),           cmocka_unit_test(wild_views_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
