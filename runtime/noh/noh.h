@@ -404,9 +404,10 @@ typedef struct noh_stage noh_stage;
  * plan    must outlive the stage
  * device  a noh_gl_device (gl_device.h) with all fields set but the log; its table, caps and ledger must outlive the
  *         stage. NULL with desc->gpu NULL
- * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer does not exist (where: the kind); ARG memory is
- *         NULL or misaligned; MEMORY memory is too small (need: the bytes), or the driver is out of memory; GL, DATA
- *         the driver refused an object or a shader. All GL objects made so far are then deleted */
+ * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer does not exist (where: the kind, plus 2^32
+ *         times the layer; need: the byte of its name in the layer's list); ARG memory is NULL or misaligned; MEMORY
+ *         memory is too small (need: the bytes), or the driver is out of memory; GL, DATA the driver refused an object
+ *         or a shader. All GL objects made so far are then deleted */
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error);
 

@@ -95,7 +95,7 @@ typedef int (*mask_fn)(const noh_stage_kind *k, const word *w, uint8_t *mask);
 
 /* NULL takes all, "" none; a list that begins by taking out begins with all. */
 static noh_result fill_mask(const noh_stage_kind *k, const char *list, mask_fn fn, uint8_t *mask, uint32_t count,
-                            uint32_t kind, const char *what, noh_error *error)
+                            uint64_t where, const char *what, noh_error *error)
 {
     const char *at = list;
     word w;
@@ -103,7 +103,7 @@ static noh_result fill_mask(const noh_stage_kind *k, const char *list, mask_fn f
     for (int first = 1; list && noh_stage_next_word(&at, &w); first = 0) {
         if (first && w.takes_out) noh_mask_fill(mask, count, 255);
         if (!fn(k, &w, mask)) {
-            return noh_fail(error, NOH_ERR_NOT_FOUND, what, kind, 0);
+            return noh_fail(error, NOH_ERR_NOT_FOUND, what, where, (uint64_t)(w.text - list));
         }
     }
     return NOH_OK;
@@ -117,15 +117,15 @@ static int any(const uint8_t *mask, uint32_t count)
     return 0;
 }
 
-static noh_result open_mask(noh_stage_kind *k, const noh_layer_desc *d, noh_stage_layer *layer, uint32_t kind,
+static noh_result open_mask(noh_stage_kind *k, const noh_layer_desc *d, noh_stage_layer *layer, uint64_t where,
                             noh_error *error)
 {
     const uint32_t joints = k->set.joint_count, floats = k->set.float_count;
     uint8_t *mask = k->masks + k->set.mask_count * (joints + floats);
-    noh_result result = fill_mask(k, d->joints, mask_joints, mask, joints, kind,
+    noh_result result = fill_mask(k, d->joints, mask_joints, mask, joints, where,
                                   "joints of a layer: the skeleton has no joint of this name", error);
     if (result == NOH_OK && k->bank) {
-        result = fill_mask(k, d->floats, mask_floats, mask + joints, floats, kind,
+        result = fill_mask(k, d->floats, mask_floats, mask + joints, floats, where,
                            "floats of a layer: no target of the meshes and no float of the clips has this name", error);
     } else if (!k->bank) {
         noh_mask_fill(mask + joints, floats, 0);
@@ -152,7 +152,7 @@ noh_result noh_stage_open_layers(noh_stage_kind *k, uint32_t kind, noh_error *er
         layer->track_count = noh_stage_layer_tracks(d);
         layer->moves_joints = k->set.joint_count > 0;
         tracks += layer->track_count;
-        if (d->joints || d->floats) result = open_mask(k, d, layer, kind, error);
+        if (d->joints || d->floats) result = open_mask(k, d, layer, kind | (uint64_t)i << 32, error);
     }
     return result;
 }

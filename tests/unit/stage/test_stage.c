@@ -155,6 +155,7 @@ static void desc_fields_broken_in_turn(void **state)
     assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, NULL, &c.desc, &c.plan, &made, &said),
                      NOH_ERR_NOT_FOUND);
     assert_non_null(strstr(said.what, "joints of a layer"));
+    assert_true(said.where == (uint64_t)1 << 32 && said.need == 0); /* of kind 0 */
     cast_close(&c);
 }
 

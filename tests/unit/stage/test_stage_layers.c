@@ -89,6 +89,7 @@ static void a_layer_moves_what_it_names(void **state)
 static void unknown_names_are_refused(void **state)
 {
     static const char *const bad[] = { "jawOpe", "jawOpenn", "-nobody", "mouthFunnel nobody*", "jaw* -" };
+    static const uint64_t bytes[TEST_COUNT(bad)] = { 0, 0, 1, 12, 6 };
     noh_layer_desc layers[LISTS];
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(bad); i++) {
@@ -102,6 +103,7 @@ static void unknown_names_are_refused(void **state)
         assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, NULL, &c.desc, &c.plan, &stage, &said),
                          NOH_ERR_NOT_FOUND);
         assert_non_null(strstr(said.what, "floats of a layer"));
+        assert_true(said.where == (uint64_t)2 << 32 && said.need == bytes[i]);
         free(c.memory);
         noh_file_unmap(&c.files[MASKS]);
     }
