@@ -173,9 +173,9 @@ void noh_actor_hair_frame(noh_actor_hair *hair, noh_stage *stage, uint32_t ticks
  *   const noh_modifier modifiers[] = { gaze, noh_feet_modifier(&feet), hands, springs };
  *   kind.modifiers = modifiers, kind.modifier_count = 4;
  *
- * List gaze before feet, and hands and springs after them: feet move the body. The stage plans, saves,
- * restores, forks and hashes their state. The game may move places along the ground in coarse steps; bodies follow
- * smoothly.
+ * low_life.h has the makers of rigs. List gaze before feet, and hands and springs after them: feet move the body. The
+ * stage plans, saves, restores, forks and hashes their state. The game may move places along the ground in coarse
+ * steps; bodies follow smoothly.
  * The pose is unchanged at a LOD level without the feet's joints, and where there is no ground. Do not use it in a kind
  * whose actors are attached to others: a modifier does not know their own place.
  * Threads: the ground is read by jobs at the same time. Plans and init refuse a world whose physics answers one thread
@@ -562,8 +562,9 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
  *   noh_gaze *g = noh_actor_modifier(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;
  *   noh_reach *r = noh_actor_modifier(stage, actor, 2);     r->hands[0].point[1] = 1.0f, r->hands[0].wants = 1;
  *
- * Points are in the world; the game sets them when they move. List gaze before feet and reach after them: feet move the
- * body. States are a noh_gaze and a noh_reach; the stage plans, saves, restores, forks and hashes them.
+ * Rigs, noh_gaze and noh_reach are in low_life.h. Points are in the world; the game sets them when they move. List gaze
+ * before feet and reach after them: feet move the body. The states are a noh_gaze and a noh_reach; the stage plans,
+ * saves, restores, forks and hashes them.
  *
  * In a kind with a face the gaze modifier does nothing: the face turns head and eyes (noh_actor_look_at). The pose is
  * unchanged at a LOD level without the rig's joints. Do not use these modifiers in a kind whose actors are attached to
