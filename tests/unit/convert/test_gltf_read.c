@@ -2440,13 +2440,32 @@ static void worlds_beyond_the_limit_are_refused(void **state)
     refused(s, "scales of its ancestors", "node 'b'");
 }
 
-static void differing_target_counts_are_refused(void **state)
+/* A primitive with fewer targets than others of its mesh stays in place where it has none. */
+static void primitives_may_have_fewer_targets(void **state)
 {
     (void)state;
-    scene *s = morphing(up_deltas, ONE_TARGET);
+    const float zeros[9] = { 0 };
+    scene *s = triangle("", "");
+    add_array(s, up_deltas, sizeof up_deltas, F32, 3, "VEC3");
     APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1},{\"POSITION\":1}]}");
-    refused(s, "primitive 0 has 1 morph targets and primitive 1 has 2", "mesh 'm' primitives 0 and 1");
-    s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
+    APPEND(s->primitives, ",{\"attributes\":{\"POSITION\":0},\"targets\":[{\"POSITION\":1}]}");
+    model *m = load(s);
+    assert_int_equal(m->meshes[0].target_count, 2);
+    for (uint32_t t = 0; t < 2; ++t) {
+        const model_target *target = &m->meshes[0].targets[t];
+        for (uint32_t p = 0; p < 3; ++p) {
+            const int moves = p == 1 || (p == 2 && t == 0);
+            assert_memory_equal(target->position + 9 * p, moves ? up_deltas : zeros, sizeof zeros);
+        }
+    }
+    assert_true(has_warning(m, "mesh 'm' primitive 0 has 0 morph targets and primitive 1 has 2: the others do not"));
+    model_free(m);
+}
+
+static void targets_of_another_size_are_refused(void **state)
+{
+    (void)state;
+    scene *s = triangle("", ",\"targets\":[{\"POSITION\":1}]");
     add_array(s, up_deltas, 24, F32, 2, "VEC3");
     refused(s, "the accessor has 2 elements, but 3 are needed here",
             "mesh 'm' primitive 0 target 0 POSITION (accessor 1)");
@@ -2868,7 +2887,8 @@ int main(void)
         cmocka_unit_test(missing_buffers_are_refused),
         cmocka_unit_test(numbers_that_are_not_finite_are_zeros),
         cmocka_unit_test(worlds_beyond_the_limit_are_refused),
-        cmocka_unit_test(differing_target_counts_are_refused),
+        cmocka_unit_test(primitives_may_have_fewer_targets),
+        cmocka_unit_test(targets_of_another_size_are_refused),
         cmocka_unit_test(targets_that_cannot_be_read_are_empty),
         cmocka_unit_test(short_buffers_cost_what_they_lack),
         cmocka_unit_test(weights_of_the_wrong_length_are_cut),

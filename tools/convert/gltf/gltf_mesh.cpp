@@ -222,15 +222,19 @@ static void find_parts(file &f, mesh_job &job)
     }
 }
 
-static void check_target_counts(const mesh_job &job)
+/* glTF wants the same targets in all primitives of a mesh. One with fewer of them stays where it is in the others. */
+static uint32_t count_targets(file &f, const mesh_job &job)
 {
-    const part &first = job.parts[0];
+    const auto fewer = [](const part &a, const part &b) { return a.source->targets.size() < b.source->targets.size(); };
+    const part &most = *std::max_element(job.parts.begin(), job.parts.end(), fewer);
+    const size_t count = most.source->targets.size();
     for (const part &p : job.parts)
-        if (p.source->targets.size() != first.source->targets.size())
-            fail(job.where + text(" primitives %zu and %zu", first.number, p.number),
-                 text("primitive %zu has %zu morph targets and primitive %zu has %zu: all primitives of a mesh need "
-                      "the same targets",
-                      first.number, first.source->targets.size(), p.number, p.source->targets.size()));
+        if (p.source->targets.size() != count)
+            leave_out(f, where_of(job, p),
+                      text(" has %zu morph targets and primitive %zu has %zu: the others do not move it",
+                           p.source->targets.size(), most.number, count));
+    if (count >= MODEL_NONE) fail(job.where, text("%zu morph targets are not possible", count));
+    return static_cast<uint32_t>(count);
 }
 
 /* --- base attributes --- */
@@ -495,6 +499,7 @@ static void read_uv_delta(file &f, const mesh_job &job, const part &p, size_t t,
 
 static void warn_unused_deltas(file &f, const part &p, size_t t, const std::string &where)
 {
+    if (t >= p.source->targets.size()) return;
     for (const auto &delta : p.source->targets[t]) {
         bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT" ||
                      delta.first == uv_name(f, *p.source);
@@ -601,7 +606,7 @@ static void read_default_weights(file &f, mesh_job &job)
 
 static void read_targets(file &f, mesh_job &job)
 {
-    uint32_t count = static_cast<uint32_t>(job.parts[0].source->targets.size());
+    const uint32_t count = count_targets(f, job);
     job.out->targets = allocate<model_target>(f, count, job.where);
     job.out->target_count = count;
     for (size_t t = 0; t < count; ++t) {
@@ -643,7 +648,6 @@ static void read_skinning(file &f, mesh_job &job)
 static void fill_mesh(file &f, mesh_job &job)
 {
     uint32_t first_index = 0;
-    check_target_counts(job);
     count_mesh(job);
     allocate_base(f, job);
     for (size_t i = 0; i < job.parts.size(); ++i) {
