@@ -407,7 +407,7 @@ int noh_smart_arrive(noh_smart *smart, uint32_t agent);
 int noh_smart_release(noh_smart *smart, uint32_t agent);
 
 /* Advance time: needs grow or are satisfied, phases end, and free slots go to waiting agents. Phases that end during
- * the step count as ending at its end. */
+ * the step count as ending at its end. At most 2^30 - 1 ticks, six hours; the rest of a longer time is dropped. */
 void noh_smart_step(noh_smart *smart, uint32_t ticks);
 
 void noh_smart_use_of(const noh_smart *smart, uint32_t agent, noh_smart_use *use);

@@ -221,9 +221,9 @@ static void settle(noh_face *face)
 
 void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
 {
-    NOH_ASSERT(face && desc && ticks <= HOLD_MAX);
+    NOH_ASSERT(face && desc);
     while (ticks) {
-        uint32_t left = ticks;
+        uint32_t left = ticks < HOLD_MAX ? ticks : HOLD_MAX;
         const event e = next_event(face, desc, &left);
         face->clock += left;
         ticks -= left;

@@ -370,7 +370,8 @@ static void step_agent(noh_smart *s, uint32_t agent, uint32_t ticks)
 
 void noh_smart_step(noh_smart *smart, uint32_t ticks)
 {
-    NOH_ASSERT(smart && ticks <= TICKS_MAX);
+    NOH_ASSERT(smart);
+    if (ticks > TICKS_MAX) ticks = TICKS_MAX;
     for (uint32_t i = 0; i < smart->agent_max; i++) step_agent(smart, i, ticks);
     for (uint32_t n = 0; n < smart->need_count; n++) pass_on(smart, n);
 }

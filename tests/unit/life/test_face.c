@@ -490,6 +490,17 @@ static void steps_may_be_cut_anywhere(void **state)
     }
 }
 
+static void the_longest_step_is_many_short_ones(void **state)
+{
+    noh_face once = face_of(7, 0), often = once;
+    const uint32_t piece = UINT32_MAX / 255u; /* 255 * 16843009 */
+    (void)state;
+    noh_face_step(&once, &desc, UINT32_MAX);
+    for (int i = 0; i < 255; i++) noh_face_step(&often, &desc, piece);
+    assert_memory_equal(&once, &often, sizeof once);
+    assert_int_equal(once.clock, UINT32_MAX);
+}
+
 static void a_copy_goes_on_as_the_face(void **state)
 {
     noh_face face = play(800), copy = face;
@@ -657,6 +668,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_target_behind_is_looked_at_over_one_shoulder),
         cmocka_unit_test(lids_follow_the_eyes_at_once),
         cmocka_unit_test(steps_may_be_cut_anywhere),
+        cmocka_unit_test(the_longest_step_is_many_short_ones),
         cmocka_unit_test(a_copy_goes_on_as_the_face),
         cmocka_unit_test(a_face_never_stands_still_unless_it_is_calm),
         cmocka_unit_test(emotions_come_hold_and_go),

@@ -358,6 +358,9 @@ static void an_object_knows_what_is_done_with_it(void **state)
     noh_smart_step(smart, 100u);
     noh_smart_use_of(smart, 1, &use);
     assert_int_equal(use.ticks, 100);
+    noh_smart_step(smart, UINT32_MAX); /* of a day six hours count */
+    noh_smart_use_of(smart, 1, &use);
+    assert_int_equal(use.ticks, (1u << 30) - 1u);
     noh_smart_leave(smart, 1); /* nothing is left of it */
     noh_smart_use_of(smart, 1, &use);
     assert_true(use.phase == NOH_SMART_AWAY && use.ticks == 0 && use.object == NOH_NONE && use.slot == NOH_NONE);
