@@ -43,8 +43,8 @@ OPT      ?= $(if $(SAN),-O1,-O2) -g1
 ALL_CFLAGS   = -std=c99 $(OPT) $(WARN) $(FP) $(SECTIONS) $(SANFLAGS) $(CALLS) $(CPPFLAGS) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(OPT) -Wall -Wextra $(FP) $(SANFLAGS) $(CPPFLAGS) $(CXXFLAGS)
 ALL_LDFLAGS  = $(SANFLAGS) $(LDFLAGS)
-# Two hundred test programs are linked: lld takes a third of the time.
-QUICK_LD    := $(if $(shell command -v ld.lld),-fuse-ld=lld)
+# Two hundred test programs are linked, two at once: lld takes a third of the time.
+QUICK_LD    := $(if $(shell command -v ld.lld),-fuse-ld=lld -Wl$(comma)--threads=1)
 INCLUDES := -Iruntime -Iplatform -Itools -Itools/noh -I$(BUILD)/gen
 # Draco meshes in glTF are read where its library is.
 HAVE_DRACO := $(shell $(PKG) --exists draco && echo y)

@@ -5,13 +5,16 @@
 # test passes and nothing is reported. A compiler that is missing, or whose ThreadSanitizer does not run here, is
 # skipped. Ends like tests/run.sh.
 #
-# Asserts of both tiers are on. Built like the cross tests, without C++ and GL.
+# Asserts of both tiers are on. Built like the cross tests, without C++ and GL. The converter, which runs before any thread,
+# comes from the build that made the packs.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0 skipped=0
 
 programs='motion/test_threads stage/test_stage_threads stage/test_crowd_threads'
 packs=${NOH_BUILD:-build} # test_stage_threads reads mask_levels.noh and demo/puppet_levels.noh there
+own="$(echo tests/cross/*.c) platform/file.c platform/file_write.c tests/support/support.c tests/support/support_model.c"
+converter=$(find tools/convert -name '*.c' ! -name webp_file.c | sed "s|.*|$packs/&|; s|c\$|o|")
 
 compiler() {
     cc=$1 build=${NOH_BUILD:-build}/tsan/$1
@@ -26,7 +29,8 @@ compiler() {
     # Optimised only a little: fewer accesses disappear before the sanitizer sees them.
     # shellcheck disable=SC2046 # words
     if ! make --no-print-directory -j"${JOBS:-2}" DEPS=0 CROSS=tsan SAN=thread BUILD="$build" CC="$cc" OPT='-O1 -g -DNOH_ASSERT_LEVEL=2' \
-        CFLAGS= CPPFLAGS= LDFLAGS=-pthread $(printf "$build/cross/unit/%s " $programs) >"$build/make.txt" 2>&1; then
+        CFLAGS= CPPFLAGS= LDFLAGS=-pthread CROSS_O="$(printf "$build/%s " $own | sed 's|\.c |.o |g')$(echo $converter)" \
+        $(printf "$build/cross/unit/%s " $programs) >"$build/make.txt" 2>&1; then
         echo "$cc: it does not build"
         tail -n 20 "$build/make.txt" | sed 's/^/    | /'
         failed=$((failed + 1))

@@ -117,14 +117,16 @@ tests: $(TESTS) $(BUILD)/tests/gl/picture_diff $(if $(SAN),,$(AMALGAM_TESTS) $(B
        $(if $(SANITIZED),,$(EXAMPLES) $(BUILD)/tests/gl/window $(BUILD)/platform/template.o $(BUILD)/lod_compare) \
        $(BUILD)/tests/fuzz/fuzz_import $(BUILD)/tests/fuzz/fuzz_pack $(BUILD)/tests/fuzz/fuzz_clip $(BUILD)/tests/fuzz/fuzz_wire $(BUILD)/tests/fuzz/corpus/.made
 
-# The tests load packs, draw them and read results back as the tool does, and share what lies in tests/ and
-# tests/support. Of the tool each takes what it calls, and the library has its asserts on.
-TEST_SHARED_O := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(TEST_C),$(wildcard tests/*.c) $(call sources,tests/support,*.c)))
+# The tests load packs, draw them and read results back as the tool does, and share what lies in tests/support. Of it and
+# of the tool each takes what it calls, and of support.c what runs before main; the library has its asserts on.
 TEST_KERNELS := $(if $(filter x86_64%,$(MACHINE)),$(BUILD)/kernel/clip_sample_avx2.o)
-TEST_LIBS := $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/assert/libnoh.a
+TEST_OWN  := $(BUILD)/tests/support/support.o $(BUILD)/tests/support.a $(BUILD)/tests/tool.a
+TEST_LIBS := $(TEST_OWN) $(BUILD)/assert/libnoh.a
 
-# One archive: a program links only what it calls, which is far quicker than all the objects.
+# Archives: a program links only what it calls, which is far quicker than all the objects.
+$(BUILD)/tests/support.a: $(patsubst %.c,$(BUILD)/%.o,$(call sources,tests/support,*.c))
 $(BUILD)/tests/tool.a: $(filter-out %/main.o,$(TOOL_O)) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(TEST_KERNELS)
+$(BUILD)/tests/support.a $(BUILD)/tests/tool.a:
 	@mkdir -p $(@D)
 	@rm -f $@
 	$(call say,AR,$@)
@@ -141,7 +143,7 @@ $(BUILD)/tests/%: $(BUILD)/tests/%.o $(TEST_LIBS)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
 # The tests of bits with rooms of the library as plain C (tests/check_plain_c.sh, which makes that one).
-$(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(BUILD)/plain/libnoh.a $(BUILD)/libnoh.a
+$(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_OWN) $(BUILD)/plain/libnoh.a $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
@@ -152,7 +154,7 @@ $(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_SHARED_O) $(BUILD)/tests/
 CROSS       ?=
 CROSS_OWN   := $(wildcard tests/cross/$(CROSS)/*.[ch])
 CROSS_C     := $(wildcard tests/cross/*.c) $(or $(filter %.c,$(if $(CROSS),$(CROSS_OWN))),platform/file.c platform/file_write.c) \
-               $(addprefix tests/support/,support.c pack_walk.c) $(filter-out %/webp_file.c,$(CONVERT_C))
+               $(addprefix tests/support/,support.c support_model.c pack_walk.c) $(filter-out %/webp_file.c,$(CONVERT_C))
 CROSS_O     := $(CROSS_C:%.c=$(BUILD)/%.o) $(KERNELS) $(TEST_KERNELS)
 ifneq ($(CROSS),)
 INCLUDES    += $(addprefix -I,$(wildcard tests/cross/$(CROSS))) -Itests/cross -idirafter /usr/include

@@ -28,7 +28,7 @@ $(SEEDED)/lines/libnoh.so: $(RUNTIME_C:%.c=$(SEEDED)/lines/%.o) $(BUILD)/gen/sha
 	$(call say,LD,$@)
 	$(Q)$(SEEDED_LD) --coverage $^ -o $@
 
-$(SEEDED)/tests/%: $(BUILD)/tests/%.o $(TEST_SHARED_O) $(BUILD)/tests/tool.a $(SEEDED)/plain/libnoh.so
+$(SEEDED)/tests/%: $(BUILD)/tests/%.o $(TEST_OWN) $(SEEDED)/plain/libnoh.so
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
@@ -46,5 +46,5 @@ mutants-seed: deps-check
 	@$(MAKE) --no-print-directory -j$(JOBS) $(TEST_PACKS) mutants-seed-programs
 	@$(MAKE) --no-print-directory -j$(JOBS) mutants-seed-lines
 	@NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" JOBS="$(JOBS)" SEEDED_CC="$(SEEDED_CC)" SEEDED_LD="$(SEEDED_LD)" \
-	    SEEDED_CXX="$(CXX) $(ALL_LDFLAGS) $(QUICK_LD)" SEEDED_LIBS="$(TEST_SHARED_O) $(BUILD)/tests/tool.a -lcmocka $(TOOL_LIBS)" \
+	    SEEDED_CXX="$(CXX) $(ALL_LDFLAGS) $(QUICK_LD)" SEEDED_LIBS="$(TEST_OWN) -lcmocka $(TOOL_LIBS)" \
 	    SEEDED_O="$(ASSERT_O)" sh tests/mutants_seed.sh $(SEED) $(COUNT)

@@ -100,10 +100,13 @@ if wants spdx; then
     tar -C "$work" -xzf "$archive"
     (
         cd "$work/$name"
-        find . -type f | sort | while read -r file; do
-            printf 'FileName: %s\nSPDXID: SPDXRef-%s\nFileChecksum: SHA1: %s\nLicenseConcluded: MIT\nLicenseInfoInFile: NOASSERTION\nFileCopyrightText: NOASSERTION\n\n' \
-                "$file" "$(printf %s "${file#./}" | tr -c 'A-Za-z0-9.' -)-$(printf %s "$file" | sha1sum | cut -c1-8)" "$(sha1sum "$file" | cut -d' ' -f1)"
-        done
+        find . -type f | sort | tr '\n' '\0' | xargs -0 sha1sum | awk '{
+            file = substr($0, 43)
+            id = substr(file, 3)
+            gsub(/[^A-Za-z0-9.]/, "-", id)
+            printf "FileName: %s\nSPDXID: SPDXRef-%s-%d\nFileChecksum: SHA1: %s\nLicenseConcluded: MIT\n", file, id, NR, $1
+            printf "LicenseInfoInFile: NOASSERTION\nFileCopyrightText: NOASSERTION\n\n"
+        }'
     ) >"$work/files"
     # The verification code of SPDX 2.3, 7.9: the SHA-1 of the files' sorted SHA-1s.
     code=$(sed -n 's/^FileChecksum: SHA1: //p' "$work/files" | sort | tr -d '\n' | sha1sum | cut -d' ' -f1)
