@@ -244,14 +244,24 @@ END
         check "CMake from source: $1 builds" cmake --build "$work/$2/build" -j2
         runs "CMake from source, $1" smile "$work/$2/build/smile"
     }
-    from_source 'add_subdirectory' cmake_subdirectory "add_subdirectory($PWD/runtime noh)"
+    from_source 'add_subdirectory' cmake_subdirectory "add_subdirectory($PWD/runtime noh)" -DNOH_INSTALL=ON
     check 'CMake from source: every file' cmp /dev/null "$work/absent"
     builds 'add_subdirectory' cmake_subdirectory
+    # What a package manager's port and recipe do: install; then a game finds the package.
+    mkdir "$work/cmake_package"
+    printf 'cmake_minimum_required(VERSION 3.13)\nproject(game C)\nfind_package(noh %s REQUIRED)\nadd_executable(game game.c)\ntarget_link_libraries(game noh::noh)\n' \
+        "$version" >"$work/cmake_package/CMakeLists.txt"
+    printf '#include <string.h>\n#include <noh/base.h>\nint main(void) { return strcmp(noh_version(), NOH_VERSION); }\n' >"$work/cmake_package/game.c"
+    check 'CMake from source: installs' cmake --install "$work/cmake_subdirectory/build" --prefix "$work/cmake_installed"
+    check 'CMake from source: a game finds it and runs' sh -c \
+        'cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1/build" && "$1/build/game"' - "$work/cmake_package" "$work/cmake_installed"
     from_source 'FetchContent, without GL' cmake_fetch "include(FetchContent)
 FetchContent_Declare(noh SOURCE_DIR $PWD SOURCE_SUBDIR runtime)
 FetchContent_MakeAvailable(noh)" -DNOH_GL=OFF
     check 'CMake from source: without what draws alone' sh -c 'test -s "$1" && ! grep -v "^runtime/gl/" "$1"' - "$work/absent"
-    # cli/release.sh builds the library without GL by CMake, too
+    # Its files beside those compile without the shaders.
+    grep -F " $PWD/runtime/gl/" "$work/commands" | sed 's/$/ -fsyntax-only/' >"$work/beside"
+    check 'CMake from source: without GL, files of gl/ compile' sh -e "$work/beside"
     [ -z "${NOH_LONG:-}" ] || builds 'FetchContent, without GL' cmake_fetch
 else
     skip 'CMake' 'no cmake here'

@@ -39,23 +39,6 @@ if command -v python3 >/dev/null 2>&1; then
     check 'the port is valid JSON' python3 -m json.tool "$work/ports/vcpkg/vcpkg.json" "$work/json"
 fi
 
-# What the port and the recipe do: configure, build, install; then a game finds the package.
-if [ -n "${NOH_SAN:-}" ]; then
-    skip 'the library by CMake' 'not under sanitizers'
-elif ! command -v cmake >/dev/null 2>&1; then
-    skip 'the library by CMake' 'no cmake here'
-else
-    cmake -S "$work/unpacked/$name/runtime" -B "$work/cmake" -DNOH_INSTALL=ON -DNOH_GL=OFF -DCMAKE_BUILD_TYPE=Debug \
-        -DCMAKE_C_FLAGS=-O0 -DCMAKE_INSTALL_PREFIX="$work/prefix" >"$work/out" 2>"$work/err" &&
-        cmake --build "$work/cmake" -j 2 >>"$work/out" 2>>"$work/err" && cmake --install "$work/cmake" >>"$work/out" 2>>"$work/err"
-    code=$?
-    expect 0 'CMake builds and installs the library'
-    mkdir "$work/game"
-    printf 'cmake_minimum_required(VERSION 3.13)\nproject(game C)\nfind_package(noh %s REQUIRED)\nadd_executable(game game.c)\ntarget_link_libraries(game noh::noh)\n' "$version" >"$work/game/CMakeLists.txt"
-    printf '#include <string.h>\n#include <noh/base.h>\nint main(void) { return strcmp(noh_version(), NOH_VERSION); }\n' >"$work/game/game.c"
-    check 'a game finds it and runs' sh -c 'cmake -S "$1/game" -B "$1/game/out" -DCMAKE_PREFIX_PATH="$1/prefix" && cmake --build "$1/game/out" && "$1/game/out/game"' - "$work"
-fi
-
 if [ -z "${NOH_LONG:-}" ]; then
     skip 'Debian packages' 'make check-long: they are a whole build'
 elif ! command -v dh >/dev/null 2>&1; then
