@@ -36,26 +36,29 @@ void noh_face_vertex(vec3 rest, vec3 gaze, vec3 up, vec4 x, vec4 y, vec4 z)
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
 out float noh_v_depth; /* behind the lips, in halves of their gap; 0 outside of the mouth */
 
-/* The half gap of the lips, in depths of the mouth: narrow at rest, wider where targets move what is inside. */
-float noh_half_gap(vec3 moved, float scale)
+/* Half the lips' gap in the present pose, in depths of the mouth. A crowd's instances have what targets add in the
+ * fraction of a row (gl_skin.c). */
+float noh_half_gap()
 {
-    return 0.24 + scale * length(moved);
+#ifdef NOH_CROWD
+    return noh_surface_more[1].x + 2.0 * fract(noh_crowd_row(3).w);
+#else
+    return noh_surface_more[1].x;
+#endif
 }
 #endif
 
 #ifdef NOH_TEETH
-/* rest, model: position before and after targets */
-void noh_face_vertex(vec3 rest, vec3 model)
+void noh_face_vertex(vec3 rest)
 {
     float depth = max(1.2 - (dot(rest, noh_surface_values.xyz) + noh_surface_values.w), 0.2); /* lips are thick */
-    float gap = noh_half_gap(model - rest, noh_surface_more[0].x);
-    noh_v_depth = noh_surface_more[0].x > 0.0 ? depth / gap : 0.0;
+    noh_v_depth = depth / noh_half_gap();
 }
 #endif
 
 #ifdef NOH_SKIN
 /* The skin inside the mouth, around the teeth: what faces the middle of the hollow. normal: in the bind pose */
-void noh_face_vertex(vec3 rest, vec3 model, vec3 normal)
+void noh_face_vertex(vec3 rest, vec3 normal)
 {
     vec3 from = rest - noh_surface_values.yzw;
     vec2 beside = abs(from.xy) / max(noh_surface_more[0].xy, 1e-6);
@@ -63,8 +66,8 @@ void noh_face_vertex(vec3 rest, vec3 model, vec3 normal)
     float arch = 0.1 + 1.2 * beside.x * beside.x; /* teeth stand in an arch: cheeks are behind the foremost, and outside */
     vec3 out_of = vec3(0.3 * from.x, from.y, from.z + arch / max(slope, 1e-6)); /* the inner rims of lips face in, too */
     inside *= 1.0 - smoothstep(-0.2, 0.1, dot(normal, normalize(out_of)));
-    float depth = inside * max(0.5 - from.z * slope, 0.3); /* lips are thick */
-    noh_v_depth = slope > 0.0 ? depth / noh_half_gap(model - rest, 0.5 * slope) : 0.0;
+    float depth = inside * inside * max(0.5 - from.z * slope, 0.3); /* lips are thick */
+    noh_v_depth = depth / max(noh_half_gap(), 0.05); /* a chin's dimple faces in by a little: closed lips leave it light */
 }
 #endif
 #endif

@@ -235,10 +235,10 @@ noh_vertex noh_fetch()
     noh_gaze_vertex(v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, gaze, up);
 #endif
 #ifdef NOH_TEETH
-    noh_face_vertex(noh_a_rest, v.model);
+    noh_face_vertex(noh_a_rest);
 #endif
 #ifdef NOH_SKIN
-    noh_face_vertex(noh_a_rest, v.model, noh_direction_of_pair(noh_a_rest_normal));
+    noh_face_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
 #endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);

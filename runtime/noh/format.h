@@ -222,7 +222,9 @@ typedef struct noh_target {
     float radius;                      /* farthest movement of a vertex at weight 1, model units */
     float position_error;              /* certified largest error at weight 1, model units */
     float normal_error, tangent_error; /* per component */
-    uint32_t reserved1;
+    int16_t lips; /* by how much it opens the lips at weight 1: half of their gap, in 1/4096 of the mouth's depth, as
+                   * NOH_SURFACE_TEETH has it */
+    uint16_t reserved1;
 } noh_target;
 
 /* A rectangle of accumulation texels; delta texels are stored in the order of rectangles. */
@@ -390,15 +392,15 @@ typedef struct noh_node {
 
 /* The lighting model of a material. noh_material.surface_values (x, y, z, w) and then surface_more hold, for
  *   skin   x millimetres per world unit, for scattering; 0: 1000. Then the inside of the mouth, in the bind pose and
- *          mesh space: yzw its centre, at the foremost teeth; surface_more: half its width, half its height, and 1 over
- *          the depth where no light arrives. Zeros: none
+ *          mesh space: yzw its centre, at the foremost teeth; surface_more: half its width, half its height, 1 over the
+ *          depth where no light arrives, and half the lips' gap at rest, in such depths. Zeros: none
  *   eye    xyz the gaze in the bind pose and mesh space, with the iris radius as its length; w the sine of the angle at
  *          the eyeball's centre between the gaze and the rim of the iris. surface_more: the edges of the upper and
  *          lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away from the nose, the
  *          edge is at the height x + y a + z a^2. Zeros: unknown
  *   teeth  nearness to the lips, 1 at the foremost teeth, 0 where no light arrives: dot(xyz, position in the bind pose)
- *          + w; zeros: unknown. surface_more x: by how much the half gap of the lips grows, in depths of the mouth, per
- *          unit that targets move the position; the rest zeros
+ *          + w; zeros: unknown. surface_more: above 0 if known; 0; 0; half the lips' gap at rest, in depths of the
+ *          mouth, or 0 for 0.24
  *   toon   xyz the colour in shade divided by the base colour, or with NOH_MATERIAL_TOON_SHADE the factor of its
  *          texture; w, -1 to 1, how far light extends past the terminator. surface_more, as in VRMC_materials_mtoon: 0,
  *          0 to 1: hardness of the edge; 1 colour of the rim; 2, at least 0: its Fresnel power; 3 its lift; 4 width of

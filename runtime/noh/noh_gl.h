@@ -192,6 +192,8 @@ typedef struct noh_gl_morph_binding {
     uint32_t vertex_offset, vertex_stride;       /* bytes; a stride of 20 includes a tangent */
     int32_t tile_x, tile_y, width_log2, touched; /* texels; log2 of the tile's width; count of vertices that any target
                                                   * moves */
+    float lips; /* by how much the targets open the lips: half of their gap, in depths of the mouth, a multiple of 1/128
+                 * below 1.5. Skin and teeth between them take their light from it */
     /* With NOH_LAYERS_STREAMS, for the instance's current weights: noh_gl_morph_bind_streams */
     unsigned stream_buffer;                         /* otherwise 0 */
     uint32_t stream_offsets[NOH_MORPH_STREAMS_MAX]; /* bytes */

@@ -458,18 +458,19 @@ static void hair_is_not_silver(void **state)
 
 /* ---- teeth ---- */
 
-static void teeth_are_dark_behind_the_lips(void **state)
+/* gap: half of the lips', in depths of the mouth; 0: not given, 0.24 */
+static void check_teeth(float gap)
 {
     static const float values[4] = { 0.8f, 0.9f, 0.0f, 0.04f };
     model_material teeth = scene_material(values);
     uint8_t *rgba[2];
-    (void)state;
     teeth.surface = NOH_SURFACE_TEETH;
     for (int i = 0; i < 2; i++) {
         scene s;
         teeth.surface_values[2] = i ? 1.25f : 0.0f; /* from z = 0.2, where no light comes, to 1 */
         teeth.surface_values[3] = i ? -0.25f : 0.0f;
         teeth.surface_more[0] = i ? 1.0f : 0.0f;
+        teeth.surface_more[3] = gap;
         scene_open(&s, &teeth, NULL, 0, NULL);
         rgba[i] = scene_draw(&s, SPHERE, scene_identity, NULL);
         scene_close(&s);
@@ -477,12 +478,20 @@ static void teeth_are_dark_behind_the_lips(void **state)
     for (uint32_t x = SIDE / 2; x < SIDE * 9 / 10; x++) {
         const size_t p = 4 * ((size_t)(SIDE / 2) * SIDE + x);
         const double z = sqrt(1.0 - pixel_at(x) * pixel_at(x)), open = fmin(fmax(1.25 * z - 0.25, 0.0), 1.0);
-        const double depth = fmax(1.2 - open, 0.2) / 0.24, through = 1.0 / sqrt(1.0 + depth * depth);
+        const double depth = fmax(1.2 - open, 0.2) / (gap > 0.0f ? (double)gap : 0.24);
+        const double through = 1.0 / sqrt(1.0 + depth * depth);
         const double right = fmax(((0.892 * through - 2.235) * through + 2.343) * through, 0.24); /* an albedo of 0.6 */
         assert_true(fabs(decoded(rgba[1][p]) / decoded(rgba[0][p]) - right) < 0.03);
     }
     free(rgba[0]);
     free(rgba[1]);
+}
+
+static void teeth_are_dark_behind_the_lips(void **state)
+{
+    static const float gaps[3] = { 0.0f, 0.05f, 0.9f };
+    (void)state;
+    for (int i = 0; i < 3; i++) check_teeth(gaps[i]);
 }
 
 /* The back of a mouth is dark; cheeks, which bend back at the corners of the mouth and so lie behind the foremost, are not. */

@@ -288,18 +288,31 @@ static void set_toon(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->Uniform3fv(v->u_surface_more, 4, more[0]);
 }
 
-/* Uniforms of skin, eye, teeth, toon and hair materials. The unit of skin defaults to metres. */
-static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m)
+/* Half the lips' gap, in depths of the mouth: endless where no place of the mouth is known. A crowd adds its own
+ * opening. */
+static float half_gap(const noh_material *m, const noh_gl_morph_binding *morph, int is_crowd)
 {
+    const float *more = m->surface_more;
+    if (!(more[m->surface == NOH_SURFACE_SKIN ? 2 : 0] > 0.0f)) return 1e9f;
+    return (more[3] > 0.0f ? more[3] : 0.24f) + (morph && !is_crowd ? morph->lips : 0.0f);
+}
+
+/* Uniforms of skin, eye, teeth, toon and hair materials. The unit of skin defaults to metres. */
+static void set_surface(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_material *m,
+                        const noh_gl_morph_binding *morph)
+{
+    float more[6];
+    memcpy(more, m->surface_more, sizeof more);
     const float mm = m->surface_values[0] > 0.0f ? m->surface_values[0] : 1000.0f;
     const int is_skin = m->surface == NOH_SURFACE_SKIN;
     r->gl->Uniform4f(v->u_surface_values, is_skin ? mm : m->surface_values[0], m->surface_values[1],
                      m->surface_values[2], m->surface_values[3]);
     if (m->surface == NOH_SURFACE_TOON) {
         set_toon(r, v, m);
-    } else {
-        r->gl->Uniform3fv(v->u_surface_more, 2, m->surface_more);
+        return;
     }
+    if (is_skin || m->surface == NOH_SURFACE_TEETH) more[3] = half_gap(m, morph, v->key.crowd);
+    r->gl->Uniform3fv(v->u_surface_more, 2, more);
 }
 
 /* A crowd has the regions in a row of each instance, if the mesh has any. */
@@ -335,7 +348,7 @@ static void set_colors(const noh_gl_renderer *r, const noh_gl_variant *v, const 
 }
 
 static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, const noh_mesh *mesh, const noh_material *m,
-                         float cutoff, const noh_gl_texture *pictures)
+                         float cutoff, const noh_gl_morph_binding *morph, const noh_gl_texture *pictures)
 {
     if (!v->key.depth || v->key.cut) {
         set_base_color(r, v, m, cutoff, pictures);
@@ -346,7 +359,7 @@ static void set_material(const noh_gl_renderer *r, const noh_gl_variant *v, cons
             set_wrinkles(r, v, m, v->key.crowd && noh_gl_crowd_rows(mesh) > NOH_CROWD_ROWS, pictures);
         }
         if (v->key.features & NOH_FEATURE_COLORS) set_colors(r, v, mesh, pictures);
-        if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m);
+        if (m->surface != NOH_SURFACE_PLAIN) set_surface(r, v, m, morph);
     }
     if ((m->flags & NOH_MATERIAL_DOUBLE_SIDED) && !is_outline(v)) {
         r->gl->Disable(GL_CULL_FACE);
@@ -509,7 +522,7 @@ static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_
                           draw_part part)
 {
     const noh_material *m = noh_mesh_material(&j->mesh->mesh, s);
-    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(j->r, m, part), j->pictures);
+    set_material(j->r, v, &j->mesh->mesh, m, cutoff_of(j->r, m, part), j->morph, j->pictures);
     const GLint shows = v->u_user >= 0 ? complexion_part(&j->mesh->mesh, m) << COMPLEXION_SHIFT : 0;
     j->r->gl->Uniform1i(v->u_blends, shows | ((m->flags & NOH_MATERIAL_BLEND) ? TINT_ALPHA : 0) |
                                          ((m->flags & NOH_MATERIAL_UNTINTED) ? TINT_NO_COLOR : 0));

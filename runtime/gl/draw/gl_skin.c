@@ -211,12 +211,14 @@ static noh_result no_crowds(uint32_t instance, noh_error *error)
 }
 
 /* Write the row of a tile with its tint, as floats: its numbers are below 2^24 and so exact. Stored as integer bits
- * they would be denormal floats, which GPUs may flush to zero. */
-static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], const uint32_t tint[3])
+ * they would be denormal floats, which GPUs may flush to zero. last: the touched vertices, and half of how far the lips
+ * are open, which is below 1 */
+static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[3], float last, const uint32_t tint[3])
 {
     float values[4];
     span changed = { UINT32_MAX, 0 };
-    for (int i = 0; i < 4; i++) values[i] = (float)(i < 3 ? tile[i] | tint[i] : tile[i]);
+    for (int i = 0; i < 3; i++) values[i] = (float)(tile[i] | tint[i]);
+    values[3] = last;
     put_rows(skin, row, values, 1, &changed);
     send(skin, &changed);
 }
@@ -224,7 +226,7 @@ static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[4], co
 /* The tile bits of a row's value, or its tint bits (of_tint). */
 static uint32_t tile_bits(const float *row, int i, int of_tint)
 {
-    const uint32_t mask = i < 2 ? NOH_TILE_XY_MASK : i == 2 ? NOH_TILE_LOG2_MASK : 0xffffffffu;
+    const uint32_t mask = i < 2 ? NOH_TILE_XY_MASK : NOH_TILE_LOG2_MASK;
     return (uint32_t)row[i] & (of_tint ? ~mask : mask);
 }
 
@@ -232,15 +234,15 @@ noh_result noh_gl_skin_set_tint(noh_gl_skin *skin, uint32_t instance, const uint
 {
     const uint32_t row = first_row(mesh_of(skin, instance), instance) + 3u;
     const float *own = skin->rows + 4u * (size_t)row;
-    uint32_t tile[4], bits[3], apart = 0;
+    uint32_t tile[3], bits[3], apart = 0;
     if (skin->plan.mode != NOH_PALETTE_TEXTURE) {
         return no_crowds(instance, error);
     }
     noh_gl_tint_bits(tint, bits);
     for (int i = 0; i < 3; i++) apart |= tile_bits(own, i, 1) ^ bits[i];
     if (apart) {
-        for (int i = 0; i < 4; i++) tile[i] = tile_bits(own, i, 0);
-        put_tile(skin, row, tile, bits);
+        for (int i = 0; i < 3; i++) tile[i] = tile_bits(own, i, 0);
+        put_tile(skin, row, tile, own[3], bits);
     }
     return NOH_OK;
 }
@@ -250,7 +252,7 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
 {
     uint32_t row = first_row(mesh_of(skin, instance), instance);
     const float *own = skin->rows + 4u * (size_t)(row + 3u);
-    uint32_t tile[4] = { 0, 0, 0, 0 }, tint[3];
+    uint32_t tile[3] = { 0, 0, 0 }, tint[3];
     float normal[12];
     span changed = { UINT32_MAX, 0 };
     NOH_ASSERT(world);
@@ -264,12 +266,11 @@ noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const flo
         tile[0] = (uint32_t)morph->tile_x;
         tile[1] = (uint32_t)morph->tile_y;
         tile[2] = (uint32_t)morph->width_log2;
-        tile[3] = (uint32_t)morph->touched;
     }
     for (int i = 0; i < 3; i++) tint[i] = tile_bits(own, i, 1);
     put_rows(skin, row, world, 3, &changed);
     send(skin, &changed);
-    put_tile(skin, row + 3u, tile, tint);
+    put_tile(skin, row + 3u, tile, morph ? (float)morph->touched + 0.5f * morph->lips : 0.0f, tint);
     return NOH_OK;
 }
 

@@ -288,6 +288,19 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
     return morph->meshes[mesh].first_instance + i;
 }
 
+/* noh_gl_morph_binding.lips, in steps that a crowd's row holds (gl_skin.c). */
+static float lips_of(const noh_gl_morph *m, uint32_t instance)
+{
+    const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;
+    const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
+    float sum = 0.0f;
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        if (weights[t] != 0.0f) sum += weights[t] * (float)mesh->targets[t].lips;
+    }
+    sum /= 4096.0f;
+    return sum > 0.0f ? (float)(int)((sum < 1.49f ? sum : 1.49f) * 128.0f) / 128.0f : 0.0f;
+}
+
 noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t instance)
 {
     const noh_mesh_header *h;
@@ -304,6 +317,7 @@ noh_gl_morph_binding noh_gl_morph_binding_of(const noh_gl_morph *morph, uint32_t
     binding.tile_y = (int32_t)y;
     binding.width_log2 = (int32_t)h->morph_width_log2;
     binding.touched = (int32_t)h->touched_count;
+    binding.lips = lips_of(morph, instance);
     if (morph->plan.path == NOH_MORPH_STREAMS) noh_gl_morph_set_streams(morph, instance, &binding);
     if (morph->plan.path == NOH_MORPH_DIRECT) noh_gl_morph_set_direct(morph, instance, &binding);
     if (morph->plan.vertex_ring) noh_gl_morph_set_vertices(morph, instance, &binding);

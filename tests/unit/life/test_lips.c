@@ -332,6 +332,56 @@ static void lips_of_a_head_meet(void **state)
     close_head(&h);
 }
 
+/* How a target at weight 1 moves the upper lip from the lower one, on average. */
+static void parted_by(const head *h, uint32_t target, float out[3])
+{
+    float weights[NOH_TARGETS_MAX] = { 0 };
+    weights[target] = 1.0f;
+    accumulate(h, weights);
+    memset(out, 0, 3 * sizeof *out);
+    for (uint32_t p = 0; p < h->pair_count; p++) {
+        const float *low = h->rest + 3 * h->pairs[p].low, *up = h->rest + 3 * h->pairs[p].up;
+        float a[3], b[3];
+        deform(h, h->pairs[p].low, a);
+        deform(h, h->pairs[p].up, b);
+        for (int i = 0; i < 3; i++) out[i] += ((b[i] - a[i]) - (up[i] - low[i])) / (float)h->pair_count;
+    }
+}
+
+/* What a target says of the lips' gap is what it does to vertices in the middle of the mouth. */
+static void targets_tell_how_far_lips_open(void **state)
+{
+    float slope = 0.0f, widest = 0.0f, worst_by = 0.0f, up[3], parted[3], length;
+    head h;
+    (void)state;
+    open_head(&h, "hero/head.glb", NULL, "mouth-open");
+    for (uint32_t i = 0; i < h.pack.material_count; i++) {
+        const noh_material *m = &h.pack.materials[i];
+        if (m->surface != NOH_SURFACE_SKIN) continue;
+        slope = m->surface_more[2];
+        assert_true(m->surface_more[3] > 0.0f && m->surface_more[3] < 0.05f); /* shut at rest */
+    }
+    assert_true(slope > 0.0f);
+    parted_by(&h, noh_mesh_find_target(&h.mesh, "mouth-open"), up);
+    length = sqrtf(up[0] * up[0] + up[1] * up[1] + up[2] * up[2]);
+    for (uint32_t t = 0; t < h.mesh.header->target_count; t++) {
+        const float told = (float)h.mesh.targets[t].lips / 4096.0f;
+        parted_by(&h, t, parted);
+        const float along = (parted[0] * up[0] + parted[1] * up[1] + parted[2] * up[2]) / length;
+        const float gap = 0.5f * slope * along;
+        widest = fmaxf(widest, gap);
+        worst_by = fmaxf(worst_by, fabsf(told - gap));
+        if (fabsf(told - gap) > 0.15f * fabsf(gap) + 0.02f) {
+            fail_msg("%s: %.3f of the mouth's depth, told %.3f", noh_pack_string(h.mesh.pack, h.mesh.targets[t].name),
+                     (double)gap, (double)told);
+        }
+    }
+    print_message("half the gap is at most %.3f of the mouth's depth, told %.3f off at most\n", (double)widest,
+                  (double)worst_by);
+    assert_true(widest > 0.25f);
+    close_head(&h);
+}
+
 /* 64 people by seed, in the middle of a closure, with every emotion. */
 static void lips_of_all_people_meet(void **state)
 {
@@ -373,6 +423,7 @@ int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(lips_of_a_head_meet),
+        cmocka_unit_test(targets_tell_how_far_lips_open),
         cmocka_unit_test(lips_of_all_people_meet),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

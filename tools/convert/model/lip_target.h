@@ -1,11 +1,9 @@
 /* lip_target.h: a target that brings the lower lip to the upper teeth, for f and v. Few faces have one, and sums of
  * targets that open, press and spread a mouth do not do it.
  *
- * Lips, jaw and teeth are found by what the targets of an open mouth (the recipe's aa) move: skin is connected
- * to the point that they move farthest; the lower lip is skin that moves and touches skin that stays;
- * teeth are other islands near the lips that stay. The lip's rim, after the recipe's FF, moves to the nearest point
- * of the teeth, fully in the middle of the mouth and not at all at the corners; the skin around it follows less with
- * distance. */
+ * Lips are found by lip_rim.h; teeth are other islands near them that stay when the mouth opens. The lip's rim, after
+ * the recipe's FF, moves to the nearest point of the teeth, fully in the middle of the mouth and not at all at the
+ * corners; the skin around it follows less with distance. */
 #ifndef NOH_CONVERT_MODEL_LIP_TARGET_H
 #define NOH_CONVERT_MODEL_LIP_TARGET_H
 

@@ -90,6 +90,7 @@ typedef struct model_target {
     float *tangent;                                /* [vertex_count][3]; NULL where the mesh has no tangents */
     float *uv;                                     /* [vertex_count][2]; NULL where it moves no texture coordinates */
     uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
+    float lips; /* by how much it opens the lips at weight 1: half of their gap, in depths of the mouth (lip_rim.h) */
     uint8_t identity;                              /* makes one face differ from another: NOH_TARGET_IDENTITY */
     /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */
     uint8_t *missing;

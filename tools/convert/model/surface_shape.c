@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/model/islands.h"
+#include "convert/model/lip_rim.h"
 #include "convert/model/model_build.h"
 #include "convert/skin/eye_split.h"
 #include "noh/format.h"
@@ -21,6 +22,7 @@
 #define LID_REACH 0.75 /* radii to the outermost */
 #define LID_ROWS 128   /* from one radius below to one above */
 
+#define LIPS_APART 0.24f /* half their gap, in depths of the mouth, where no target opens them */
 #define MOUTH_DEPTH 0.6f /* share of the teeth's depth beyond which they are dark */
 
 typedef struct eye_ball {
@@ -425,17 +427,19 @@ static int mouth_bounds(const model *m, float low[3], float high[3])
     return found && high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
 }
 
-static void find_mouth(model *m)
+static int find_mouth(model *m)
 {
-    float low[3], high[3];
-    if (!mouth_bounds(m, low, high)) return;
+    float low[3], high[3], gap = LIPS_APART;
+    if (!mouth_bounds(m, low, high)) return 0;
     const float slope = 1.0f / (MOUTH_DEPTH * (high[2] - low[2]));
+    if (lip_gaps_find(m, slope, &gap)) return 1;
     for (uint32_t i = 0; i < m->material_count; i++) {
         float *values = m->materials[i].surface_values, *more = m->materials[i].surface_more;
         if (m->materials[i].surface == NOH_SURFACE_TEETH) {
             values[2] = slope;
             values[3] = 1.0f - high[2] * slope;
-            more[0] = 0.5f * slope;
+            more[0] = 1.0f;
+            more[3] = gap;
         } else if (m->materials[i].surface == NOH_SURFACE_SKIN) {
             for (int c = 0; c < 2; c++) {
                 values[1 + c] = 0.5f * (low[c] + high[c]);
@@ -443,8 +447,10 @@ static void find_mouth(model *m)
             }
             values[3] = high[2];
             more[2] = slope;
+            more[3] = gap;
         }
     }
+    return 0;
 }
 
 int surface_shapes_find(model *m, FILE *report, model_error *error)
@@ -455,6 +461,5 @@ int surface_shapes_find(model *m, FILE *report, model_error *error)
             return model_fail(error, material->name, "out of memory");
         }
     }
-    find_mouth(m);
-    return 0;
+    return find_mouth(m) ? model_fail(error, "", "out of memory") : 0;
 }

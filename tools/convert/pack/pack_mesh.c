@@ -182,6 +182,7 @@ static noh_target target_of(const model_mesh *m, const morph_encoding *e, uint32
     to.normal_bits = from->normal_bits;
     to.tangent_bits = from->tangent_bits;
     to.flags = m->targets[t].identity ? NOH_TARGET_IDENTITY : 0;
+    to.lips = (int16_t)lrintf(4096.0f * m->targets[t].lips);
     to.position_scale = from->position_scale;
     to.normal_scale = from->normal_scale;
     to.tangent_scale = from->tangent_scale;

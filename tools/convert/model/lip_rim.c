@@ -1,0 +1,302 @@
+#include "lip_rim.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "noh/base.h"
+#include "noh/face.h"
+#include "convert/model/islands.h"
+#include "convert/model/model_build.h"
+
+#define LINKS_MAX 512u
+#define RIM_MIN 6u
+#define WIDENED_MAX 6 /* times one and a half: lips of a mouth that is modelled open are no further apart */
+#define CLOSED 0.012f /* half the least gap, in depths of the mouth: seen between closed lips, teeth are dark red */
+
+double lip_distance(const double a[3], const double b[3])
+{
+    double square = 0.0;
+    for (int i = 0; i < 3; i++) square += (a[i] - b[i]) * (a[i] - b[i]);
+    return sqrt(square);
+}
+
+void lip_point(const float *positions, uint32_t vertex, double out[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = (double)positions[3 * (size_t)vertex + (size_t)i];
+}
+
+double lip_between(const lip_rim *h, uint32_t a, uint32_t b)
+{
+    double x[3], y[3];
+    lip_point(h->mesh->position, a, x);
+    lip_point(h->mesh->position, b, y);
+    return lip_distance(x, y);
+}
+
+/* ---- poses ---- */
+
+/* Add a channel's targets to positions. 0: it has none. */
+static int add_channel(const model_mesh *mesh, const noh_face_link *links, uint32_t count, uint32_t channel, float *at)
+{
+    int any = 0;
+    for (uint32_t l = 0; l < count; l++) {
+        const model_target *t = &mesh->targets[links[l].target];
+        if (links[l].channel != channel || !t->position) continue;
+        any = 1;
+        for (size_t i = 0; i < (size_t)mesh->vertex_count * 3; i++) at[i] += links[l].weight * t->position[i];
+    }
+    return any;
+}
+
+/* The targets of the recipe's channels. Returns their count. */
+static uint32_t links_of(const model_mesh *mesh, noh_face_link links[LINKS_MAX])
+{
+    const char *names[NOH_TARGETS_MAX];
+    const uint32_t targets = mesh->target_count < NOH_TARGETS_MAX ? mesh->target_count : NOH_TARGETS_MAX;
+    for (uint32_t t = 0; t < targets; t++) names[t] = mesh->targets[t].name;
+    const uint32_t count = noh_face_recipe_bind(NULL, 0, names, targets, links, LINKS_MAX);
+    return count < LINKS_MAX ? count : LINKS_MAX;
+}
+
+/* The targets that open the mouth, and the FF of existing targets. 0: nothing opens it. */
+static int pose(lip_rim *h)
+{
+    const model_mesh *mesh = h->mesh;
+    const size_t bytes = (size_t)mesh->vertex_count * 3 * sizeof(float);
+    noh_face_link links[LINKS_MAX];
+    const uint32_t count = links_of(mesh, links);
+    memcpy(h->bite, mesh->position, bytes);
+    if (!add_channel(mesh, links, count, NOH_CHANNEL_VISEMES + NOH_VISEME_AA, h->bite)) return 0;
+    h->most = 0.0;
+    for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+        double rest[3], open[3];
+        lip_point(mesh->position, v, rest);
+        lip_point(h->bite, v, open);
+        h->moved[v] = (float)lip_distance(rest, open);
+        if ((double)h->moved[v] > h->most) h->most = (double)h->moved[v], h->skin = v;
+    }
+    islands_find(mesh, h->island, h->work);
+    h->skin = h->island[h->skin];
+    memcpy(h->bite, mesh->position, bytes);
+    (void)add_channel(mesh, links, count, NOH_CHANNEL_VISEMES + NOH_VISEME_FF, h->bite);
+    return h->most > 0.0;
+}
+
+/* ---- lips ---- */
+
+static int goes_along(const lip_rim *h, uint32_t v)
+{
+    return h->island[v] == h->skin && (double)h->moved[v] > 0.5 * h->most;
+}
+
+static int stays(const lip_rim *h, uint32_t v)
+{
+    return h->island[v] == h->skin && (double)h->moved[v] < 0.25 * h->most;
+}
+
+static const float *sorted_by;
+
+static int by_x(const void *a, const void *b)
+{
+    const float x = sorted_by[3 * (size_t) * (const uint32_t *)a], y = sorted_by[3 * (size_t) * (const uint32_t *)b];
+    return (x > y) - (x < y);
+}
+
+/* The first of a sorted list at x or beyond. */
+static uint32_t first_at(const lip_rim *h, uint32_t count, double x)
+{
+    uint32_t low = 0, high = count;
+    while (low < high) {
+        const uint32_t middle = low + (high - low) / 2u;
+        if ((double)h->mesh->position[3 * (size_t)h->work[middle]] < x) {
+            low = middle + 1u;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+static void find_rim(lip_rim *h, double touch)
+{
+    uint32_t uppers = 0;
+    h->rim_count = 0;
+    for (uint32_t v = 0; v < h->mesh->vertex_count; v++) {
+        if (stays(h, v)) h->work[uppers++] = v;
+    }
+    sorted_by = h->mesh->position;
+    qsort(h->work, uppers, sizeof *h->work, by_x);
+    for (uint32_t v = 0; v < h->mesh->vertex_count && h->rim_count < LIP_RIM_MAX; v++) {
+        const double x = (double)h->mesh->position[3 * (size_t)v];
+        double nearest = touch;
+        uint32_t upper = MODEL_NONE;
+        if (!goes_along(h, v)) continue;
+        for (uint32_t u = first_at(h, uppers, x - touch); u < uppers; u++) {
+            if ((double)h->mesh->position[3 * (size_t)h->work[u]] > x + touch) break;
+            const double apart = lip_between(h, v, h->work[u]);
+            if (!(apart <= nearest)) continue;
+            nearest = apart;
+            upper = h->work[u];
+        }
+        if (upper == MODEL_NONE) continue;
+        h->upper[h->rim_count] = upper;
+        h->rim[h->rim_count++] = v;
+    }
+}
+
+/* The line from corner to corner. */
+static void measure_rim(lip_rim *h)
+{
+    uint32_t ends[2] = { 0, 0 };
+    for (uint32_t a = 0; a < h->rim_count; a++) {
+        for (uint32_t b = a + 1; b < h->rim_count; b++) {
+            if (lip_between(h, h->rim[a], h->rim[b]) > lip_between(h, h->rim[ends[0]], h->rim[ends[1]]))
+                ends[0] = a, ends[1] = b;
+        }
+    }
+    h->half = 0.5 * lip_between(h, h->rim[ends[0]], h->rim[ends[1]]);
+    for (int i = 0; i < 3; i++) {
+        const double a = (double)h->mesh->position[3 * (size_t)h->rim[ends[0]] + (size_t)i],
+                     b = (double)h->mesh->position[3 * (size_t)h->rim[ends[1]] + (size_t)i];
+        h->centre[i] = 0.5 * (a + b);
+        h->along[i] = h->half > 0.0 ? 0.5 * (b - a) / h->half : 0.0;
+    }
+}
+
+/* 0 at the middle, 1 at a corner. */
+double lip_aside(const lip_rim *h, const double at[3])
+{
+    double along = 0.0;
+    for (int i = 0; i < 3; i++) along += (at[i] - h->centre[i]) * h->along[i];
+    return fabs(along) / h->half;
+}
+
+/* Lips that touch in the middle, or lips of a mouth that is modelled a little open. 1: found. */
+static int find_lips(lip_rim *h)
+{
+    h->size = h->most;
+    double touch = LIP_TOUCH;
+    for (int widened = 0; widened < WIDENED_MAX; widened++, touch *= 1.5) {
+        find_rim(h, touch * h->size);
+        if (h->rim_count < RIM_MIN) continue;
+        measure_rim(h);
+        if (1.4 * h->half > h->size) h->size = 1.4 * h->half;
+        for (uint32_t r = 0; r < h->rim_count && h->half > LIP_TOUCH * h->size; r++) {
+            double at[3];
+            lip_point(h->mesh->position, h->rim[r], at);
+            if (lip_aside(h, at) < 0.2) return 1;
+        }
+    }
+    return 0;
+}
+
+/* ---- all of it ---- */
+
+static const char *look(lip_rim *h)
+{
+    if (!pose(h)) return "it has no target that opens the mouth";
+    return find_lips(h) ? NULL : "its lips were not found, or are too far apart at rest";
+}
+
+int lip_rim_find(const model_mesh *mesh, lip_rim *h, const char **why)
+{
+    const size_t count = mesh->vertex_count;
+    memset(h, 0, sizeof *h);
+    h->mesh = mesh;
+    h->island = model_zeros(count, sizeof *h->island);
+    h->work = model_zeros(count, sizeof *h->work);
+    h->moved = model_zeros(count, sizeof *h->moved);
+    h->bite = model_zeros(count, 3 * sizeof *h->bite);
+    if (!h->island || !h->work || !h->moved || !h->bite) return 1;
+    *why = look(h);
+    return 0;
+}
+
+void lip_rim_free(lip_rim *h)
+{
+    free(h->island);
+    free(h->work);
+    free(h->moved);
+    free(h->bite);
+}
+
+/* ---- gaps ---- */
+
+#define MIDDLE 0.35 /* of the way to a corner */
+
+/* By how much a target moves the upper lip from the lower one in the middle of the mouth. */
+static double opens_by(const lip_rim *h, const model_target *t, const double up[3])
+{
+    double sum = 0.0, at[3];
+    uint32_t count = 0;
+    for (uint32_t r = 0; r < h->rim_count && t->position; r++) {
+        double upper[3], lower[3];
+        lip_point(h->mesh->position, h->rim[r], at);
+        if (lip_aside(h, at) > MIDDLE) continue;
+        lip_point(t->position, h->upper[r], upper);
+        lip_point(t->position, h->rim[r], lower);
+        for (int i = 0; i < 3; i++) sum += (upper[i] - lower[i]) * up[i];
+        count++;
+    }
+    return count ? sum / count : 0.0;
+}
+
+/* The way of the lower lip when the mouth opens, inverted, and the least distance between the lips at rest. */
+static int find_up(lip_rim *h, const noh_face_link *links, uint32_t count, double up[3], double *apart)
+{
+    double at[3];
+    memcpy(h->bite, h->mesh->position, (size_t)h->mesh->vertex_count * 3 * sizeof(float));
+    (void)add_channel(h->mesh, links, count, NOH_CHANNEL_VISEMES + NOH_VISEME_AA, h->bite);
+    *apart = HUGE_VAL;
+    up[0] = up[1] = up[2] = 0.0;
+    for (uint32_t r = 0; r < h->rim_count; r++) {
+        double upper[3], lower[3];
+        const double gap = lip_between(h, h->rim[r], h->upper[r]);
+        lip_point(h->mesh->position, h->rim[r], at);
+        if (lip_aside(h, at) > MIDDLE) continue;
+        if (gap < *apart) *apart = gap;
+        lip_point(h->bite, h->upper[r], upper);
+        lip_point(h->bite, h->rim[r], lower);
+        for (int i = 0; i < 3; i++) up[i] += upper[i] - lower[i];
+    }
+    return vec_normalize(up);
+}
+
+static model_target *target_named(model_mesh *mesh, const char *name)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (strcmp(mesh->targets[t].name, name) == 0) return &mesh->targets[t];
+    }
+    return NULL;
+}
+
+static void measure_gaps(model *m, lip_rim *h, float slope, float *rest)
+{
+    noh_face_link links[LINKS_MAX];
+    const uint32_t count = links_of(h->mesh, links);
+    double up[3], apart;
+    if (!find_up(h, links, count, up, &apart)) return;
+    *rest = fmaxf((float)(0.5 * apart) * slope, CLOSED);
+    for (uint32_t t = 0; t < h->mesh->target_count; t++) {
+        const float by = (float)(0.5 * opens_by(h, &h->mesh->targets[t], up)) * slope;
+        for (uint32_t i = 0; i < m->mesh_count; i++) {
+            model_target *same = target_named(&m->meshes[i], h->mesh->targets[t].name);
+            if (same) same->lips = fminf(fmaxf(by, -7.9f), 7.9f);
+        }
+    }
+}
+
+int lip_gaps_find(model *m, float slope, float *rest)
+{
+    const char *why = "";
+    for (uint32_t i = 0; i < m->mesh_count && why; i++) {
+        lip_rim *h = malloc(sizeof *h);
+        const int failed = !h || lip_rim_find(&m->meshes[i], h, &why);
+        if (!failed && !why) measure_gaps(m, h, slope, rest);
+        if (h) lip_rim_free(h);
+        free(h);
+        if (failed) return 1;
+    }
+    return 0;
+}
