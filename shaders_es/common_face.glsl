@@ -62,12 +62,14 @@ void noh_face_vertex(vec3 rest, vec3 normal)
 {
     vec3 from = rest - noh_surface_values.yzw;
     vec2 beside = abs(from.xy) / max(noh_surface_more[0].xy, 1e-6);
-    float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, 0.8 * beside.y)), slope = noh_surface_more[0].z;
-    float arch = 0.1 + 1.2 * beside.x * beside.x; /* teeth stand in an arch: cheeks are behind the foremost, and outside */
-    vec3 out_of = vec3(0.3 * from.x, from.y, from.z + arch / max(slope, 1e-6)); /* the inner rims of lips face in, too */
+    float slope = noh_surface_more[0].z;
+    float high = 0.95 * beside.y + 3.0 * max(from.z * slope, 0.0); /* in front of the teeth are lips alone */
+    float inside = 1.0 - smoothstep(1.0, 1.3, max(beside.x, high));
+    float arch = 0.5 + 1.2 * beside.x * beside.x; /* teeth stand in an arch: cheeks lie behind the foremost, outside */
+    vec3 out_of = vec3(0.3 * from.x, from.y, from.z + arch / max(slope, 1e-6)); /* rims of lips face in, too */
     inside *= 1.0 - smoothstep(-0.2, 0.1, dot(normal, normalize(out_of)));
     float depth = inside * inside * max(0.5 - from.z * slope, 0.3); /* lips are thick */
-    noh_v_depth = depth / max(noh_half_gap(), 0.05); /* a chin's dimple faces in by a little: closed lips leave it light */
+    noh_v_depth = depth / max(noh_half_gap(), 0.05); /* a dimple of a chin, which faces in a little, stays light */
 }
 #endif
 #endif

@@ -494,29 +494,32 @@ static void teeth_are_dark_behind_the_lips(void **state)
     for (int i = 0; i < 3; i++) check_teeth(gaps[i]);
 }
 
-/* The back of a mouth is dark; cheeks, which bend back at the corners of the mouth and so lie behind the foremost, are not. */
+/* The back of a mouth is dark; cheeks, which bend back at its corners and so lie behind the foremost teeth, and a chin a
+ * little behind these are not. */
 static void cheeks_are_not_inside_the_mouth(void **state)
 {
     static const float values[4] = { 0.8f, 0.9f, 0.0f, 0.04f };
+    static const char *const parts[3] = { "cheeks", "back of the mouth", "a chin" };
     (void)state;
-    for (int is_back = 0; is_back < 2; is_back++) {
+    for (int part = 0; part < 3; part++) {
+        const int is_back = part == 1;
         uint8_t *rgba[2];
         double least = 1.0;
         for (int i = 0; i < 2; i++) {
             model_material skin = skin_of(values, 1000.0f);
             scene s;
-            skin.surface_values[3] = is_back ? 0.5f : 0.98f; /* the foremost teeth */
+            skin.surface_values[3] = is_back ? 0.5f : part ? 0.05f : 0.98f; /* the foremost teeth */
             skin.surface_more[0] = 0.8f;
             skin.surface_more[1] = 0.4f;
             skin.surface_more[2] = i ? 2.0f : 0.0f; /* 0: there is no mouth */
             scene_open(&s, &skin, NULL, 0, NULL);
-            rgba[i] = scene_draw(&s, is_back ? SQUARE : SPHERE, scene_identity, NULL);
+            rgba[i] = scene_draw(&s, part ? SQUARE : SPHERE, scene_identity, NULL);
             scene_close(&s);
         }
         for (size_t p = 0; p < 4 * (size_t)SIDE * SIDE; p += 4) {
             if (rgba[0][p] > 64) least = fmin(least, decoded(rgba[1][p]) / decoded(rgba[0][p]));
         }
-        print_message("# %s: %.3f of the light\n", is_back ? "back of the mouth" : "cheeks", least);
+        print_message("# %s: %.3f of the light\n", parts[part], least);
         assert_true(is_back ? least < 0.4 : least > 0.95);
         free(rgba[0]);
         free(rgba[1]);

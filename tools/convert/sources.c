@@ -19,6 +19,7 @@
 #include "convert/fbx/fbx_read.h"
 #include "convert/model/identity_join.h"
 #include "convert/model/lip_target.h"
+#include "convert/model/mesh_place.h"
 #include "convert/model/model_attach.h"
 #include "convert/model/model_extra.h"
 #include "convert/mocap/clean.h"
@@ -153,6 +154,7 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
         return 1;
     }
+    meshes_upright(s->m);
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }

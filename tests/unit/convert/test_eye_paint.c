@@ -5,7 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/affine.h"
+#include "convert/model/mesh_place.h"
 #include "convert/model/model_build.h"
+#include "convert/model/size_guess.h"
 #include "convert/model/surface_shape.h"
 #include "noh/format.h"
 #include "support/support.h"
@@ -86,6 +89,27 @@ static void blank_eyes_get_an_iris(void **state)
     model_free(m);
 }
 
+/* A half ball that is closed at its back by a fan is an eye, too. */
+static void half_balls_get_an_iris(void **state)
+{
+    model *m = eyes_of(0.062f);
+    (void)state;
+    for (uint32_t v = 0; v < 2u * BALL; v++) {
+        float *p = m->meshes[0].position + 3u * v;
+        if (v % BALL / SIDES < 8u) continue;
+        p[0] = v / BALL ? 0.031f : -0.031f;
+        p[1] = 1.6f;
+        p[2] = 0.1f;
+    }
+    assert_int_equal(eye_paint(m), 0);
+    assert_int_equal(m->texture_count, 1);
+    for (uint32_t v = 0; v < 2u * BALL; v++) {
+        const float *uv = m->meshes[0].uv + 2u * v;
+        if (v % BALL / SIDES == 0) assert_true(green_at(m, uv[0] * 0.999f, uv[1] * 0.999f) < 40);
+    }
+    model_free(m);
+}
+
 static void other_eyes_stay(void **state)
 {
     (void)state;
@@ -120,38 +144,83 @@ static void add_node(model *m, double x, int is_turned)
     node->world[12] = x;
 }
 
-/* z is up in the mesh: a node, or a joint, turns it; the joint may tilt the head by 17 degrees, too. The iris is where
- * the world's +z is. */
+/* z is up in the mesh: a node turns it, 1: a joint, 2: which tilts the head by 17 degrees, too. */
+static model *turned_eyes(int skinned)
+{
+    model *m = eyes_of(0.062f);
+    model_mesh *mesh = m->meshes;
+    for (float *p = mesh->position; p < mesh->position + 6u * BALL; p += 3) {
+        const float y = p[1];
+        p[1] = -p[2];
+        p[2] = y;
+    }
+    add_node(m, 0.0, 1);
+    if (skinned) {
+        m->skins = test_zeros(sizeof *m->skins);
+        m->skin_count = m->skins->joint_count = 1;
+        m->skins->joints = test_zeros(sizeof *m->skins->joints);
+        m->skins->inverse_bind = test_zeros(16 * sizeof(float));
+        for (int i = 0; i < 16; i += 5) m->skins->inverse_bind[i] = 1.0f;
+        mesh->joints = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joints);
+        mesh->joint_weights = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joint_weights);
+        add_node(m, 0.0, 0);
+        for (int c = 0; skinned == 2 && c < 12; c += 4) {
+            double *w = m->nodes[0].world + c, x = w[0];
+            w[0] = 0.956 * x - 0.292 * w[1];
+            w[1] = 0.292 * x + 0.956 * w[1];
+        }
+        m->nodes[1].skin = 0;
+        m->nodes[0].mesh = MODEL_NONE;
+        m->nodes[1].mesh = 0;
+    }
+    return m;
+}
+
+/* Where the joint puts a vertex. */
+static void posed(const model *m, uint32_t vertex, double out[3])
+{
+    const float *p = m->meshes[0].position + 3u * vertex;
+    const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
+    double bind[16], both[16];
+    affine_of_floats(m->skins->inverse_bind, bind);
+    affine_multiply(m->nodes[0].world, bind, both);
+    affine_point(both, at, out);
+}
+
+/* Skinned meshes have the axes of the world; nothing moves. A mesh that a node turns stays as it is. */
+static void skinned_meshes_stand_upright(void **state)
+{
+    (void)state;
+    for (int skinned = 0; skinned < 3; skinned++) {
+        model *m = turned_eyes(skinned), *upright = turned_eyes(skinned);
+        model_error error;
+        meshes_upright(upright);
+        for (uint32_t v = 0; v < 2u * BALL; v++) {
+            const float *was = m->meshes[0].position + 3u * v, *is = upright->meshes[0].position + 3u * v;
+            double before[3], after[3];
+            assert_true(is[0] == was[0]);
+            assert_true(skinned ? is[1] == was[2] && is[2] == -was[1] : is[1] == was[1] && is[2] == was[2]);
+            if (!skinned) continue;
+            posed(m, v, before);
+            posed(upright, v, after);
+            for (int c = 0; c < 3; c++) assert_true(fabs(before[c] - after[c]) < 1e-9);
+        }
+        assert_int_equal(eye_paint(upright), 0);
+        assert_int_equal(surface_shapes_find(upright, NULL, &error), 0);
+        const float *gaze = upright->materials[0].surface_values; /* the world's z */
+        assert_true(skinned ? gaze[2] > 0.9f * RADIUS * 0.4f : gaze[1] < -0.9f * RADIUS * 0.4f);
+        model_free(m);
+        model_free(upright);
+    }
+}
+
+/* The iris is where the world's +z is. */
 static void turned_eyes_look_ahead(void **state)
 {
     (void)state;
     for (int skinned = 0; skinned < 3; skinned++) {
-        model *m = eyes_of(0.062f);
-        model_mesh *mesh = m->meshes;
-        for (float *p = mesh->position; p < mesh->position + 6u * BALL; p += 3) {
-            const float y = p[1];
-            p[1] = -p[2];
-            p[2] = y;
-        }
-        add_node(m, 0.0, 1);
-        if (skinned) {
-            m->skins = test_zeros(sizeof *m->skins);
-            m->skin_count = m->skins->joint_count = 1;
-            m->skins->joints = test_zeros(sizeof *m->skins->joints);
-            m->skins->inverse_bind = test_zeros(16 * sizeof(float));
-            for (int i = 0; i < 16; i += 5) m->skins->inverse_bind[i] = 1.0f;
-            mesh->joints = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joints);
-            mesh->joint_weights = test_zeros(2u * BALL * MODEL_INFLUENCES_MAX * sizeof *mesh->joint_weights);
-            add_node(m, 0.0, 0);
-            for (int c = 0; skinned == 2 && c < 12; c += 4) {
-                double *w = m->nodes[0].world + c, x = w[0];
-                w[0] = 0.956 * x - 0.292 * w[1];
-                w[1] = 0.292 * x + 0.956 * w[1];
-            }
-            m->nodes[1].skin = 0;
-            m->nodes[0].mesh = MODEL_NONE;
-            m->nodes[1].mesh = 0;
-        }
+        model *m = turned_eyes(skinned);
+        const model_mesh *mesh = m->meshes;
         assert_int_equal(eye_paint(m), 0);
         assert_int_equal(m->texture_count, 1);
         for (uint32_t v = 0; v < 2u * BALL; v++) {
@@ -250,11 +319,12 @@ static void grey_faces_become_skin(void **state)
         const char *name;
         float red;
         int has_texture, is_skin, is_given, has_colors;
-    } cases[] = { { "M_Face", 0.6f, 0, 0, 1, 0 },     { "M_Face", 0.6f, 0, 0, 0, 1 },
-                  { "M_Face", 0.6f, 0, 1, 0, 2 },     { "M_Face", 0.6f, 0, 1, 0, 0 },
-                  { "M_BackHead", 0.6f, 0, 1, 0, 0 }, { "Kopf", 0.8f, 0, 1, 0, 0 },
-                  { "M_Shirt", 0.6f, 0, 0, 0, 0 },    { "M_Face", 0.9f, 0, 0, 0, 0 },
-                  { "M_Face", 0.6f, 1, 0, 0, 0 },     { "Headband hair", 0.6f, 0, 0, 0, 0 } };
+    } cases[] = { { "M_Face", 0.6f, 0, 0, 1, 0 },      { "M_Face", 0.6f, 0, 0, 0, 1 },
+                  { "M_Face", 0.6f, 0, 1, 0, 2 },      { "M_Face", 0.6f, 0, 1, 0, 0 },
+                  { "M_BackHead", 0.6f, 0, 1, 0, 0 },  { "Kopf", 0.8f, 0, 1, 0, 0 },
+                  { "M_Shirt", 0.6f, 0, 0, 0, 0 },     { "M_Face", 0.9f, 0, 0, 0, 0 },
+                  { "Wolf3D_Skin", 0.6f, 0, 1, 0, 0 }, /* skin by its name, without its picture */
+                  { "M_Face", 0.6f, 1, 0, 0, 0 },      { "Headband hair", 0.6f, 0, 0, 0, 0 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         model *m = eyes_of(0.062f);
@@ -265,6 +335,7 @@ static void grey_faces_become_skin(void **state)
         face->metallic = 0.0f;
         face->base_color[0] = face->base_color[1] = face->base_color[2] = cases[i].red == 0.8f ? 0.8f : 0.6f;
         face->base_color[0] = cases[i].red;
+        if (strstr(cases[i].name, "Skin")) face->surface = NOH_SURFACE_SKIN;
         free(m->materials);
         m->materials = materials;
         m->material_count = 2;
@@ -280,6 +351,32 @@ static void grey_faces_become_skin(void **state)
         assert_int_equal(m->warning_count, 1 + cases[i].is_skin);
         model_free(m);
     }
+}
+
+/* The distance of eyes that two nodes put side by side counts, not their mesh's: the unit of a figure of 1.7 m fits. */
+static void eyes_of_nodes_are_apart(void **state)
+{
+    model *m = eyes_of(0.0f);
+    model_material *materials = test_zeros(2 * sizeof *materials);
+    (void)state;
+    materials[0] = m->materials[0];
+    materials[1] = model_material_default();
+    materials[1].name = model_string("body");
+    free(m->materials);
+    m->materials = materials;
+    m->material_count = 2;
+    add_part(m, 1.0f);
+    m->meshes[1].position[1] = 1.7f;
+    add_node(m, -0.031, 0);
+    add_node(m, 0.031, 0);
+    assert_int_equal(size_guess(m, NULL), 0);
+    assert_int_equal(m->warning_count, 0);
+    m->nodes[1].world[12] = 3.1; /* as far apart as a figure of centimetres has them */
+    m->nodes[0].world[12] = -3.1;
+    m->meshes[1].position[1] = 170.0f;
+    assert_int_equal(size_guess(m, NULL), 0);
+    assert_int_equal(m->warning_count, 1);
+    model_free(m);
 }
 
 /* Strips of 32 triangles are hidden; 32 lashes stay, 20 of 32 triangles each, and what has a given surface. */
@@ -310,10 +407,11 @@ static void slabs_of_lashes_are_hidden(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blank_eyes_get_an_iris),     cmocka_unit_test(other_eyes_stay),
-        cmocka_unit_test(turned_eyes_look_ahead),     cmocka_unit_test(nodes_pair_eyes),
-        cmocka_unit_test(eyes_with_an_iris_stay),     cmocka_unit_test(grey_faces_become_skin),
-        cmocka_unit_test(slabs_of_lashes_are_hidden),
+        cmocka_unit_test(blank_eyes_get_an_iris),       cmocka_unit_test(other_eyes_stay),
+        cmocka_unit_test(turned_eyes_look_ahead),       cmocka_unit_test(nodes_pair_eyes),
+        cmocka_unit_test(eyes_with_an_iris_stay),       cmocka_unit_test(grey_faces_become_skin),
+        cmocka_unit_test(slabs_of_lashes_are_hidden),   cmocka_unit_test(half_balls_get_an_iris),
+        cmocka_unit_test(skinned_meshes_stand_upright), cmocka_unit_test(eyes_of_nodes_are_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

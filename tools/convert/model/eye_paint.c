@@ -6,14 +6,13 @@
 
 #include "convert/model/affine.h"
 #include "convert/model/islands.h"
+#include "convert/model/mesh_place.h"
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
 #include "convert/skin/eye_split.h"
 #include "noh/format.h"
 
-#define BALLS_MAX 16u
-#define BALL_VERTICES_MIN 24u
-#define BALL_RESIDUAL_MAX 0.1
+#define BALLS_MAX MESH_PLACES_MAX
 #define PALE_MIN 0.3f /* the darkest channel of eyes that are painted, linear */
 #define HUES 0.05f
 #define SIDE 256u   /* texels */
@@ -23,10 +22,9 @@
 #define WET 0.1f
 #define GREY_HUE 0.02f
 #define SKIN_ROUGHNESS 0.5f
-#define SAME_WAY 0.9    /* cosine of the angle between gazes of one mesh that several nodes draw */
-#define UNTILTED 0.9999 /* cosine of the angle between an axis and where the rest pose puts it */
-#define IRIS_REACH 1.3  /* an iris of its own is within this reach of the ball's centre, in radii */
-#define COVERED 0.97    /* a ball whose front is here, in radii, has no hole that shows what is inside */
+#define SAME_WAY 0.9   /* cosine of the angle between gazes of one mesh that several nodes draw */
+#define IRIS_REACH 1.3 /* an iris of its own is within this reach of the ball's centre, in radii */
+#define COVERED 0.97   /* a ball whose front is here, in radii, has no hole that shows what is inside */
 
 /* Balls in the world's space. */
 typedef struct balls {
@@ -38,7 +36,7 @@ typedef struct balls {
 /* A ball of a plain eye's material, in the mesh's space. */
 typedef struct ball {
     uint32_t mesh, material, count;
-    const uint32_t *vertices; /* [count] */
+    uint32_t *vertices; /* [count] */
     eye_sphere sphere;
     double right[3], up[3], gaze[3]; /* unit; where the world's x, y and z are */
     double front;                    /* how far it reaches along the gaze, in radii */
@@ -46,54 +44,11 @@ typedef struct ball {
 
 typedef void ball_visit(model *m, const ball *eye, balls *b);
 
-/* ---- where nodes and joints put a mesh, in the rest pose ---- */
-
-/* The rest pose may tilt a head or turn an eye, the bind pose does not: leave the right angles between them. */
-static void untilt(double world[16])
-{
-    double out[16];
-    int is_tilted = 0;
-    affine_identity(out);
-    for (int r = 0; r < 3; r++) {
-        const double row[3] = { world[r], world[4 + r], world[8 + r] }, length = sqrt(vec_dot(row, row));
-        int most = 0;
-        for (int c = 1; c < 3; c++) most = fabs(row[c]) > fabs(row[most]) ? c : most;
-        for (int c = 0; c < 3; c++) out[4 * c + r] = c == most ? copysign(length, row[c]) : 0.0;
-        is_tilted |= fabs(row[most]) < UNTILTED * length;
-    }
-    if (is_tilted) memcpy(world, out, sizeof out);
-}
-
-static void place(const model *m, const model_mesh *mesh, const model_node *node, uint32_t vertex, double out[16])
-{
-    const model_skin *skin = node->skin < m->skin_count && mesh->joints ? &m->skins[node->skin] : NULL;
-    const uint32_t joint = skin ? mesh->joints[(size_t)vertex * MODEL_INFLUENCES_MAX] : 0u;
-    if (skin && joint < skin->joint_count) {
-        double bind[16];
-        affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
-        affine_multiply(m->nodes[skin->joints[joint]].world, bind, out);
-        untilt(out);
-    } else {
-        memcpy(out, node->world, sizeof node->world);
-    }
-}
-
-/* For each node that draws the mesh, what moves the vertex to the world; at least one. */
-static uint32_t places_of(const model *m, uint32_t mesh, uint32_t vertex, double out[BALLS_MAX][16])
-{
-    uint32_t count = 0;
-    for (uint32_t i = 0; i < m->node_count && count < BALLS_MAX; i++) {
-        if (m->nodes[i].mesh == mesh) place(m, &m->meshes[mesh], &m->nodes[i], vertex, out[count++]);
-    }
-    if (count == 0) affine_identity(out[count++]);
-    return count;
-}
-
 /* 0: nodes turn the mesh differently, or make it flat. */
 static int find_gaze(const model *m, ball *eye)
 {
     double places[BALLS_MAX][16];
-    const uint32_t count = places_of(m, eye->mesh, eye->vertices[0], places);
+    const uint32_t count = mesh_places(m, eye->mesh, eye->vertices[0], places);
     for (uint32_t i = count; i-- > 0;) {
         double before[3];
         memcpy(before, eye->gaze, sizeof before);
@@ -130,10 +85,7 @@ static int is_plain(const model *m, const model_mesh *mesh, const model_submesh 
 static int is_ball(const model *m, ball *eye)
 {
     const float *position = m->meshes[eye->mesh].position;
-    if (eye->count < BALL_VERTICES_MIN || eye_sphere_fit(position, eye->vertices, eye->count, &eye->sphere) ||
-        eye->sphere.residual > BALL_RESIDUAL_MAX || !find_gaze(m, eye)) {
-        return 0;
-    }
+    if (eye_ball_fit(position, eye->vertices, eye->count, &eye->sphere) || !find_gaze(m, eye)) return 0;
     for (uint32_t i = 0; i < eye->count; i++) {
         double way[3];
         for (size_t c = 0; c < 3; c++) {
@@ -184,7 +136,7 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
 static int is_seen(const model *m, uint32_t mesh, const model_submesh *part, const eye_sphere *sphere, double front)
 {
     double places[BALLS_MAX][16];
-    const uint32_t count = part->vertex_count ? places_of(m, mesh, part->first_vertex, places) : 0u;
+    const uint32_t count = part->vertex_count ? mesh_places(m, mesh, part->first_vertex, places) : 0u;
     for (uint32_t i = 0; i < count * part->vertex_count; i++) {
         const float *p = m->meshes[mesh].position + 3 * (size_t)(part->first_vertex + i / count);
         const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
@@ -216,7 +168,7 @@ static int has_iris(const model *m, uint32_t material, const eye_sphere *sphere,
 static void collect(model *m, const ball *eye, balls *b)
 {
     double places[BALLS_MAX][16];
-    const uint32_t count = places_of(m, eye->mesh, eye->vertices[0], places);
+    const uint32_t count = mesh_places(m, eye->mesh, eye->vertices[0], places);
     for (uint32_t i = 0; i < count && b->count < BALLS_MAX; i++) {
         eye_sphere at = eye->sphere;
         const double *w = places[i];
@@ -378,8 +330,9 @@ static int finish(model *m, const balls *b)
 static int is_grey(const model_material *m)
 {
     const float *c = m->base_color, least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
-    return m->surface == NOH_SURFACE_PLAIN && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE &&
-           m->metallic < 0.5f && most - least < GREY_HUE && least > PALE_MIN;
+    const int is_bare = m->surface == NOH_SURFACE_SKIN || (m->surface == NOH_SURFACE_PLAIN && surface_is_bare(m->name));
+    return is_bare && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE && m->metallic < 0.5f &&
+           most - least < GREY_HUE && least > PALE_MIN;
 }
 
 static int has_white_parts(const model *m, uint32_t material)
@@ -399,7 +352,7 @@ static int make_skin(model *m)
     int failed = 0;
     for (uint32_t i = 0; i < m->material_count && !failed; i++) {
         model_material *bare = &m->materials[i];
-        if (!is_grey(bare) || !surface_is_bare(bare->name) || !has_white_parts(m, i)) continue;
+        if (!is_grey(bare) || !has_white_parts(m, i)) continue;
         memcpy(bare->base_color, skin, sizeof skin);
         surface_kind_set(bare, NOH_SURFACE_SKIN);
         bare->roughness = SKIN_ROUGHNESS;

@@ -9,8 +9,8 @@
  * draws them. Of balls in each other the outermost is seen; an iris, pupil or cornea of another opaque material that is
  * seen, too, leaves its eye as it is. Painted materials become white and wet, and add a warning. Meshes without texture
  * coordinates are left as they are. Surfaces of materials are known. If the model has no texture of its own, grey
- * materials named as a face, head or neck become skin, each with a warning, unless their surface is given or they have
- * vertex colours: a living eye in plaster looks uncanny.
+ * materials of skin, or named as a face, head or neck, become skin and have its colour, each with a warning, unless
+ * their surface is given or they have vertex colours: a living eye in plaster looks uncanny.
  * returns  1: out of memory */
 int eye_paint(model *m);
 

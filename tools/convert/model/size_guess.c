@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "convert/base/names.h"
+#include "convert/model/affine.h"
+#include "convert/model/mesh_place.h"
 #include "convert/model/model_build.h"
 #include "noh/format.h"
 
@@ -40,20 +42,29 @@ static double between(const model_node *a, const model_node *b)
     return sqrt(square);
 }
 
+static void place_vertex(const model_mesh *mesh, uint32_t vertex, const double place[16], double out[3])
+{
+    const float *p = mesh->position + 3 * (size_t)vertex;
+    const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
+    affine_point(place, at, out);
+}
+
 /* Sums of the x, y and z of the vertices of eyes on either side of `middle`, and their numbers. */
 static void sum_eyes(const model *m, double middle, double sums[2][3], double counts[2])
 {
     memset(sums, 0, 2 * sizeof sums[0]);
     counts[0] = counts[1] = 0.0;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const double scale = (double)model_mesh_scale(m, i);
         for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
             const model_submesh *part = &m->meshes[i].submeshes[s];
-            const float *p = m->meshes[i].position + 3 * (size_t)part->first_vertex;
+            double places[MESH_PLACES_MAX][16];
             if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_EYE) continue;
-            for (uint32_t v = 0; v < part->vertex_count; v++, p += 3) {
-                const int side = scale * (double)p[0] > middle;
-                for (int c = 0; c < 3; c++) sums[side][c] += scale * (double)p[c];
+            const uint32_t count = part->vertex_count ? mesh_places(m, i, part->first_vertex, places) : 0u;
+            for (uint32_t k = 0; k < count * part->vertex_count; k++) {
+                double at[3];
+                place_vertex(&m->meshes[i], part->first_vertex + k / count, places[k % count], at);
+                const int side = at[0] > middle;
+                for (int c = 0; c < 3; c++) sums[side][c] += at[c];
                 counts[side] += 1.0;
             }
         }
@@ -77,11 +88,14 @@ static double height_of_meshes(const model *m)
 {
     double low = INFINITY, high = -INFINITY;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const double scale = (double)model_mesh_scale(m, i);
-        for (uint32_t v = 0; v < m->meshes[i].vertex_count; v++) {
-            const double y = scale * (double)m->meshes[i].position[3 * (size_t)v + 1];
-            low = y < low ? y : low;
-            high = y > high ? y : high;
+        const model_mesh *mesh = &m->meshes[i];
+        double places[MESH_PLACES_MAX][16];
+        const uint32_t count = mesh->vertex_count ? mesh_places(m, i, 0, places) : 0u;
+        for (uint32_t k = 0; k < count * mesh->vertex_count; k++) {
+            double at[3];
+            place_vertex(mesh, k / count, places[k % count], at);
+            low = at[1] < low ? at[1] : low;
+            high = at[1] > high ? at[1] : high;
         }
     }
     return high > low ? high - low : 0.0;

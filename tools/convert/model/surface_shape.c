@@ -5,13 +5,12 @@
 #include <string.h>
 
 #include "convert/model/islands.h"
-#include "convert/model/lip_rim.h"
+#include "convert/model/mesh_place.h"
 #include "convert/model/model_build.h"
+#include "convert/model/mouth_shape.h"
 #include "convert/skin/eye_split.h"
 #include "noh/format.h"
 
-#define BALL_VERTICES_MIN 24u
-#define BALL_RESIDUAL_MAX 0.1
 #define RINGS 40 /* of directions about an axis, by the sine of their angle to it */
 #define RING_WIDTH 0.02
 #define GRID 8      /* points along a triangle's edge at which its colour is taken */
@@ -22,15 +21,13 @@
 #define LID_REACH 0.75 /* radii to the outermost */
 #define LID_ROWS 128   /* from one radius below to one above */
 
-#define LIPS_APART 0.24f /* half their gap, in depths of the mouth, where no target opens them */
-#define MOUTH_DEPTH 0.6f /* share of the teeth's depth beyond which they are dark */
-
 typedef struct eye_ball {
     const model *m;
     const model_mesh *mesh;
     const uint32_t *island;
     uint32_t material, first; /* its island */
     eye_sphere sphere;
+    double ahead[3], above[3];     /* unit: the world's z and y */
     double gaze[3], out[3], up[3]; /* unit, at right angles; out: from the nose */
     double iris;                   /* sine of the angle from gaze to the rim */
     double lids[6];                /* as in noh_material; zeros: not found */
@@ -137,10 +134,11 @@ static void add_dark(const double direction[3], double luma, double area, void *
     s->found += area * (s->limit - luma);
 }
 
-/* The middle of the dark area, from +z on; 0: all has one brightness. */
+/* The middle of the dark area, from where the face looks; 0: all has one brightness. */
 static int find_axis(eye_ball *b)
 {
-    dark_spot s = { { 0.0, 0.0, 1.0 }, 0.5, 0.0, 0.0, 0.0, { 0.0 }, 0.0 };
+    dark_spot s = { .within = 0.5 };
+    memcpy(s.axis, b->ahead, sizeof s.axis);
     for (int pass = 0; pass < 4; pass++) {
         s.luma = s.area = s.found = s.sum[0] = s.sum[1] = s.sum[2] = 0.0;
         visit_ball(b, add_luma, &s);
@@ -152,7 +150,7 @@ static int find_axis(eye_ball *b)
         s.within = 0.7;
     }
     memcpy(b->gaze, s.axis, sizeof b->gaze);
-    return s.axis[2] > 0.8;
+    return vec_dot(s.axis, b->ahead) > 0.8;
 }
 
 typedef struct rings {
@@ -199,9 +197,8 @@ static int find_rim(eye_ball *b)
 
 static int find_iris(eye_ball *b)
 {
-    static const double y[3] = { 0.0, 1.0, 0.0 };
     if (!find_axis(b) || !find_rim(b)) return 0;
-    memcpy(b->up, y, sizeof b->up);
+    memcpy(b->up, b->above, sizeof b->up);
     vec_reject(b->up, b->gaze);
     if (!vec_normalize(b->up)) return 0;
     vec_cross(b->up, b->gaze, b->out);
@@ -344,6 +341,18 @@ static uint32_t vertices_of(const model_mesh *mesh, const uint32_t *island, uint
     return count;
 }
 
+/* Nodes may turn the mesh: the first that draws it counts. 0: it is flat. */
+static int find_ways(eye_ball *b)
+{
+    double places[MESH_PLACES_MAX][16];
+    (void)mesh_places(b->m, (uint32_t)(b->mesh - b->m->meshes), b->first, places);
+    for (int c = 0; c < 3; c++) {
+        b->above[c] = places[0][4 * c + 1];
+        b->ahead[c] = places[0][4 * c + 2];
+    }
+    return vec_normalize(b->above) && vec_normalize(b->ahead);
+}
+
 /* The islands that a part of the mesh is made of, each once. room[vertex_count] */
 static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const uint32_t *island,
                      uint32_t *room, eye_mean *mean)
@@ -353,12 +362,9 @@ static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh
         uint32_t count;
         if (island[v] != v) continue;
         count = vertices_of(mesh, island, v, room);
-        if (count < BALL_VERTICES_MIN || eye_sphere_fit(mesh->position, room, count, &b.sphere) ||
-            b.sphere.residual > BALL_RESIDUAL_MAX || !find_iris(&b)) {
-            continue;
-        }
-        /* the sign of a vertex's x is its side of the nose */
-        if (fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
+        if (eye_ball_fit(mesh->position, room, count, &b.sphere) || !find_ways(&b) || !find_iris(&b)) continue;
+        /* for shaders y is up, and the sign of a vertex's x is its side of the nose */
+        if (b.above[1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
         add_eye(&b, mean);
     }
 }
@@ -405,54 +411,6 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
     return 0;
 }
 
-/* ---- teeth ---- */
-
-/* The bounds of the teeth. */
-static int mouth_bounds(const model *m, float low[3], float high[3])
-{
-    int found = 0;
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
-            const model_submesh *part = &m->meshes[i].submeshes[s];
-            const float *p = m->meshes[i].position + 3 * (size_t)part->first_vertex;
-            if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_TEETH) continue;
-            for (uint32_t v = 0; v < part->vertex_count; v++, p += 3, found = 1) {
-                for (int c = 0; c < 3; c++) {
-                    low[c] = !found || p[c] < low[c] ? p[c] : low[c];
-                    high[c] = !found || p[c] > high[c] ? p[c] : high[c];
-                }
-            }
-        }
-    }
-    return found && high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
-}
-
-static int find_mouth(model *m)
-{
-    float low[3], high[3], gap = LIPS_APART;
-    if (!mouth_bounds(m, low, high)) return 0;
-    const float slope = 1.0f / (MOUTH_DEPTH * (high[2] - low[2]));
-    if (lip_gaps_find(m, slope, &gap)) return 1;
-    for (uint32_t i = 0; i < m->material_count; i++) {
-        float *values = m->materials[i].surface_values, *more = m->materials[i].surface_more;
-        if (m->materials[i].surface == NOH_SURFACE_TEETH) {
-            values[2] = slope;
-            values[3] = 1.0f - high[2] * slope;
-            more[0] = 1.0f;
-            more[3] = gap;
-        } else if (m->materials[i].surface == NOH_SURFACE_SKIN) {
-            for (int c = 0; c < 2; c++) {
-                values[1 + c] = 0.5f * (low[c] + high[c]);
-                more[c] = 0.5f * (high[c] - low[c]);
-            }
-            values[3] = high[2];
-            more[2] = slope;
-            more[3] = gap;
-        }
-    }
-    return 0;
-}
-
 int surface_shapes_find(model *m, FILE *report, model_error *error)
 {
     for (uint32_t i = 0; i < m->material_count; i++) {
@@ -461,5 +419,5 @@ int surface_shapes_find(model *m, FILE *report, model_error *error)
             return model_fail(error, material->name, "out of memory");
         }
     }
-    return find_mouth(m) ? model_fail(error, "", "out of memory") : 0;
+    return mouth_shape_find(m) ? model_fail(error, "", "out of memory") : 0;
 }

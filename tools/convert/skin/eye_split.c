@@ -90,6 +90,37 @@ int eye_sphere_fit(const float *positions, const uint32_t *vertices, uint32_t co
     return 0;
 }
 
+#define BALL_VERTICES_MIN 24u
+#define BALL_RESIDUAL_MAX 0.1
+#define TRIMS_MAX 4
+#define TRIMMED 1.5 /* residuals inside the sphere */
+
+/* Bring the vertices that are not far inside to the front. Returns their count. */
+static uint32_t trim(const float *positions, uint32_t *vertices, uint32_t count, const eye_sphere *s)
+{
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const uint32_t v = vertices[i];
+        double way = 0.0;
+        for (int c = 0; c < 3; c++) way += pow(coordinate(positions, v, c) - s->centre[c], 2.0);
+        if (1.0 - sqrt(way) / s->radius > TRIMMED * s->residual) continue;
+        vertices[i] = vertices[kept];
+        vertices[kept++] = v;
+    }
+    return kept;
+}
+
+int eye_ball_fit(const float *positions, uint32_t *vertices, uint32_t count, eye_sphere *out)
+{
+    uint32_t kept = count;
+    for (int i = 0; i < TRIMS_MAX && kept >= BALL_VERTICES_MIN && 2u * kept > count; i++) {
+        if (eye_sphere_fit(positions, vertices, kept, out)) return 1;
+        if (out->residual <= BALL_RESIDUAL_MAX) return 0;
+        kept = trim(positions, vertices, kept, out);
+    }
+    return 1;
+}
+
 /* ---- islands ---- */
 
 static uint32_t vertices_of(split *s, uint32_t island)

@@ -21,6 +21,9 @@ typedef struct eye_sphere {
 
 /* vertices[count]. 1: they do not span a sphere. */
 int eye_sphere_fit(const float *positions, const uint32_t *vertices, uint32_t count, eye_sphere *out);
+/* The same of a ball, or of a half one that is closed at its back: what lies inside is left out. `vertices` are sorted.
+ * 1: it is none. */
+int eye_ball_fit(const float *positions, uint32_t *vertices, uint32_t count, eye_sphere *out);
 /* Whether they are two eyes: equal in size, side by side at one height and depth, with room for a nose between. */
 int eye_spheres_pair(const eye_sphere *a, const eye_sphere *b);
 

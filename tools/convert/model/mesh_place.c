@@ -1,0 +1,169 @@
+#include "mesh_place.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "convert/model/affine.h"
+#include "convert/model/model_build.h"
+
+#define UNTILTED 0.9999 /* cosine of the angle between an axis and where the rest pose puts it */
+
+/* Row r of the turn that leaves right angles alone is sign[r] times the unit vector of axis[r]. */
+typedef struct right_turn {
+    int axis[3];
+    double sign[3];
+} right_turn;
+
+static right_turn turn_of(const double world[16])
+{
+    right_turn t;
+    for (int r = 0; r < 3; r++) {
+        int most = 0;
+        for (int c = 1; c < 3; c++) most = fabs(world[4 * c + r]) > fabs(world[4 * most + r]) ? c : most;
+        t.axis[r] = most;
+        t.sign[r] = world[4 * most + r] < 0.0 ? -1.0 : 1.0;
+    }
+    return t;
+}
+
+static void untilt(double world[16])
+{
+    const right_turn t = turn_of(world);
+    double out[16];
+    int is_tilted = 0;
+    affine_identity(out);
+    for (int r = 0; r < 3; r++) {
+        const double row[3] = { world[r], world[4 + r], world[8 + r] }, length = sqrt(vec_dot(row, row));
+        for (int c = 0; c < 3; c++) out[4 * c + r] = c == t.axis[r] ? t.sign[r] * length : 0.0;
+        is_tilted |= fabs(row[t.axis[r]]) < UNTILTED * length;
+    }
+    if (is_tilted) memcpy(world, out, sizeof out);
+}
+
+static void place_of_joint(const model *m, const model_skin *skin, uint32_t joint, double out[16])
+{
+    double bind[16];
+    affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
+    affine_multiply(m->nodes[skin->joints[joint]].world, bind, out);
+}
+
+static void place(const model *m, const model_mesh *mesh, const model_node *node, uint32_t vertex, double out[16])
+{
+    const model_skin *skin = node->skin < m->skin_count && mesh->joints ? &m->skins[node->skin] : NULL;
+    const uint32_t joint = skin ? mesh->joints[(size_t)vertex * MODEL_INFLUENCES_MAX] : 0u;
+    if (skin && joint < skin->joint_count) {
+        place_of_joint(m, skin, joint, out);
+        untilt(out);
+    } else {
+        memcpy(out, node->world, sizeof node->world);
+    }
+}
+
+uint32_t mesh_places(const model *m, uint32_t mesh, uint32_t vertex, double out[MESH_PLACES_MAX][16])
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < m->node_count && count < MESH_PLACES_MAX; i++) {
+        if (m->nodes[i].mesh == mesh) place(m, &m->meshes[mesh], &m->nodes[i], vertex, out[count++]);
+    }
+    if (count == 0) affine_identity(out[count++]);
+    return count;
+}
+
+/* ---- upright ---- */
+
+/* The skin that all nodes which draw the mesh give it; MODEL_NONE: there is no such skin. */
+static uint32_t skin_of(const model *m, uint32_t mesh)
+{
+    uint32_t skin = MODEL_NONE;
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        const model_node *node = &m->nodes[i];
+        if (node->mesh != mesh) continue;
+        if (node->skin >= m->skin_count || (skin != MODEL_NONE && skin != node->skin)) return MODEL_NONE;
+        skin = node->skin;
+    }
+    return m->meshes[mesh].joints ? skin : MODEL_NONE;
+}
+
+static int is_shared(const model *m, uint32_t skin)
+{
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        const model_node *node = &m->nodes[i];
+        if (node->skin == skin && node->mesh < m->mesh_count && skin_of(m, node->mesh) != skin) return 1;
+    }
+    return 0;
+}
+
+/* The turn by which the joints of nearly all vertices place them. 0: there is none, or it mirrors. */
+static int find_turn(const model *m, uint32_t skin, right_turn *out)
+{
+    uint64_t counts[2][3][3] = { { { 0 } } }, vertices = 0; /* [negative][row][axis] */
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        if (skin_of(m, i) != skin) continue;
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            const uint32_t joint = mesh->joints[(size_t)v * MODEL_INFLUENCES_MAX];
+            double at[16];
+            if (joint >= m->skins[skin].joint_count) return 0;
+            place_of_joint(m, &m->skins[skin], joint, at);
+            const right_turn t = turn_of(at);
+            for (int r = 0; r < 3; r++) counts[t.sign[r] < 0.0][r][t.axis[r]]++;
+            vertices++;
+        }
+    }
+    for (int r = 0; r < 3; r++) {
+        int found = 0;
+        for (int k = 0; k < 6; k++) {
+            if (counts[k / 3][r][k % 3] * 10u <= vertices * 8u) continue;
+            out->axis[r] = k % 3;
+            out->sign[r] = k / 3 ? -1.0 : 1.0;
+            found = 1;
+        }
+        if (!found) return 0;
+    }
+    const int a = out->axis[0], b = out->axis[1], c = out->axis[2];
+    const double sign = out->sign[0] * out->sign[1] * out->sign[2];
+    return a != b && b != c && c != a && sign * ((b - a + 3) % 3 == 1 ? 1.0 : -1.0) > 0.0;
+}
+
+static void turn_vectors(const right_turn *t, float *vectors, size_t count, size_t stride)
+{
+    for (size_t i = 0; vectors && i < count; i++, vectors += stride) {
+        const float v[3] = { vectors[0], vectors[1], vectors[2] };
+        for (int r = 0; r < 3; r++) vectors[r] = (float)t->sign[r] * v[t->axis[r]];
+    }
+}
+
+static void turn_mesh(const right_turn *t, model_mesh *mesh)
+{
+    turn_vectors(t, mesh->position, mesh->vertex_count, 3);
+    turn_vectors(t, mesh->normal, mesh->vertex_count, 3);
+    turn_vectors(t, mesh->tangent, mesh->vertex_count, 4);
+    for (uint32_t i = 0; i < mesh->target_count; i++) {
+        turn_vectors(t, mesh->targets[i].position, mesh->vertex_count, 3);
+        turn_vectors(t, mesh->targets[i].normal, mesh->vertex_count, 3);
+        turn_vectors(t, mesh->targets[i].tangent, mesh->vertex_count, 3);
+    }
+}
+
+/* A matrix of what the turn has turned. */
+static void turn_back(const right_turn *t, float matrix[16])
+{
+    float before[16];
+    memcpy(before, matrix, sizeof before);
+    for (int r = 0; r < 3; r++) {
+        for (int i = 0; i < 4; i++) matrix[4 * r + i] = (float)t->sign[r] * before[4 * t->axis[r] + i];
+    }
+}
+
+void meshes_upright(model *m)
+{
+    for (uint32_t s = 0; s < m->skin_count; s++) {
+        right_turn t;
+        if (is_shared(m, s) || !find_turn(m, s, &t)) continue;
+        if (t.axis[0] == 0 && t.axis[1] == 1 && t.sign[0] > 0.0 && t.sign[1] > 0.0) continue;
+        for (uint32_t i = 0; i < m->mesh_count; i++) {
+            if (skin_of(m, i) == s) turn_mesh(&t, &m->meshes[i]);
+        }
+        for (uint32_t j = 0; j < m->skins[s].joint_count; j++) turn_back(&t, m->skins[s].inverse_bind + 16 * (size_t)j);
+    }
+}

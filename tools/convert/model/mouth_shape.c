@@ -1,0 +1,53 @@
+#include "mouth_shape.h"
+
+#include "convert/model/lip_rim.h"
+#include "noh/format.h"
+
+#define LIPS_APART 0.24f /* half their gap, in depths of the mouth, where no target opens them */
+#define MOUTH_DEPTH 0.6f /* share of the teeth's depth beyond which they are dark */
+
+/* The bounds of the teeth. */
+static int mouth_bounds(const model *m, float low[3], float high[3])
+{
+    int found = 0;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
+            const model_submesh *part = &m->meshes[i].submeshes[s];
+            const float *p = m->meshes[i].position + 3 * (size_t)part->first_vertex;
+            if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_TEETH) continue;
+            for (uint32_t v = 0; v < part->vertex_count; v++, p += 3, found = 1) {
+                for (int c = 0; c < 3; c++) {
+                    low[c] = !found || p[c] < low[c] ? p[c] : low[c];
+                    high[c] = !found || p[c] > high[c] ? p[c] : high[c];
+                }
+            }
+        }
+    }
+    return found && high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
+}
+
+int mouth_shape_find(model *m)
+{
+    float low[3], high[3], gap = LIPS_APART;
+    if (!mouth_bounds(m, low, high)) return 0;
+    const float slope = 1.0f / (MOUTH_DEPTH * (high[2] - low[2]));
+    if (lip_gaps_find(m, slope, &gap)) return 1;
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        float *values = m->materials[i].surface_values, *more = m->materials[i].surface_more;
+        if (m->materials[i].surface == NOH_SURFACE_TEETH) {
+            values[2] = slope;
+            values[3] = 1.0f - high[2] * slope;
+            more[0] = 1.0f;
+            more[3] = gap;
+        } else if (m->materials[i].surface == NOH_SURFACE_SKIN) {
+            for (int c = 0; c < 2; c++) {
+                values[1 + c] = 0.5f * (low[c] + high[c]);
+                more[c] = 0.5f * (high[c] - low[c]);
+            }
+            values[3] = high[2];
+            more[2] = slope;
+            more[3] = gap;
+        }
+    }
+    return 0;
+}
