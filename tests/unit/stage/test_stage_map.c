@@ -319,9 +319,10 @@ static void act(show *w, int from, int to)
     }
 }
 
+/* Of the matrices that are shown. */
 static uint64_t shown(const show *w)
 {
-    uint64_t sum = noh_stage_hash(w->c.stage);
+    uint64_t sum = 14695981039346656037u;
     for (uint32_t i = 0; i < ACTORS; i++) {
         for (uint32_t j = 0; j < w->skeletons[1].joint_count; j++) {
             float m[12];
@@ -358,16 +359,58 @@ static void it_is_saved_and_forked(void **state)
     const void *now = noh_stage_state(a.c.stage, &bytes);
     void *kept = test_aligned(now, bytes);
     act(&a, 100, 220);
-    const uint64_t end = shown(&a);
+    const uint64_t end = shown(&a), hash = noh_stage_hash(a.c.stage);
     assert_int_equal(noh_stage_set_state(a.c.stage, kept, bytes, NULL), NOH_OK);
     act(&a, 100, 220);
-    assert_true(shown(&a) == end);
+    assert_true(shown(&a) == end && noh_stage_hash(a.c.stage) == hash);
     assert_int_equal(noh_stage_set_state(b.c.stage, kept, bytes, NULL), NOH_OK);
     act(&b, 100, 220);
-    assert_true(shown(&b) == end);
+    assert_true(shown(&b) == end && noh_stage_hash(b.c.stage) == hash);
     free(kept);
     close_show(&a);
     close_show(&b);
+}
+
+/* ---- slots and reserves ---- */
+
+static void bring_all(show *w)
+{
+    const noh_stage_stats *stats = noh_stage_stats_of(w->c.stage);
+    const char *const names[] = { "walk", w->clip };
+    for (uint32_t i = 0; i < TEST_COUNT(names); i++) {
+        const uint32_t clip = noh_stage_find(w->c.stage, 0, NOH_NAME_CLIP, names[i]);
+        assert_int_equal(noh_stage_load_clip(w->c.stage, 0, clip, NULL, &said), NOH_OK);
+    }
+    for (uint32_t i = stats->wanted_count; i-- > 0;) {
+        const noh_wanted_clip at = stats->wanted[i];
+        if (noh_stage_load_clip(w->c.stage, 0, at.clip, w->packs[at.pack]->bytes + at.offset, &said))
+            fail_msg("%s", said.what);
+    }
+}
+
+/* From a reserve, and of a kind that came into a slot, the same bits are shown. */
+static void it_comes_by_need_and_into_slots(void **state)
+{
+    uint64_t sums[3];
+    (void)state;
+    for (uint32_t way = 0; way < 3; way++) {
+        show w;
+        open_show(&w, "Knight__Walking_A", 2);
+        make_map(&w);
+        w.c.kinds[0].clip_reserve = way == 1 ? 1u << 15 : 0;
+        w.c.kinds[0].changes = way == 2;
+        cast_make(&w.c, NULL);
+        if (way == 2) {
+            assert_int_equal(noh_stage_set_kind(w.c.stage, 0, NULL, &said), NOH_OK);
+            if (noh_stage_set_kind(w.c.stage, 0, &w.c.kinds[0], &said)) fail_msg("%s", said.what);
+        }
+        enter(&w);
+        if (way == 1) bring_all(&w);
+        act(&w, 0, 100);
+        sums[way] = shown(&w);
+        close_show(&w);
+    }
+    assert_true(sums[1] == sums[0] && sums[2] == sums[0]);
 }
 
 /* ---- what is refused, and what stays as it was ---- */
@@ -394,6 +437,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_is_near_what_the_converter_makes),
     cmocka_unit_test(the_plan_has_its_bytes),
     cmocka_unit_test(it_is_saved_and_forked),
+    cmocka_unit_test(it_comes_by_need_and_into_slots),
     cmocka_unit_test(maps_of_other_skeletons_are_refused),
 };
 
