@@ -151,9 +151,12 @@ static uint32_t sort_looks(const noh_stage *s, const noh_stage_kind *k, int whol
         last = find_look(looks, count, &key);
         if (last < count && !compare_looks(&looks[last], &key)) continue;
         if (count == LOOKS_MAX) return 0;
-        memmove(&looks[last + 1u], &looks[last], (count - last) * sizeof *looks);
-        looks[last] = key;
-        count++;
+        looks[count] = key;
+        for (uint32_t at = count++; at > last; at--) { /* exchanged, as in stage_levels.c */
+            const look_key moved = looks[at];
+            looks[at] = looks[at - 1u];
+            looks[at - 1u] = moved;
+        }
     }
     return count ? count : 1u;
 }
