@@ -29,9 +29,8 @@ int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_sit
 
 static noh_stage_item item_of(const noh_stage_desc *desc, noh_gl_site site)
 {
-    const noh_kind_desc kind = noh_stage_kind_desc(desc, site.kind);
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
-    (void)noh_stage_items(&kind, items);
+    (void)noh_stage_items(&desc->kinds[site.kind], items); /* no default changes which meshes are drawn */
     return items[site.item];
 }
 
