@@ -9,10 +9,12 @@
 
 #define CROWN 0.16f  /* the height of a crown, in widths of the jaw */
 #define SOFT 0.35f   /* the share of it over which enamel turns to gum */
-#define ENAMEL 0.50f /* the largest channel of the brightest place */
+#define ENAMEL 0.60f /* the largest channel of the brightest place */
 #define HUES 0.02f   /* shares of red in one colour differ by less */
 #define ALIKE 1.6f
 #define OVERBITE 0.15f /* at most, of the lower of two jaws' heights */
+#define DEEP_BITE 0.4f /* of jaws that targets part */
+#define PARTED 0.05f   /* in widths of the jaw: by at least as much a target parts jaws */
 #define PALE_MIN 0.4f  /* of blue to red: less is a tongue or a gum */
 
 static const float gum[3] = { 0.42f, 0.15f, 0.13f }, neck[3] = { 1.0f, 0.87f, 0.76f };
@@ -65,15 +67,35 @@ static void find_middles(const jaws *j, const uint32_t *island, float *room, flo
 }
 
 /* Two jaws have one height and one width, by a factor of ALIKE, and lie over one another but for an overbite; teeth
- * and a gum of one jaw, as islands of their own, do not.
+ * and a gum of one jaw, as islands of their own, do not, and no target parts them.
  * box  of the lower islands, of the upper: least and greatest x, least and greatest y */
-static int are_jaws(float box[2][4])
+static int are_jaws(float box[2][4], int are_parted)
 {
     for (int axis = 0; axis < 4; axis += 2) {
         const float lower = box[0][axis + 1] - box[0][axis], upper = box[1][axis + 1] - box[1][axis];
         if (!(lower > 0.0f && upper > 0.0f && lower < ALIKE * upper && upper < ALIKE * lower)) return 0;
     }
-    return box[0][3] - box[1][2] < OVERBITE * fminf(box[0][3] - box[0][2], box[1][3] - box[1][2]);
+    return box[0][3] - box[1][2] <
+           (are_parted ? DEEP_BITE : OVERBITE) * fminf(box[0][3] - box[0][2], box[1][3] - box[1][2]);
+}
+
+/* Whether a target moves the upper islands from the lower ones. */
+static int targets_part(const jaws *j, const uint32_t *island, const float *middle)
+{
+    for (uint32_t t = 0; t < j->mesh->target_count; t++) {
+        const float *moved = j->mesh->targets[t].position;
+        double sum[2] = { 0.0, 0.0 }, count[2] = { 0.0, 0.0 };
+        for (uint32_t i = 0; moved && i < j->part->vertex_count; i++) {
+            const uint32_t v = j->part->first_vertex + i;
+            const int upper = middle[island[v]] > j->middle;
+            sum[upper] += (double)moved[3 * (size_t)v + 1];
+            count[upper] += 1.0;
+        }
+        if (count[0] > 0.0 && count[1] > 0.0 && sum[1] / count[1] - sum[0] / count[0] > (double)(PARTED * j->width)) {
+            return 1;
+        }
+    }
+    return 0;
 }
 
 /* Whether there are two jaws. */
@@ -100,7 +122,7 @@ static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
     }
     j->edge[0] = box[0][3];
     j->edge[1] = box[1][2];
-    return j->width > 0.0f && high - low > 0.1f * j->width && are_jaws(box);
+    return j->width > 0.0f && high - low > 0.1f * j->width && are_jaws(box, targets_part(j, island, middle));
 }
 
 static float smooth_step(float from, float to, float x)

@@ -7,8 +7,8 @@
 /* Paint teeth that have no texture, and no other hue in their vertex colours, from their edge to the gum, in vertex
  * colours: a crown is 0.16 of the width of the jaw high, and gum is what lies farther from the edge. Their brightest
  * place becomes as bright as enamel, or white vertex colours where the base color is darker; what is darker in the file
- * stays so. Needs two jaws of a similar height and width that overlap by no more than an overbite. Surfaces of materials
- * are known.
+ * stays so. Needs two jaws of a similar height and width that overlap by no more than an overbite, or by two fifths of a
+ * jaw's height if a target parts them. Surfaces of materials are known.
  * returns  1: out of memory */
 int teeth_paint(model *m);
 
