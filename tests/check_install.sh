@@ -249,9 +249,18 @@ END
     builds 'add_subdirectory' cmake_subdirectory
     # What a package manager's port and recipe do: install; then a game finds the package.
     mkdir "$work/cmake_package"
-    printf 'cmake_minimum_required(VERSION 3.13)\nproject(game C)\nfind_package(noh %s REQUIRED)\nadd_executable(game game.c)\ntarget_link_libraries(game noh::noh)\n' \
-        "$version" >"$work/cmake_package/CMakeLists.txt"
-    printf '#include <string.h>\n#include <noh/base.h>\nint main(void) { return strcmp(noh_version(), NOH_VERSION); }\n' >"$work/cmake_package/game.c"
+    cat >"$work/cmake_package/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.13)
+project(game C)
+find_package(noh $version REQUIRED)
+add_executable(game game.c)
+target_link_libraries(game noh::noh)
+END
+    cat >"$work/cmake_package/game.c" <<END
+#include <string.h>
+#include <noh/base.h>
+int main(void) { return strcmp(noh_version(), NOH_VERSION); }
+END
     check 'CMake from source: installs' cmake --install "$work/cmake_subdirectory/build" --prefix "$work/cmake_installed"
     check 'CMake from source: a game finds it and runs' sh -c \
         'cmake -S "$1" -B "$1/build" -DCMAKE_PREFIX_PATH="$2" && cmake --build "$1/build" && "$1/build/game"' - "$work/cmake_package" "$work/cmake_installed"
@@ -259,7 +268,7 @@ END
 FetchContent_Declare(noh SOURCE_DIR $PWD SOURCE_SUBDIR runtime)
 FetchContent_MakeAvailable(noh)" -DNOH_GL=OFF
     check 'CMake from source: without what draws alone' sh -c 'test -s "$1" && ! grep -v "^runtime/gl/" "$1"' - "$work/absent"
-    # Its files beside those compile without the shaders.
+    # Files of gl/ that stay compile without the shaders.
     grep -F " $PWD/runtime/gl/" "$work/commands" | sed 's/$/ -fsyntax-only/' >"$work/beside"
     check 'CMake from source: without GL, files of gl/ compile' sh -e "$work/beside"
     [ -z "${NOH_LONG:-}" ] || builds 'FetchContent, without GL' cmake_fetch

@@ -71,7 +71,7 @@ count='
         printf "C %d %d %d %d\n", passed, failed, skipped, seconds
     }'
 
-# These start first if no times are known: the longest of the table in tests/README.md.
+# These start first if no times are known: they took longest.
 long='check_install gl/verify gl/matrix gl/test_gl_load gl/view gl/view_figure gl/view_tools check_plain_c cli/crowd cli/examples
     cli/zoom cli/light cli/lighting unit/motion/test_clip_codec check_amalgam cli/strip cli/springs cli/wrinkles cli/graph cli/puppet
     unit/deform/test_bounds_pick cli/drop'

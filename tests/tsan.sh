@@ -5,8 +5,8 @@
 # test passes and nothing is reported. A compiler that is missing, or whose ThreadSanitizer does not run here, is
 # skipped. Ends like tests/run.sh.
 #
-# Asserts of both tiers are on. Built like the cross tests, without C++ and GL. The converter, which runs before any thread,
-# comes from the build that made the packs.
+# Asserts of both tiers are on. Built like the cross tests, without C++ and GL. The converter, which runs before any
+# thread, comes from the build that made the packs.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 passed=0 failed=0 skipped=0

@@ -201,6 +201,8 @@ static void frames_go_on_after_a_refusal(void **state)
     for (uint32_t way = 0; way < FIXTURE_WAYS; way++) {
         noh_error error;
         cast c;
+        if (test_is_sanitized() && fixture_ways[way].accumulate == NOH_ACCUMULATE_F16)
+            continue; /* the calls of floats */
         small_cast(&c, fixture_ways[way].path);
         c.desc.halves = fixture_ways[way].accumulate == NOH_ACCUMULATE_F16;
         if (noh_stage_plan_make(&c.desc, &g.caps, &c.plan, &error) == NOH_OK) {

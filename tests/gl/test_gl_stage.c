@@ -75,6 +75,7 @@ static void the_plan_is_what_is_used(void **state)
             noh_error error;
             uint32_t count;
             cast c;
+            if (test_is_sanitized() && bound && bound != 1u + way % 4u) continue; /* each way with two bounds */
             cast_open(&c);
             c.desc.gpu = &noh_stage_on_gl;
             c.desc.morph_path = (uint32_t)fixture_ways[way].path;

@@ -1217,10 +1217,12 @@ static void real_body_plays_as_promised(void **state)
     snprintf(file_path, sizeof file_path, "%s", test_asset("hero/body.glb"));
     loaded l = load_file(0.0);
     const raw_set *set = l.made->sets[0];
-    for (uint32_t c = 0; c < set->clip_count; ++c)
+    uint32_t left = test_is_sanitized() ? 1 : set->clip_count;
+    for (uint32_t c = 0; c < set->clip_count && left; ++c)
         if (set->clips[c].joint_count > 0 && set->clips[c].frame_count < 40) {
             const double strays = clip_strays(&l, &set->clips[c], 5);
             print_message("hero/body.glb: '%s' strays by %.3g cm\n", set->clips[c].name, strays);
+            left--;
         }
     loaded_free(&l);
 }

@@ -438,7 +438,7 @@ static void bounds_hold_for_scale(void **state)
 static void bounds_hold_for_one_joint_and_for_many(void **state)
 {
     /* four chains: its cost grows with their length */
-    const uint32_t many = getenv("NOH_LONG") ? 1024 : getenv("NOH_EMULATED") ? 64 : 256;
+    const uint32_t many = getenv("NOH_LONG") ? 1024 : getenv("NOH_EMULATED") || test_is_sanitized() ? 64 : 256;
     (void)state;
     holds_coded(fixture_swing(1, 40, 1, 10.0f, 1.0, 2.0), NULL, "one joint");
     holds_coded(fixture_swing(many, 20, 4, 5.0f, 0.2, 0.5), NULL, "many joints");
