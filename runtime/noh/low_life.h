@@ -446,7 +446,8 @@ void noh_ragdoll_to_pose(const noh_ragdoll_fit *fit, const noh_skeleton *skeleto
 #define NOH_SPRING_STEP_TICKS 800u /* 1/60 s */
 
 typedef struct noh_spring_joint {
-    float bone[3];    /* from the joint to the next one, or to the chain's end, in the joint's space; length above 0 */
+    float bone[3];    /* from the joint to the next one, or to the chain's end, in the joint's space; length above 0, up
+                       * to 1e9 */
     float rest[4];    /* local rotation at rest */
     float stiffness;  /* metres per second of pull towards the rest direction, 0..; as in VRM, usually 0..4 */
     float drag;       /* share of its velocity lost per step, 0..1 */
@@ -495,8 +496,8 @@ typedef struct noh_spring_move {
 size_t noh_spring_size(const noh_spring_desc *desc);
 
 /* Make a chain at rest; after a teleport of its carrier, in the same memory again.
- * errors  ARG memory NULL or misaligned, a bone of length 0, or a number out of its range (where: the joint); LIMIT too
- *         many joints or colliders; MEMORY too small */
+ * errors  ARG memory NULL or misaligned, a bone of length 0, or a number out of its range (where: the joint), also of
+ *         the carrier; LIMIT too many joints or colliders; MEMORY too small */
 noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
                            noh_spring **spring, noh_error *error);
 

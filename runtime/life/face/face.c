@@ -58,7 +58,7 @@ static const char *bad_desc(const noh_face_desc *d, uint64_t *where)
     static const float most[] = { 120.0f, 120.0f, 120.0f, 0.5f, 120.0f, 1.5f, 1.5f, 1.5f, 3.1f, 1.5f, 1.5f, 1.0f };
     for (uint32_t i = 0; i < 6; i++) {
         *where = i;
-        if (!noh_is_finite(d->eyes[i / 3][i % 3])) return "eyes of a face desc are not finite";
+        if (!noh_is_number(d->eyes[i / 3][i % 3])) return "eyes of a face desc are not finite, or too large";
     }
     *where = 0;
     if (d->eyes[0][0] - d->eyes[1][0] < 1e-4f) return "eyes of a face desc: the left eye must have the greater x";

@@ -35,15 +35,15 @@ static int is_unit4(const float q[4])
 
 static int is_positive(float x)
 {
-    return x > 0.0f && noh_is_finite(x);
+    return x > 0.0f && noh_is_number(x);
 }
 
 static int good_body(const noh_ragdoll_rig *rig, uint32_t i)
 {
     const noh_ragdoll_body *b = &rig->bodies[i];
-    return (i ? b->parent < i : b->parent == NOH_NONE) && b->half >= 0.0f && noh_is_finite(b->half) &&
+    return (i ? b->parent < i : b->parent == NOH_NONE) && b->half >= 0.0f && noh_is_number(b->half) &&
            is_positive(b->radius) && is_positive(b->mass) && is_positive(b->inertia_across) &&
-           is_positive(b->inertia_along) && noh_is_finite3(b->position) && is_unit4(b->rotation);
+           is_positive(b->inertia_along) && noh_is_number3(b->position) && is_unit4(b->rotation);
 }
 
 /* Contains 0, and spans no more than half a turn each way. */
@@ -67,7 +67,7 @@ static float rest_swing(const noh_ragdoll_joint *j)
 
 static int good_joint(const noh_ragdoll_joint *j)
 {
-    int good = noh_is_finite3(j->anchor) && is_unit4(j->frame) && j->friction >= 0.0f && noh_is_finite(j->friction);
+    int good = noh_is_number3(j->anchor) && is_unit4(j->frame) && j->friction >= 0.0f && noh_is_number(j->friction);
     if (!(j->flags & NOH_RAGDOLL_LOOSE)) {
         good = good && good_range(j->twist_min, j->twist_max);
         if (!(j->flags & NOH_RAGDOLL_HINGE)) {
@@ -76,8 +76,8 @@ static int good_joint(const noh_ragdoll_joint *j)
         }
     }
     for (int i = 0; i < 3 && (j->flags & NOH_RAGDOLL_SLIDES); i++) {
-        good = good && j->linear_min[i] <= 0.0f && j->linear_max[i] >= 0.0f && noh_is_finite3(j->linear_min) &&
-               noh_is_finite3(j->linear_max);
+        good = good && j->linear_min[i] <= 0.0f && j->linear_max[i] >= 0.0f && noh_is_number3(j->linear_min) &&
+               noh_is_number3(j->linear_max);
     }
     return good;
 }

@@ -20,12 +20,13 @@ size_t noh_spring_size(const noh_spring_desc *desc)
     return (bytes + 15u) & ~(size_t)15u;
 }
 
+/* Turns are found by the fourth power of a bone's length. */
 static int is_good(const noh_spring_joint *j)
 {
     const float square = noh_dot3(j->bone, j->bone), unit = noh_quat_dot(j->rest, j->rest);
-    return square > 1e-16f && noh_is_finite(square) && unit > 0.99f && unit < 1.01f && j->stiffness >= 0.0f &&
-           noh_is_finite(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
-           noh_is_finite(j->radius) && noh_is_finite(noh_dot3(j->gravity, j->gravity));
+    return square > 1e-16f && noh_is_finite(16.0f * square * square) && unit > 0.99f && unit < 1.01f && j->stiffness >= 0.0f &&
+           noh_is_number(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
+           noh_is_number(j->radius) && noh_is_number3(j->gravity);
 }
 
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
@@ -46,6 +47,12 @@ noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)
     return NOH_OK;
 }
 
+static int turns(const float q[4])
+{
+    const float square = noh_quat_dot(q, q);
+    return square > 0.9f && square < 1.1f;
+}
+
 noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
                            noh_spring **spring, noh_error *error)
 {
@@ -53,6 +60,9 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
     NOH_ASSERT(desc && carrier && spring);
     noh_result result = noh_spring_check_desc(desc, error);
     if (result) return result;
+    if (!noh_is_number3(carrier->position) || !turns(carrier->rotation)) {
+        return noh_fail(error, NOH_ERR_ARG, "the carrier of a spring is out of range, or its rotation is not unit", 0, 0);
+    }
     result = noh_arena_open(&arena, memory, bytes, noh_spring_size(desc), error);
     if (result) return result;
     noh_spring *s = memory;
@@ -98,12 +108,6 @@ void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh
 }
 
 /* ---- springs from outside ---- */
-
-static int turns(const float q[4])
-{
-    const float square = noh_quat_dot(q, q);
-    return square > 0.9f && square < 1.1f;
-}
 
 const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *desc)
 {

@@ -3,17 +3,9 @@
 
 #include "stage/cast/stage_internal.h"
 #include "core/base/assert_internal.h"
+#include "core/base/math_internal.h"
 #include "noh/base.h"
 #include "noh/noh.h"
-
-/* Squares of larger numbers are not finite. */
-static int are_numbers(const float *v, uint32_t count)
-{
-    for (uint32_t i = 0; i < count; i++) {
-        if (!(v[i] >= -NOH_VIEW_NUMBER_MAX && v[i] <= NOH_VIEW_NUMBER_MAX)) return 0;
-    }
-    return 1;
-}
 
 static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
 {
@@ -21,9 +13,9 @@ static const char *bad_views(const noh_stage *s, const noh_stage_view *views, ui
     if (count > NOH_STAGE_VIEWS_MAX) return "view_count is above NOH_STAGE_VIEWS_MAX";
     for (uint32_t v = 0; v < count; v++) {
         const noh_stage_view *view = &views[v];
-        if (!are_numbers(view->view_projection, 16)) return "view_projection of a view: not finite, or too large";
-        if (!are_numbers(view->eye, 3) || !are_numbers(view->light, 3) || !are_numbers(view->column_rest, 4) ||
-            !are_numbers(view->eye_rest, 3))
+        if (!noh_are_sound(view->view_projection, 16)) return "view_projection of a view: not finite, or too large";
+        if (!noh_are_sound(view->eye, 3) || !noh_are_sound(view->light, 3) || !noh_are_sound(view->column_rest, 4) ||
+            !noh_are_sound(view->eye_rest, 3))
             return "eye, light or a rest of a view: not finite, or too large";
     }
     return NULL;

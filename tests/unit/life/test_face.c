@@ -572,6 +572,10 @@ static void bad_values_are_refused(void **state)
     bad = desc;
     bad.eyes[1][2] = INFINITY;
     assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);
+    bad = desc;
+    bad.eyes[1][0] = -1e30f;
+    assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);
+    assert_int_equal(error.where, 3);
     assert_int_equal(noh_face_init(&face, &desc, 1, NOH_FACE_FLAGS + 1u, &error), NOH_ERR_ARG);
     face = before = face_of(1, 0);
     assert_int_equal(noh_face_look_at(&face, &desc, near_point, &error), NOH_ERR_ARG);

@@ -998,6 +998,10 @@ static void bad_rigs_are_refused(void **state)
     rig = figure_rig();
     rig.pairs[0][0] = 14;
     assert_int_equal(noh_ragdoll_rig_check(&rig, &error), NOH_ERR_ARG);
+    rig = figure_rig();
+    rig.bodies[2].mass = 1e30f; /* its square is infinite */
+    assert_int_equal(noh_ragdoll_rig_check(&rig, &error), NOH_ERR_ARG);
+    assert_int_equal(error.where, 2);
 }
 
 /* The source's hinge takes the upper limit first, where its engine takes the lower: a knee that bends the other way.

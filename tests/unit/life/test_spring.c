@@ -4,6 +4,7 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -671,6 +672,44 @@ static void bad_values_are_refused(void **state)
     free(memory);
 }
 
+/* The largest numbers that init takes swing to rotations; larger ones are refused, finite or not. */
+static void the_largest_numbers_swing(void **state)
+{
+    static const float wild[] = { NAN, INFINITY, -FLT_MAX, 1e30f, 1e18f };
+    noh_spring_desc desc = hanging(1.0f, 0.3f, 0.5f);
+    noh_spring_carrier at = { { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f, 1.0f } };
+    const size_t bytes = noh_spring_size(&desc);
+    void *memory = malloc(bytes);
+    noh_spring *spring = NULL;
+    (void)state;
+    for (size_t w = 0; w < sizeof wild / sizeof *wild; w++) {
+        float *const numbers[] = { &joints[1].bone[2], &joints[1].stiffness, &joints[1].radius,
+                                   &joints[1].gravity[0], &at.position[1],   &at.rotation[0] };
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+            const float kept = *numbers[i];
+            *numbers[i] = wild[w];
+            assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, NULL), NOH_ERR_ARG);
+            *numbers[i] = kept;
+        }
+    }
+    for (int i = 0; i < 3; i++) joints[1].bone[i] = 1e9f, at.position[i] = NOH_NUMBER_MAX;
+    joints[1].stiffness = joints[2].gravity[0] = NOH_NUMBER_MAX;
+    assert_int_equal(noh_spring_init(memory, bytes, &desc, &at, &spring, NULL), NOH_OK);
+    for (int step = 0; step < 30; step++) {
+        float rotations[JOINTS][4];
+        const noh_spring_move move = { spring, &desc, &at, NULL, rotations[0], NULL };
+        at.position[0] = step & 1 ? -NOH_NUMBER_MAX : NOH_NUMBER_MAX;
+        (void)noh_spring_step(&move, 1, 800u, NULL);
+        noh_spring_rotations(&move, 1);
+        for (uint32_t j = 0; j < JOINTS; j++) {
+            float square = 0.0f;
+            for (int i = 0; i < 4; i++) square += rotations[j][i] * rotations[j][i];
+            assert_true(square > 0.9f && square < 1.1f);
+        }
+    }
+    free(memory);
+}
+
 int main(int argument_count, char **arguments)
 {
     static const struct CMUnitTest tests[] = {
@@ -686,6 +725,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(ends_are_shown_in_front_of_planes),
         cmocka_unit_test(every_width_and_company_gives_the_same_bits),
         cmocka_unit_test(bad_values_are_refused),
+        cmocka_unit_test(the_largest_numbers_swing),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
