@@ -165,7 +165,7 @@ typedef struct noh_kind_desc {
     /* Clips of another skeleton in its packs play, too, as poses of its own: &retarget.clips of a noh_retarget
      * (low_life.h), which must outlive the stage. They play like the kind's own, on any layer, with their keys, floats
      * and root motion. While one plays, its actor is posed every frame, and with a map joints are never left out by
-     * LOD. Bytes: 40 for each joint of that skeleton, and as many for each job. Default (NULL): such clips are ignored */
+     * LOD. Bytes: 40 for each joint of that skeleton, and as many for each job. Default (NULL): they are ignored */
     const noh_clip_map *map;
     const uint32_t *nodes; /* [node_count] draws only these nodes of `mesh`; in a pack without nodes, these meshes.
                             * Default (NULL) all. Read by plans and init */

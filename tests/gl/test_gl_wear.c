@@ -240,7 +240,7 @@ static uint32_t submeshes_of(const crowd *w, uint32_t pack, uint32_t mesh)
     return m.header->submesh_count;
 }
 
-/* Each of a crowd shows the parts and coats that it shows alone; and a look is drawn at once, whoever has it. */
+/* Each of a crowd shows the parts and coats that it shows alone; a look is drawn at once, for all that have it. */
 static void a_crowd_wears_by_look(void **state)
 {
     static uint32_t together[PIXELS], one_by_one[PIXELS], before[PIXELS];

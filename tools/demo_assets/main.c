@@ -161,7 +161,7 @@ int main(int argc, char **argv)
     }
     fprintf(
         stderr,
-        "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--roam-all|--arm] OUT.glb, demo_assets --flush OUT.png, or "
-        "demo_assets --festival OUT\n");
+        "usage: demo_assets [--nell|--puppet|--coat|--get-up|--roam|--roam-all|--arm] OUT.glb, "
+        "demo_assets --flush OUT.png, or demo_assets --festival OUT\n");
     return 2;
 }

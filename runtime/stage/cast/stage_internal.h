@@ -270,7 +270,7 @@ typedef struct noh_stage_shown {
     uint16_t worn;               /* 1 + the first garment on it that is posed or shown in this frame; 0: none */
     uint16_t next_worn;          /* of a garment: 1 + the next one on its wearer; 0: the last */
     uint8_t cover;               /* what draws: 1 + the set of garments that hides parts of it; 0: none */
-    uint8_t look;                /* while places are given: its look among those of its kind */
+    uint8_t look;                /* while places are given: the number of its look */
 } noh_stage_shown;
 
 #define NOH_STAGE_MOVED 2u

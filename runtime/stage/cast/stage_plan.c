@@ -457,7 +457,7 @@ static void state_segments(const planner *p)
     }
 }
 
-/* Packs of a kind: its mesh, its clips, its texture sets. NULL: past the last; a set of its own textures gives its mesh. */
+/* Packs of a kind: its mesh, its clips, its texture sets (of its own textures: its mesh). NULL: past the last. */
 static const noh_pack *pack_at(const noh_kind_desc *d, uint32_t index)
 {
     const uint32_t clip_count = d->clip_packs ? d->clip_pack_count : 1u;

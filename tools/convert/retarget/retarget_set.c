@@ -152,8 +152,8 @@ static int say_figures(const retargeting *r, const retarget_pair *pair, FILE *re
         "retargeted '%s': %u bones, sizes x %.3f; feet slide %.2f %% of a stride, penetrate %.1f cm in 95 %% of frames "
         "(source: %.1f), hands off by %.1f cm, %.1f %% of bends turned over\n",
         pair->clips[TARGET]->name, r->map.bone_count,
-        (double)r->map.clips.ratio * pair->skeletons[TARGET]->unit_cm / pair->skeletons[SOURCE]->unit_cm, 100.0 * f.slide,
-        f.penetration_cm, f.source_penetration_cm, f.reach_cm, 100.0 * f.against);
+        (double)r->map.clips.ratio * pair->skeletons[TARGET]->unit_cm / pair->skeletons[SOURCE]->unit_cm,
+        100.0 * f.slide, f.penetration_cm, f.source_penetration_cm, f.reach_cm, 100.0 * f.against);
     return 0;
 }
 

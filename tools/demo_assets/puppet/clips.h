@@ -5,7 +5,15 @@
 
 #include "stance.h"
 
-enum { CLIP_COUNT = 5, GET_UP_COUNT = 2, ROAM_COUNT = 10, ROAM_ALL = 16, ROAM_STEPS = 900, CLIP_RATE_HZ = 30, CUES_MAX = 48 };
+enum {
+    CLIP_COUNT = 5,
+    GET_UP_COUNT = 2,
+    ROAM_COUNT = 10,
+    ROAM_ALL = 16,
+    ROAM_STEPS = 900,
+    CLIP_RATE_HZ = 30,
+    CUES_MAX = 48
+};
 
 /* A callback key. */
 typedef struct {
