@@ -24,7 +24,7 @@ echo 'int LLVMFuzzerTestOneInput(const unsigned char *d, unsigned long n); int L
 "$clang" -fsanitize=fuzzer,address,undefined "$work/probe.c" -o "$work/probe" 2>"$work/probe.txt" ||
     skip "$clang has no libFuzzer or sanitizer runtime (libclang-rt-dev)"
 
-flags="-std=c99 -O1 -g -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer-no-link,address,undefined
+flags="-std=c99 -O1 -g1 -ffp-contract=off -fno-math-errno -DNOH_LIBFUZZER -fsanitize=fuzzer-no-link,address,undefined
     -fno-sanitize-recover=all -fno-omit-frame-pointer -DNOH_ASSERT_LEVEL=2 -Iruntime -Itests -Itests/support -Itools/noh -I$build/gen"
 # As in the Makefile, and without what draws stages, which no reader calls.
 without='-path runtime/gl/stage'

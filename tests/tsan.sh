@@ -28,7 +28,7 @@ compiler() {
     fi
     # Optimised only a little: fewer accesses disappear before the sanitizer sees them.
     # shellcheck disable=SC2046 # words
-    if ! make --no-print-directory -j"${JOBS:-2}" DEPS=0 CROSS=tsan SAN=thread BUILD="$build" CC="$cc" OPT='-O1 -g -DNOH_ASSERT_LEVEL=2' \
+    if ! make --no-print-directory -j"${JOBS:-2}" DEPS=0 CROSS=tsan SAN=thread BUILD="$build" CC="$cc" OPT='-O1 -g1 -DNOH_ASSERT_LEVEL=2' \
         CFLAGS= CPPFLAGS= LDFLAGS=-pthread CROSS_O="$(printf "$build/%s " $own | sed 's|\.c |.o |g')$(echo $converter)" \
         $(printf "$build/cross/unit/%s " $programs) >"$build/make.txt" 2>&1; then
         echo "$cc: it does not build"
