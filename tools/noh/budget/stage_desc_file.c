@@ -151,13 +151,15 @@ static int end_kind(reader *r)
     if (!k->mesh) return desc_fail_at(r, r->kind_line, "kind '%.60s' has no mesh: add a line 'mesh PATH'", k->name);
     if (!k->actor_count)
         return desc_fail_at(r, r->kind_line, "kind '%.60s' has no actor_count: add a line 'actor_count N'", k->name);
+    if (r->file->ragdolls[k - r->file->kinds].world && !k->ragdoll.type)
+        return desc_fail_at(r, r->kind_line, "kind '%.60s' has a ragdoll_world: add a line 'ragdolls N'", k->name);
     return desc_make_map(r);
 }
 
 static int begin_kind(reader *r)
 {
     noh_stage_desc *d = &r->file->desc;
-    if (end_kind(r) || desc_check_words(r, "kind", 0)) {
+    if (end_kind(r) || desc_check_words(r, "kind", DESC_ONE_WORD)) {
         return EXIT_FAILED;
     }
     if (d->kind_count == NOH_STAGE_KINDS_MAX) {

@@ -334,24 +334,37 @@ static int set(reader *r, const setting *s)
     }
 }
 
-/* The words after a key: one, or for a layer any number; a value with an equals sign is none. */
-int desc_check_words(const reader *r, const char *key, int any)
+/* An option has one value, and only keys with options take any. */
+static int check_options(const reader *r, const char *key, desc_words takes)
 {
-    if (r->word_count < 2 || !r->words[1].text[0]) {
-        return desc_fail_at(r, r->line, "%s needs a value", key);
+    for (uint32_t i = 2; i < r->word_count; i++) {
+        const word *w = &r->words[i];
+        if (!w->value) continue;
+        if (takes != DESC_OPTIONS)
+            return desc_fail_at(r, r->line, "%s takes no '%.60s=': write values alone", key, w->text);
+        for (uint32_t j = 2; j < i; j++) {
+            if (r->words[j].value && strcmp(r->words[j].text, w->text) == 0)
+                return desc_fail_at(r, r->line, "%.60s= is given twice for this %s", w->text, key);
+        }
     }
-    if (r->words[0].value || r->words[1].value) {
-        return desc_fail_at(r, r->line, "write '%s VALUE' without an equals sign, or put quotes around the value", key);
-    }
-    return r->word_count > 2 && !any
-               ? desc_fail_at(r, r->line, "'%.60s' is one word too many after %s", r->words[2].text, key)
-               : 0;
+    return 0;
 }
 
-static int takes_words(setting_kind kind)
+int desc_check_words(const reader *r, const char *key, desc_words takes)
 {
-    return kind == SET_LAYER || kind == SET_FACE || kind == SET_LIGHT || kind == SET_NODES || kind == SET_TEXTURES ||
-           kind == SET_MODIFIER;
+    const word *first = &r->words[0], *second = &r->words[1];
+    if (first->value || (r->word_count > 1 && second->value))
+        return desc_fail_at(r, r->line, "write '%s VALUE' without an equals sign, or put quotes around the value", key);
+    if (r->word_count < 2 || !second->text[0]) return desc_fail_at(r, r->line, "%s needs a value", key);
+    if (r->word_count > 2 && takes == DESC_ONE_WORD)
+        return desc_fail_at(r, r->line, "'%.60s' is one word too many after %s", r->words[2].text, key);
+    return check_options(r, key, takes);
+}
+
+static desc_words takes(setting_kind kind)
+{
+    if (kind == SET_FACE || kind == SET_LIGHT || kind == SET_NODES) return DESC_WORDS;
+    return kind == SET_LAYER || kind == SET_TEXTURES || kind == SET_MODIFIER ? DESC_OPTIONS : DESC_ONE_WORD;
 }
 
 static int read_setting(reader *r, const setting *s)
@@ -367,7 +380,7 @@ static int read_setting(reader *r, const setting *s)
         return desc_fail_at(r, r->line, "'%s' is given twice; the first is in line %u", s->name, *line);
     }
     *line = r->line;
-    return desc_check_words(r, s->name, takes_words(s->kind)) || set(r, s) ? EXIT_FAILED : 0;
+    return desc_check_words(r, s->name, takes(s->kind)) || set(r, s) ? EXIT_FAILED : 0;
 }
 
 int desc_read_key(reader *r)

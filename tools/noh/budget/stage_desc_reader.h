@@ -49,8 +49,10 @@ int desc_read_file(const char *path, stage_desc_file *reader_of, stage_desc_file
 /* A line of a key and its value. */
 int desc_read_key(reader *r);
 
-/* The words after a key: one, or any number; a value with an equals sign is none. */
-int desc_check_words(const reader *r, const char *key, int any);
+/* What follows a key: one word; words; a word, then words and NAME=VALUE, each name once. */
+typedef enum desc_words { DESC_ONE_WORD, DESC_WORDS, DESC_OPTIONS } desc_words;
+
+int desc_check_words(const reader *r, const char *key, desc_words takes);
 
 /* A whole number within bounds; the place of a text in a list. */
 int desc_number(const reader *r, const char *key, const char *text, uint64_t least, uint64_t most, uint64_t *out);
@@ -61,7 +63,7 @@ int desc_one_of(const reader *r, const char *key, const char *text, const char *
 int desc_add_layer(reader *r);
 int desc_add_texture_set(reader *r);
 int desc_add_modifier(reader *r);
-int desc_make_map(reader *r); /* of a kind that ends */
+int desc_make_map(reader *r); /* for a kind whose last line is read */
 int desc_set_face(reader *r);
 int desc_set_light(reader *r);
 int desc_set_nodes(reader *r);

@@ -14,7 +14,6 @@ static int layer_option(const reader *r, const word *w, noh_layer_desc *layer)
     const char **text = strcmp(w->text, "joints") == 0 ? &layer->joints : &layer->floats;
     uint64_t count;
     if (strcmp(w->text, "tracks") == 0) {
-        if (layer->track_count) return desc_fail_at(r, r->line, "tracks= is given twice for this layer");
         if (desc_number(r, "tracks", w->value, 1, NOH_LAYER_TRACKS_MAX, &count)) return EXIT_FAILED;
         layer->track_count = (uint32_t)count;
         return 0;
@@ -22,7 +21,6 @@ static int layer_option(const reader *r, const word *w, noh_layer_desc *layer)
     if (strcmp(w->text, "joints") != 0 && strcmp(w->text, "floats") != 0) {
         return desc_fail_at(r, r->line, "a layer has no option '%.60s'%s", w->text, desc_hint(w->text, names, 3).text);
     }
-    if (*text) return desc_fail_at(r, r->line, "%s= is given twice for this layer", w->text);
     *text = w->value;
     return 0;
 }
