@@ -922,6 +922,20 @@ static void weights_of_other_nodes_stay(void **state)
     loaded_free(&l);
 }
 
+/* More nodes at rest than a clip can hold: the file is read, and the warning says what happens to them. */
+static void too_many_weights_that_stay_are_told(void **state)
+{
+    static char nodes[16384] = "{\"mesh\":0}";
+    (void)state;
+    for (uint32_t n = 0; n < 513; ++n) APPEND(nodes, ",{\"mesh\":0}");
+    scene *s = morphing(nodes);
+    add_channel(s, 0, "weights", "LINEAR", weight_times, 3, weight_values, 6, 1);
+    loaded l = load(s, 4.0);
+    assert_int_equal(only_clip(&l)->float_count, 1);
+    assert_true(has_warning(l.m, "too many others have the same targets for a clip to hold"));
+    loaded_free(&l);
+}
+
 static void what_moves_nothing_is_a_warning(void **state)
 {
     (void)state;
@@ -1299,6 +1313,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(weights_below_a_growing_joint),
     cmocka_unit_test(weights_of_a_skinned_mesh),
     cmocka_unit_test(weights_of_other_nodes_stay),
+    cmocka_unit_test(too_many_weights_that_stay_are_told),
     cmocka_unit_test(what_moves_nothing_is_a_warning),
     cmocka_unit_test(keys_in_extras),
     cmocka_unit_test(markers_in_extras),

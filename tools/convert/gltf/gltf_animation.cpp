@@ -273,8 +273,8 @@ static void hold_others(file &f, const std::string &where, model_clip &out)
             floats += f.out->meshes[f.out->nodes[n].mesh].target_count;
             if (floats > NOH_CLIP_FLOATS_MAX || held.size() >= NOH_CLIP_GROUPS_MAX / 2)
                 return leave_out(f, where,
-                                 ": it moves weights of one node, and too many others have the same targets for a clip "
-                                 "to hold: they move with it. Give their targets other names, or a mesh each");
+                                 ": it moves the weights of a node, and too many others have the same targets for a clip "
+                                 "to hold: they move along. Give the targets of each mesh names of their own");
             held.push_back({ n, c->times[0] });
         }
     if (held.empty()) return;

@@ -97,8 +97,9 @@ static int is_animated(const model *m, uint32_t mesh)
     for (uint32_t c = 0; c < m->clip_count; c++) {
         for (uint32_t i = 0; i < m->clips[c].channel_count; i++) {
             const model_channel *channel = &m->clips[c].channels[i];
-            if (channel->path == MODEL_PATH_WEIGHTS && channel->key_count > 1 && m->nodes[channel->node].mesh == mesh)
+            if (channel->path == MODEL_PATH_WEIGHTS && m->nodes[channel->node].mesh == mesh) {
                 return 1;
+            }
         }
     }
     return 0;
