@@ -619,8 +619,9 @@ typedef struct noh_retarget_rig {
     uint16_t bones[NOH_BONES]; /* the joint of each, or NOH_JOINT_ROOT: none. Hips are needed */
 } noh_retarget_rig;
 
-/* Find bones by the names that noh_ragdoll_find_rows knows, in packs with or without meshes: root, hips, spine, upper
- * chest, head (or the neck below it), arms, legs and toes. Left is at +x.
+/* Find bones by names, as the converter does, in packs with or without meshes: of Unity, Mixamo, Unreal, VRM, Daz and
+ * others. Hips are above both thighs. Where names give no two thighs, the rows of noh_ragdoll_find_rows give hips, spine,
+ * upper chest, head (or the neck below it), arms, legs and toes; left is then at +x.
  * errors   NOT_FOUND there are no two thighs: fill in `bones` by hand */
 noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error);
 

@@ -1,6 +1,7 @@
-/* retarget_rig.c: the bones of a pack's skeleton, by the rows of its ragdoll. */
+/* retarget_rig.c: the bones of a pack's skeleton, by their names, or else by the rows of its ragdoll. */
 #include "core/base/assert_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/bone_names_internal.h"
 #include "life/reach/retarget_internal.h"
 #include "noh/base.h"
 
@@ -67,22 +68,41 @@ static void take_trunk(finding *f, uint32_t chest, noh_retarget_rig *rig)
     }
 }
 
-noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error)
+/* Returns whether there are two thighs. */
+static int find_by_names(const noh_ragdoll_source *source, uint16_t *bones)
+{
+    for (uint32_t j = 0; j < source->joints.joint_count; j++) {
+        const char *name = noh_pack_joint_name(source->pack, source->skeleton, j);
+        const uint32_t bone = name ? noh_bone_of(name) : NOH_BONES;
+        if (bone < NOH_BONES && bones[bone] == NOH_JOINT_ROOT) bones[bone] = (uint16_t)j;
+    }
+    noh_bones_find_trunk(source->joints.parents, bones);
+    return bones[NOH_BONE_UPPER_LEG] != NOH_JOINT_ROOT && bones[NOH_BONE_UPPER_LEG + NOH_BONE_RIGHT] != NOH_JOINT_ROOT;
+}
+
+static noh_result find_by_rows(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error)
 {
     finding f;
     uint32_t chest = NOH_NONE;
-    NOH_ASSERT(source && source->pack && rig);
     memset(&f, 0, sizeof f);
     f.source = source;
     const noh_result result = noh_ragdoll_find_rows(source, f.rows, &f.count, error);
     if (result) return result;
-    rig->skeleton = &source->joints;
-    rig->reference = NULL;
-    for (uint32_t b = 0; b < NOH_BONES; b++) rig->bones[b] = NOH_JOINT_ROOT;
     for (uint32_t i = 1; i < f.count; i++) {
         const uint32_t start = take_limb(&f, i, rig);
         if (start != NOH_NONE && f.rows[i].toward != NOH_RAGDOLL_UPWARD) chest = above(&f, start);
     }
     take_trunk(&f, chest, rig);
     return NOH_OK;
+}
+
+noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error)
+{
+    NOH_ASSERT(source && source->pack && rig);
+    rig->skeleton = &source->joints;
+    rig->reference = NULL;
+    for (uint32_t b = 0; b < NOH_BONES; b++) rig->bones[b] = NOH_JOINT_ROOT;
+    if (find_by_names(source, rig->bones)) return NOH_OK;
+    for (uint32_t b = 0; b < NOH_BONES; b++) rig->bones[b] = NOH_JOINT_ROOT;
+    return find_by_rows(source, rig, error);
 }

@@ -6,7 +6,10 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "convert/clips/rcl.h"
 #include "convert/convert.h"
+#include "convert/retarget/bones.h"
+#include "convert/clips/raw_set.h"
 
 #include "support/humanoid_fixture.h"
 
@@ -327,7 +330,7 @@ static void bones_of_packs_are_found_by_names(void **state)
         uint32_t bone;
         const char *joints[2];
     } expected[] = { { NOH_BONE_HIPS, { "Hips", "hips" } },
-                     { NOH_BONE_HEAD, { "Neck", "head" } },
+                     { NOH_BONE_HEAD, { "Head", "head" } },
                      { NOH_BONE_UPPER_ARM, { "LeftArm", "upperarm.l" } },
                      { NOH_BONE_HAND + NOH_BONE_RIGHT, { "RightHand", "wrist.r" } },
                      { NOH_BONE_LOWER_LEG, { "LeftLeg", "lowerleg.l" } },
@@ -356,6 +359,47 @@ static void bones_of_packs_are_found_by_names(void **state)
     for (uint32_t i = 0; i < 2; i++) buffer_free(&bytes[i]);
 }
 
+static const char *name_of(const raw_skeleton *raw, uint16_t joint)
+{
+    return joint == NOH_JOINT_ROOT ? "none" : raw->joints[joint].name;
+}
+
+/* Every kind of rig in the assets; the last two are no person. */
+static void packs_and_recordings_have_the_same_bones(void **state)
+{
+    static const char *const names[] = { "Knight__Idle", "RobotExpressive__Wave", "ad_zombie",
+                                         "cmu_01_03",    "cmu_indian_04",         "cmu_martial_03",
+                                         "cmu_salsa_01", "Fox__Survey",           "CesiumMan" };
+    (void)state;
+    for (uint32_t i = 0; i < TEST_COUNT(names); i++) {
+        char path[64];
+        uint16_t bones[NOH_BONES];
+        noh_pack pack;
+        noh_ragdoll_source from;
+        noh_retarget_rig rig;
+        raw_set *set;
+        model_error error;
+        byte_buffer bytes = skeleton_pack(names[i], &pack, &from);
+        const noh_result result = noh_retarget_rig_make(&from, &rig, NULL);
+        (void)snprintf(path, sizeof path, "clips/%s.rcl", names[i]);
+        if (rcl_read(test_asset(path), &set, &error)) fail_msg("%s: %s", names[i], error.what);
+        bones_find(&set->skeleton, bones);
+        assert_int_equal(result, i < 7 ? NOH_OK : NOH_ERR_NOT_FOUND);
+        for (uint32_t b = 0; b < NOH_BONES; b++) {
+            const uint16_t own = rig.bones[b];
+            const char *found = own == NOH_JOINT_ROOT ? "none" : noh_pack_joint_name(&pack, 0, own);
+            if (result == NOH_OK && strcmp(found, name_of(&set->skeleton, bones[b])) != 0)
+                fail_msg("%s: bone %u is %s, not %s", names[i], b, found, name_of(&set->skeleton, bones[b]));
+        }
+        if (i == 1) {
+            assert_string_equal(name_of(&set->skeleton, bones[NOH_BONE_HEAD]), "Head");
+            assert_string_equal(name_of(&set->skeleton, bones[NOH_BONE_HIPS]), "Body");
+        }
+        raw_set_free(set);
+        buffer_free(&bytes);
+    }
+}
+
 static const struct CMUnitTest tests[] = { cmocka_unit_test(one_person_keeps_its_pose),
                                            cmocka_unit_test(limbs_point_as_the_source_does),
                                            cmocka_unit_test(feet_stay_where_the_source_stands),
@@ -364,6 +408,7 @@ static const struct CMUnitTest tests[] = { cmocka_unit_test(one_person_keeps_its
                                            cmocka_unit_test(roots_and_spines_may_differ),
                                            cmocka_unit_test(a_lower_level_has_the_first_joints_alone),
                                            cmocka_unit_test(what_cannot_be_mapped_is_refused),
-                                           cmocka_unit_test(bones_of_packs_are_found_by_names) };
+                                           cmocka_unit_test(bones_of_packs_are_found_by_names),
+                                           cmocka_unit_test(packs_and_recordings_have_the_same_bones) };
 
 TEST_MAIN(tests, NULL, NULL)

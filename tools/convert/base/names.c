@@ -7,6 +7,7 @@
 #include "convert/base/input_file.h"
 #include "convert/base/names_table.h"
 #include "convert/base/text_scan.h"
+#include "life/reach/bone_names_internal.h"
 
 #define KEY_BYTES NOH_NAME_BYTES_MAX
 #define WORD_MAX 60 /* bytes of a word of the table */
@@ -26,103 +27,6 @@ typedef struct name_rows {
 
 static __thread name_rows in_use;
 
-/* ---- keys ---- */
-
-static int is_small(char c)
-{
-    return c >= 'a' && c <= 'z';
-}
-
-static int is_capital(char c)
-{
-    return c >= 'A' && c <= 'Z';
-}
-
-static int is_digit(char c)
-{
-    return c >= '0' && c <= '9';
-}
-
-static int is_in_word(char c)
-{
-    return is_small(c) || is_capital(c) || is_digit(c) || (unsigned char)c >= 0x80u;
-}
-
-/* Without a namespace, the node of "node.target", and the number of a copy. */
-static const char *core_of(const char *name, size_t *size)
-{
-    const char *at = name, *dot;
-    for (const char *c = name; *c; c++) {
-        if ((*c == ':' || *c == '|') && c[1]) at = c + 1;
-    }
-    *size = strlen(at);
-    dot = strrchr(at, '.');
-    if (dot && dot > at && dot[1] && strspn(dot + 1, "0123456789") == strlen(dot + 1) && strlen(dot) == 4) {
-        *size = (size_t)(dot - at);
-    } else if (dot && strlen(dot + 1) > 2 && !is_digit(dot[1])) {
-        at = dot + 1;
-        *size = strlen(at);
-    }
-    return at;
-}
-
-/* A word ends at a separator, before a capital behind a small letter, and before a capital and a small letter behind a
- * capital: L Eye in LEye. */
-static size_t word_length(const char *at, size_t left)
-{
-    size_t n = 0;
-    while (n < left && is_in_word(at[n])) {
-        if (n && is_capital(at[n]) && (is_small(at[n - 1]) || (n + 1 < left && is_small(at[n + 1])))) break;
-        n++;
-    }
-    return n;
-}
-
-static size_t take_side(const char *word, size_t length, char *side, size_t *from)
-{
-    static const char *const words[] = { "left", "right" };
-    *from = 0;
-    if (*side) return length;
-    if (length == 1 && (*word == 'l' || *word == 'r')) {
-        *side = *word;
-        return 0;
-    }
-    for (int i = 0; i < 2; i++) {
-        const size_t size = strlen(words[i]);
-        const int first = length >= size && memcmp(word, words[i], size) == 0;
-        const int last = !first && length >= size && memcmp(word + length - size, words[i], size) == 0;
-        if (!(first || last) || (length > size && length < size + 3)) continue;
-        *side = words[i][0];
-        *from = first ? size : 0;
-        return length - size;
-    }
-    return length;
-}
-
-/* The words of a name, joined, but the first that is a side. Returns the side, 0: none. */
-static char key_of(const char *name, char key[KEY_BYTES])
-{
-    size_t left, count = 0;
-    const char *at = core_of(name, &left);
-    char side = 0;
-    while (left) {
-        const size_t length = word_length(at, left);
-        if (length && count + length < KEY_BYTES - 1u) {
-            size_t from, rest;
-            for (size_t i = 0; i < length; i++) {
-                key[count + i] = is_capital(at[i]) ? (char)(at[i] - 'A' + 'a') : at[i];
-            }
-            rest = take_side(key + count, length, &side, &from);
-            memmove(key + count, key + count + from, rest);
-            count += rest;
-        }
-        at += length ? length : 1u;
-        left -= length ? length : 1u;
-    }
-    key[count] = '\0';
-    return side;
-}
-
 /* ---- reading ---- */
 
 static int add_row(name_rows *all, name_kind kind, int is_own, const char *means, const char *name)
@@ -140,7 +44,7 @@ static int add_row(name_rows *all, name_kind kind, int is_own, const char *means
     if (kind != NAME_MATERIAL) {
         (void)snprintf(spelled, sizeof spelled, "%.*s%s%.60s", star ? (int)(star - name) : WORD_MAX, name,
                        star ? "_left_" : "", star ? star + 1 : "");
-        row->side = key_of(spelled, key);
+        row->side = noh_name_key(spelled, key);
         if (star) row->side = '*';
     }
     row->means = model_string(means);
@@ -196,6 +100,31 @@ static int read_text(name_rows *all, const char *text, size_t size, model_error 
     return failed;
 }
 
+/* A line of the table from one of the library: KIND WHAT NAME..., where names of a side have a '*'. */
+static int read_keys(name_rows *all, const char *start, const char *keys, int has_side, model_error *error)
+{
+    char line[256];
+    size_t n = (size_t)snprintf(line, sizeof line, "%s", start);
+    for (const char *c = keys; *c && n + 3u < sizeof line; c++) {
+        if (has_side && (c == keys || c[-1] == ' ')) line[n++] = '*';
+        line[n++] = *c;
+    }
+    return read_text(all, line, n, error);
+}
+
+/* The library's names of bones come first. */
+static int read_bones(name_rows *all, model_error *error)
+{
+    int failed = read_keys(all, "strip ", noh_bone_strips, 0, error);
+    for (uint32_t i = 0; !failed && i < NOH_BONE_NAMES; i++) {
+        const noh_bone_name *bone = &noh_bone_names[i];
+        char start[64];
+        (void)snprintf(start, sizeof start, "joint %s ", bone->vrm);
+        failed = read_keys(all, start, bone->keys, bone->vrm[0] == '*', error);
+    }
+    return failed;
+}
+
 int names_use(const char *path, model_error *error)
 {
     size_t size;
@@ -204,6 +133,7 @@ int names_use(const char *path, model_error *error)
     names_free();
     if (text) failed = read_text(&in_use, text, size, error);
     free(text);
+    failed = failed || read_bones(&in_use, error);
     for (uint32_t i = 0; !failed && names_table[i]; i++) {
         failed = read_text(&in_use, names_table[i], strlen(names_table[i]), error);
     }
@@ -242,19 +172,9 @@ static const name_row *find_key(const name_rows *all, name_kind kind, const char
 /* Cut one of the table's beginnings or endings off. 0: there is none, or nothing else is left. */
 static int strip(const name_rows *all, char *key)
 {
-    const size_t length = strlen(key);
     for (uint32_t i = 0; i < all->count; i++) {
         const name_row *row = &all->rows[i];
-        const size_t cut = row->kind == NAME_STRIP ? strlen(row->name) : 0;
-        if (!cut || cut >= length) continue;
-        if (memcmp(key, row->name, cut) == 0) {
-            memmove(key, key + cut, length - cut + 1u);
-            return 1;
-        }
-        if (memcmp(key + length - cut, row->name, cut) == 0) {
-            key[length - cut] = '\0';
-            return 1;
-        }
+        if (row->kind == NAME_STRIP && noh_name_cut(key, row->name, strlen(row->name))) return 1;
     }
     return 0;
 }
@@ -263,7 +183,7 @@ int names_find(name_kind kind, const char *name, char means[NOH_NAME_BYTES_MAX],
 {
     const name_rows *all = rows_in_use();
     char key[KEY_BYTES];
-    const char side = key_of(name, key), *star;
+    const char side = noh_name_key(name, key), *star;
     const name_row *row = find_key(all, kind, key, side);
     int stripped = 0;
     while (!row && strip(all, key)) {

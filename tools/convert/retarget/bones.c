@@ -7,80 +7,35 @@
 #include "convert/base/input_file.h"
 #include "convert/base/names.h"
 #include "convert/base/text_scan.h"
-
-static const char *const middle[] = { "root", "hips", "spine", "chest", "upperChest", "neck", "head" },
-                         *const side[] = { "Shoulder",
-                                           "UpperArm",
-                                           "LowerArm",
-                                           "Hand",
-                                           "UpperLeg",
-                                           "LowerLeg",
-                                           "Foot",
-                                           "Toes",
-                                           "ThumbMetacarpal",
-                                           "ThumbProximal",
-                                           "ThumbDistal",
-                                           "IndexProximal",
-                                           "IndexIntermediate",
-                                           "IndexDistal",
-                                           "MiddleProximal",
-                                           "MiddleIntermediate",
-                                           "MiddleDistal",
-                                           "RingProximal",
-                                           "RingIntermediate",
-                                           "RingDistal",
-                                           "LittleProximal",
-                                           "LittleIntermediate",
-                                           "LittleDistal" };
+#include "life/reach/bone_names_internal.h"
 
 uint32_t bone_named(const char *name)
 {
-    const int is_right = strncmp(name, "right", 5) == 0;
-    for (uint32_t i = 0; i < sizeof middle / sizeof *middle; i++) {
-        if (strcmp(name, middle[i]) == 0) return i;
-    }
-    for (uint32_t i = 0; i < sizeof side / sizeof *side && (is_right || strncmp(name, "left", 4) == 0); i++) {
-        if (strcmp(name + (is_right ? 5 : 4), side[i]) == 0) {
-            return NOH_BONE_SHOULDER + i + (is_right ? (uint32_t)NOH_BONE_RIGHT : 0u);
-        }
+    const int is_right = strncmp(name, "right", 5) == 0, is_left = strncmp(name, "left", 4) == 0;
+    if (strcmp(name, "root") == 0) return NOH_BONE_ROOT;
+    for (uint32_t i = 0; i < NOH_BONE_NAMES; i++) {
+        const char *vrm = noh_bone_names[i].vrm;
+        if (*vrm != '*' && strcmp(name, vrm) == 0) return NOH_BONE_HIPS + i;
+        if (*vrm == '*' && (is_left || is_right) && strcmp(name + (is_right ? 5 : 4), vrm + 1) == 0)
+            return NOH_BONE_HIPS + i + (is_right ? (uint32_t)NOH_BONE_RIGHT : 0u);
     }
     return NOH_BONES;
 }
 
-static uint32_t parent_of(const raw_skeleton *s, uint32_t joint)
-{
-    return s->joints[joint].parent;
-}
-
-static int is_above(const raw_skeleton *s, uint32_t above, uint32_t joint)
-{
-    while (joint != MODEL_NONE && joint != above) joint = parent_of(s, joint);
-    return joint != MODEL_NONE;
-}
-
-/* Hips are above both thighs, whatever is named so. What is above them is the root. */
-static void find_trunk(const raw_skeleton *s, uint16_t *bones)
-{
-    const uint16_t left = bones[NOH_BONE_UPPER_LEG], right = bones[NOH_BONE_UPPER_LEG + NOH_BONE_RIGHT];
-    uint32_t at = left == NOH_JOINT_ROOT || right == NOH_JOINT_ROOT ? MODEL_NONE : parent_of(s, left);
-    while (at != MODEL_NONE && !is_above(s, at, right)) at = parent_of(s, at);
-    if (at != MODEL_NONE && !is_above(s, bones[NOH_BONE_HIPS], at)) bones[NOH_BONE_HIPS] = (uint16_t)at;
-    if (bones[NOH_BONE_ROOT] != NOH_JOINT_ROOT || bones[NOH_BONE_HIPS] == NOH_JOINT_ROOT) return;
-    for (at = parent_of(s, bones[NOH_BONE_HIPS]); at != MODEL_NONE; at = parent_of(s, at)) {
-        bones[NOH_BONE_ROOT] = (uint16_t)at;
-    }
-}
-
 void bones_find(const raw_skeleton *skeleton, uint16_t *bones)
 {
+    uint16_t parents[NOH_JOINTS_MAX];
+    const uint32_t count = skeleton->joint_count < NOH_JOINTS_MAX ? skeleton->joint_count : NOH_JOINTS_MAX;
     for (uint32_t b = 0; b < NOH_BONES; b++) bones[b] = NOH_JOINT_ROOT;
-    for (uint32_t j = 0; j < skeleton->joint_count && j < NOH_JOINT_ROOT; j++) {
+    for (uint32_t j = 0; j < count; j++) {
         char means[NOH_NAME_BYTES_MAX];
-        const char *name = skeleton->joints[j].name;
-        const uint32_t bone = name && names_find(NAME_JOINT, name, means, NULL) ? bone_named(means) : NOH_BONES;
+        const raw_joint *joint = &skeleton->joints[j];
+        const uint32_t bone = joint->name && names_find(NAME_JOINT, joint->name, means, NULL) ? bone_named(means)
+                                                                                              : NOH_BONES;
+        parents[j] = joint->parent == MODEL_NONE ? NOH_JOINT_ROOT : (uint16_t)joint->parent;
         if (bone < NOH_BONES && bones[bone] == NOH_JOINT_ROOT) bones[bone] = (uint16_t)j;
     }
-    find_trunk(skeleton, bones);
+    noh_bones_find_trunk(parents, bones);
 }
 
 /* ---- a file ---- */
