@@ -305,6 +305,39 @@ static void bad_frames_repeat_the_nearest(void **state)
                  "the clip ends before the last frames, which cannot be read (1 of them)");
 }
 
+/* Frames of three numbers, x, x + 1 and x + 2, on lines of any length. */
+static void frames_may_be_wrapped(void **state)
+{
+    static const struct {
+        const char *head, *rows, *warning; /* warning NULL: none */
+        uint32_t count;
+        double x[4];
+    } all[] = {
+        { "Frames: 3", "1 2\n3\n4 5\n6\n7 8\n9\n", NULL, 3, { 1, 4, 7 } },
+        { "Frames: 3", "1\n2\n3\n\n4\n5\n6\n7\n8\n9", NULL, 3, { 1, 4, 7 } },
+        { "Frames: 4", "1 2 3 4\n5 6 7 8\n9 2 3 4\n", NULL, 4, { 1, 4, 7, 2 } },
+        { "Frames: 3", "1 2 3 4 5 6 7 8 9\n", NULL, 3, { 1, 4, 7 } },
+        { "Frames: 0", "1 2\n3\n4 5\n6\n", "gives no frames", 2, { 1, 4 } },
+        { "Frames: 3", "1 2\n3\n4 ?\n6\n7 8\n9\n", "line 12: '?' is not a number; 1 frame", 3, { 1, 1, 7 } },
+        { "Frames: 3", "1 2\n3\n4 5\n6\n7 8\n", "line 15: frame 2 has 2 numbers", 2, { 1, 4 } },
+        { "Frames: 2", "1 2\n3\n4 5\n6\n7 8\n9\n", "more frames than", 2, { 1, 4 } },
+    };
+    (void)state;
+    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
+        char text[512];
+        raw_set *set;
+        (void)snprintf(text, sizeof text, HEAD "%s\nFrame Time: 0.01\n%s", all[i].head, all[i].rows);
+        set = load(text);
+        if (all[i].warning) check_warned(text, all[i].count, all[i].warning);
+        if (!all[i].warning && set->warning) fail_msg("%zu: %s", i, set->warning);
+        assert_int_equal(set->clips[0].frame_count, all[i].count);
+        for (uint32_t k = 0; k < all[i].count; k++) {
+            check_frame(set, k, all[i].x[k], all[i].x[k] + 1.0, all[i].x[k] + 2.0);
+        }
+        raw_set_free(set);
+    }
+}
+
 /* A clip ends before frames at its end that cannot be read. */
 static void bad_frames_end_the_clip(void **state)
 {
@@ -594,6 +627,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(signs_do_not_jump),
     cmocka_unit_test(whole_rates_are_recognised),
     cmocka_unit_test(bad_frames_repeat_the_nearest),
+    cmocka_unit_test(frames_may_be_wrapped),
     cmocka_unit_test(bad_frames_end_the_clip),
     cmocka_unit_test(bad_clip_headers),
     cmocka_unit_test(bad_hierarchies_are_refused),

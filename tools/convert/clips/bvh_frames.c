@@ -121,18 +121,57 @@ static int read_frame_count(bvh_file *f, uint32_t *out)
     return 0;
 }
 
+/* Whether frames are wrapped over lines, or share them: most lines then have other counts than the channels, and the
+ * counts fit frames if lines mean nothing. Else a line that is too short or too long is a damaged frame. */
+static int find_wrapped(const bvh_file *f)
+{
+    text_scan s = f->text;
+    const uint64_t channels = f->channel_count, frames = f->any_count ? 0 : f->frame_count;
+    uint64_t lines = 0, whole = 0, all = 0;
+    while (text_next_line(&s)) {
+        uint64_t count = 0;
+        while (text_next_on_line(&s).size) count++;
+        whole += count == channels;
+        all += count;
+        lines++;
+    }
+    if (2u * whole >= lines || lines == frames) return 0;
+    if (!frames) return all % channels == 0;
+    return all == frames * channels || (lines > frames && all < lines * channels);
+}
+
+static int is_at_frame(bvh_file *f)
+{
+    text_scan ahead = f->text;
+    return f->is_wrapped ? text_next(&ahead).size != 0 : text_next_line(&f->text);
+}
+
+static text_word next_value(bvh_file *f)
+{
+    return f->is_wrapped ? text_next(&f->text) : text_next_on_line(&f->text);
+}
+
+static int read_value(bvh_file *f, uint32_t frame, uint32_t channel, double *value)
+{
+    text_word word = next_value(f);
+    if (word.size == 0)
+        return text_fail(&f->text, word.line, "frame %u has %u numbers; the channels need %u", frame, channel,
+                         f->channel_count);
+    if (text_number(&f->text, word, value)) return 1;
+    return fabs(*value) > (double)NOH_NUMBER_MAX ? text_fail(&f->text, word.line, "the number %g is too large", *value)
+                                                 : 0;
+}
+
+/* To the end of the frame, though a value of it is damaged. */
 static int read_values(bvh_file *f, uint32_t frame, double *values)
 {
     for (uint32_t c = 0; c < f->channel_count; ++c) {
-        text_word word = text_next_on_line(&f->text);
-        if (word.size == 0)
-            return text_fail(&f->text, word.line, "frame %u has %u numbers; the channels need %u", frame, c,
-                             f->channel_count);
-        if (text_number(&f->text, word, &values[c])) return 1;
-        if (fabs(values[c]) > (double)NOH_NUMBER_MAX)
-            return text_fail(&f->text, word.line, "the number %g is too large", values[c]);
+        if (!read_value(f, frame, c, &values[c])) continue;
+        for (; f->is_wrapped && c + 1u < f->channel_count; ++c) (void)text_next(&f->text);
+        if (!f->is_wrapped) (void)text_rest_of_line(&f->text);
+        return 1;
     }
-    text_word word = text_next_on_line(&f->text);
+    text_word word = f->is_wrapped ? (text_word){ NULL, 0, 0 } : text_rest_of_line(&f->text);
     return word.size == 0 ? 0
                           : text_fail(&f->text, word.line, "frame %u has more numbers than the %u channels", frame,
                                       f->channel_count);
@@ -222,11 +261,10 @@ static int read_frames(bvh_file *f, double *values, uint32_t room)
 {
     model_error *reason = f->text.error, bad = { "", "" };
     uint32_t frame = 0, end = 0, wrong = 0, held = 0;
-    for (; frame < f->frame_count && frame < room && text_next_line(&f->text); ++frame) {
+    for (; frame < f->frame_count && frame < room && is_at_frame(f); ++frame) {
         if (read_values(f, frame, values)) {
             if (!wrong++) bad = *reason;
             reason->what[0] = reason->where[0] = '\0';
-            (void)text_rest_of_line(&f->text);
             if (end) copy_frame(&f->set->clips[0], frame - 1u, frame);
             continue;
         }
@@ -242,7 +280,7 @@ static int read_frames(bvh_file *f, double *values, uint32_t room)
                             : text_fail(&f->text, f->text.line, "the file ends after 0 of %u frames", f->frame_count);
     }
     if (end_clip(f, frame, end, held, &bad)) return 1;
-    return text_next_line(&f->text) ? warn(f, "the file has more frames than its header gives; they were left out") : 0;
+    return is_at_frame(f) ? warn(f, "the file has more frames than its header gives; they were left out") : 0;
 }
 
 /* As many frames as were announced, but no more than the rest of the file can hold: a number takes at least two bytes
@@ -259,6 +297,7 @@ int bvh_read_frames(bvh_file *f)
     if (expect_label(f, "Frames") || read_frame_count(f, &f->frame_count) || expect_label(f, "Frame Time") ||
         read_sample_rate(f, &clip->sample_rate_hz))
         return 1;
+    f->is_wrapped = find_wrapped(f);
     double *values = model_zeros(f->channel_count, sizeof *values);
     const uint32_t room = frames_to_hold(f);
     int failed = !values || raw_clip_alloc(clip, room, f->joint_count) ? bvh_out_of_memory(f)

@@ -27,6 +27,7 @@ typedef struct bvh_file {
     int end_joints;
     uint32_t frame_count; /* as announced */
     int any_count;        /* 1: it was not, and frame_count is a limit */
+    int is_wrapped;       /* frames end by their numbers, not with their lines */
     uint32_t joint_count, joint_capacity, channel_count, channel_capacity;
     bvh_joint *joints;
     bvh_channel *channels;
