@@ -506,6 +506,7 @@ NOH_NEVER_INLINE noh_result noh_stage_carve_slot(const noh_stage *s, uint32_t ki
     s->kinds[kind].first_actor = k.first_actor;
     s->kinds[kind].actors = k.actors;
     carve_state(&state, &d, &needs, &k, &b.of[kind].pools); /* for where the pools lie */
+    s->slots->of[kind].used = (uint32_t)state.used;
     *out = b.of[kind];
     return NOH_OK;
 }

@@ -245,6 +245,7 @@ typedef struct noh_stage_slot {
     uint8_t *state, *own; /* [room.state_bytes], [room.kind_bytes] of the plan; NULL: the kind stays */
     uint8_t *views;       /* of the first job */
     uint32_t hash;        /* of the kind that is there; 0: none */
+    uint32_t used;        /* bytes of `state` that are the kind's */
 } noh_stage_slot;
 
 /* Of a stage in which a kind changes. */

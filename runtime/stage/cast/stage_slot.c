@@ -154,6 +154,7 @@ static void empty(noh_stage *s, uint32_t kind)
     }
     for (uint32_t j = 0; j < s->desc.job_count; j++) s->jobs[j].views[kind] = NULL;
     s->slots->of[kind].hash = 0;
+    s->slots->of[kind].used = 0;
 }
 
 /* What wears garments is not worn itself (noh_stage_bad_worn has the other direction). */
@@ -187,7 +188,6 @@ static noh_result open_slot(noh_stage *s, uint32_t kind, noh_error *error)
 {
     noh_stage_kind_blocks blocks;
     noh_result result;
-    memset(s->slots->of[kind].state, 0, (size_t)s->plan->kinds[kind].room.state_bytes); /* a state came with anything */
     result = noh_stage_carve_slot(s, kind, &blocks, error);
     if (result == NOH_OK) result = noh_stage_open_kind(s, &s->desc, kind, &blocks, error);
     if (result == NOH_OK) result = noh_stage_open_pools(s, kind, blocks.pools, error);

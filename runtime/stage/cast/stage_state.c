@@ -41,6 +41,69 @@ static const void *in_copy(const reader *r, const void *own)
     return r->state + ((const uint8_t *)own - r->s->state);
 }
 
+/* What no kind uses is 0 in each state that a stage has: else the same stage would have several hashes. */
+static int is_zero(const void *at, size_t bytes)
+{
+    const uint8_t *b = at;
+    size_t i = 0;
+    while (i < bytes && !b[i]) i++;
+    return i == bytes;
+}
+
+/* Up to where the next part of a state begins. */
+static int has_clean_end(const reader *r, const uint8_t *part, size_t bytes)
+{
+    return !bytes || is_zero((const uint8_t *)in_copy(r, part) + bytes, (0u - bytes) % NOH_MEMORY_ALIGN);
+}
+
+static const char *bad_unused(const reader *r, uint32_t kind)
+{
+    const noh_stage_kind *k = &r->s->kinds[kind];
+    const size_t actors = k->desc->actor_count;
+    const noh_stage_module *source = &k->modules[NOH_SLOT_SOURCE];
+    const noh_stage_slot *slot = r->s->slots ? &r->s->slots->of[kind] : NULL;
+    if (slot && slot->own) {
+        const size_t bytes = (size_t)r->s->plan->kinds[kind].room.state_bytes;
+        if (!is_zero((const uint8_t *)in_copy(r, slot->state) + slot->used, bytes - slot->used))
+            return "state: the slot of a kind has bytes that its kind does not use, or has no kind: take the state of "
+                   "a stage as noh_stage_state gives it";
+    }
+    if (!actors) return NULL;
+    return has_clean_end(r, k->characters, actors * k->character_bytes) &&
+                   has_clean_end(r, (const void *)k->held, actors * k->desc->held_float_count * sizeof *k->held) &&
+                   has_clean_end(r, source->states, actors * source->stride) &&
+                   has_clean_end(r, k->modifier_states, actors * k->modifier_bytes)
+               ? NULL
+               : "state: bytes between the parts of a kind are not 0";
+}
+
+static const char *bad_head(const reader *r)
+{
+    const noh_stage_head *head = (const void *)r->state;
+    for (uint32_t i = 0; i < NOH_STAGE_KINDS_MAX; i++) {
+        const noh_stage_free *f = &head->kinds[i];
+        const int is_there = i < r->s->desc.kind_count && r->s->kinds[i].desc->actor_count;
+        if (f->reserved || (!is_there && !is_zero(f, sizeof *f))) return "state: a head has bytes that nothing uses";
+    }
+    return NULL;
+}
+
+/* As despawning leaves it. */
+static int is_gone(const reader *r, const noh_stage_kind *k, uint32_t index)
+{
+    const noh_stage_module *source = &k->modules[NOH_SLOT_SOURCE];
+    const size_t held = k->desc->held_float_count;
+    const noh_stage_actor *a = (const noh_stage_actor *)in_copy(r, k->actors) + index;
+    noh_stage_actor nobody;
+    memset(&nobody, 0, sizeof nobody);
+    nobody.generation = a->generation;
+    nobody.next_free = a->next_free;
+    return memcmp(&nobody, a, sizeof nobody) == 0 &&
+           is_zero(in_copy(r, k->held + index * held), held * sizeof *k->held) &&
+           is_zero(in_copy(r, source->states + index * source->stride), source->stride) &&
+           is_zero(in_copy(r, k->modifier_states + index * k->modifier_bytes), k->modifier_bytes);
+}
+
 static int is_sound(double x)
 {
     return x >= -(double)NOH_SOUND_MAX && x <= (double)NOH_SOUND_MAX;
@@ -75,6 +138,8 @@ static const char *bad_actor(const reader *r, const noh_stage_kind *k, const noh
     if (a->alive > 1u || a->was_seen > 3u || a->on_its_way > 1u) return "state: an actor has a bad flag";
     if (a->next_free > k->desc->actor_count) return "state: bad list of free actors";
     if (!a->alive) return NULL;
+    if (a->reserved || !is_zero(a->look.reserved, sizeof a->look.reserved))
+        return "state: an actor has bytes that nothing uses";
     what = bad_place(&a->place);
     if (!what) what = bad_place(&a->before);
     for (int i = 0; i < 3 && !what; i++) {
@@ -132,7 +197,7 @@ static const char *bad_list(const reader *r, const noh_stage_kind *k, const noh_
 static noh_result check_modules(const reader *r, const noh_stage_kind *k, uint32_t index, noh_error *error)
 {
     const noh_stage_modifier_head *head = in_copy(r, k->modifier_states + index * k->modifier_bytes);
-    if (k->modifier_bytes && head->was_posed > 1u) {
+    if (k->modifier_bytes && (head->was_posed > 1u || head->reserved)) {
         return noh_fail(error, NOH_ERR_DATA, "state: bad head of an actor's modifiers", 0, 0);
     }
     return noh_stage_check_modules(k, index, r->s->state, r->state, error);
@@ -159,11 +224,13 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
     const noh_stage_kind *k = &r->s->kinds[kind];
     const noh_stage_actor *actors = in_copy(r, k->actors);
     const noh_stage_head *head = (const void *)r->state;
-    const char *what = NULL;
+    const char *what = bad_unused(r, kind);
     noh_result result = NOH_OK;
+    if (what) return noh_fail(error, NOH_ERR_DATA, what, kind, 0);
     for (uint32_t i = 0; i < k->desc->actor_count && result == NOH_OK; i++) {
         const uint8_t *character = in_copy(r, k->characters + (size_t)i * k->character_bytes);
         what = bad_actor(r, k, &actors[i]);
+        if (!what && !actors[i].alive && !is_gone(r, k, i)) what = "state: an actor that is not there has a state";
         if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc->held_float_count));
         if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
         if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);
@@ -194,6 +261,8 @@ static noh_result check_state(const noh_stage *s, const void *state, size_t byte
         return noh_fail(error, NOH_ERR_DATA, "not a state of a stage with this plan and these kinds in its slots", 0,
                         s->state_bytes);
     }
+    const char *what = NOH_PAGE ? NULL : bad_head(&r);
+    if (what) return noh_fail(error, NOH_ERR_DATA, what, 0, 0);
     for (uint32_t i = 0; !NOH_PAGE && i < s->desc.kind_count && result == NOH_OK; i++) {
         result = check_kind(&r, i, error);
     }

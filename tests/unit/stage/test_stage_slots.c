@@ -375,24 +375,51 @@ static void fields_of_slots_are_checked(void **state)
     close_show(&w);
 }
 
-/* Whatever a state has where an empty slot keeps nothing: the kind that comes begins as ever. */
-static void bytes_of_empty_slots_are_not_believed(void **state)
+/* A byte of the stage's state that nothing uses: a state with another value there is refused. */
+static void expect_unused(noh_stage *s, const void *at)
 {
     size_t bytes;
-    uint8_t *copy;
-    show w, clean;
-    (void)state;
-    open_show(&w), open_show(&clean);
-    make_slots(&w), make_slots(&clean);
-    copy = test_aligned(noh_stage_state(w.c.stage, &bytes), w.c.plan.state_bytes);
-    memset(copy + (w.c.stage->slots->of[1].state - w.c.stage->state), 0xff, w.c.plan.kinds[1].room.state_bytes);
-    assert_int_equal(noh_stage_set_state(w.c.stage, copy, bytes, &said), NOH_OK);
-    put(w.c.stage, 1, &w.candidates[4]), put(clean.c.stage, 1, &clean.candidates[4]);
-    (void)enter(w.c.stage, 1, 0, "bow"), (void)enter(clean.c.stage, 1, 0, "bow");
-    frame(w.c.stage, 0), frame(clean.c.stage, 0);
-    assert_true(noh_stage_hash(w.c.stage) == noh_stage_hash(clean.c.stage));
+    uint8_t *copy = test_aligned(noh_stage_state(s, &bytes), s->state_bytes);
+    const uint64_t before = noh_stage_hash(s);
+    copy[(const uint8_t *)at - s->state] = 1;
+    assert_int_equal(noh_stage_set_state(s, copy, bytes, &said), NOH_ERR_DATA);
+    assert_true(noh_stage_hash(s) == before);
+    copy[(const uint8_t *)at - s->state] = 0;
+    assert_int_equal(noh_stage_set_state(s, copy, bytes, &said), NOH_OK);
     free(copy);
-    close_show(&w), close_show(&clean);
+}
+
+/* So the state of a stage has one hash: a kind that comes or goes clears nothing that a state brought. */
+static void bytes_that_nothing_uses_are_refused(void **state)
+{
+    const noh_stage_kind *k;
+    size_t held;
+    show w;
+    (void)state;
+    open_show(&w);
+    make_slots(&w);
+    noh_stage *s = w.c.stage;
+    const noh_stage_slot *lies = &s->slots->of[1];
+    const size_t room = (size_t)w.c.plan.kinds[1].room.state_bytes;
+    expect_unused(s, lies->state);
+    expect_unused(s, lies->state + room / 2u);
+    expect_unused(s, lies->state + room - 1u);
+    expect_unused(s, &s->head->kinds[1].count);
+    expect_unused(s, &s->head->kinds[NOH_STAGE_KINDS_MAX - 1u]);
+    put(s, 1, &w.candidates[2]); /* 2 of 9 actors */
+    k = &s->kinds[1];
+    assert_in_range(lies->used, 1, room - 1u);
+    expect_unused(s, lies->state + lies->used);
+    expect_unused(s, lies->state + room - 1u);
+    expect_unused(s, &s->head->kinds[1].reserved);
+    expect_unused(s, &k->actors[0].place.scale); /* of an actor that is not there */
+    (void)enter(s, 1, 0, "dance");
+    frame(s, 0);
+    expect_unused(s, &k->actors[0].reserved);
+    expect_unused(s, &k->actors[0].look.reserved[1]);
+    held = k->desc->actor_count * (size_t)k->desc->held_float_count * sizeof *k->held;
+    if (held % NOH_MEMORY_ALIGN) expect_unused(s, (const uint8_t *)k->held + held);
+    close_show(&w);
 }
 
 /* Bits of a state flipped, in slots and in what they leave free. */
@@ -459,8 +486,9 @@ int main(void)
         cmocka_unit_test(any_order_leaves_what_runs_alone),
         cmocka_unit_test(the_plan_has_every_byte),
         cmocka_unit_test(what_does_not_fit_is_refused),
-        cmocka_unit_test(garments_are_not_worn_by_garments), cmocka_unit_test(fields_of_slots_are_checked),
-        cmocka_unit_test(bytes_of_empty_slots_are_not_believed),
+        cmocka_unit_test(garments_are_not_worn_by_garments),
+        cmocka_unit_test(fields_of_slots_are_checked),
+        cmocka_unit_test(bytes_that_nothing_uses_are_refused),
         cmocka_unit_test(a_damaged_state_does_no_harm),
     };
     return cmocka_run_group_tests(tests, open_packs, close_packs);
