@@ -123,10 +123,13 @@ static noh_result open_mask(noh_stage_kind *k, const noh_layer_desc *d, noh_stag
     const uint32_t joints = k->set.joint_count, floats = k->set.float_count;
     uint8_t *mask = k->masks + k->set.mask_count * (joints + floats);
     noh_result result = fill_mask(k, d->joints, mask_joints, mask, joints, where,
-                                  "joints of a layer: the skeleton has no joint of this name", error);
+                                  "joints of a layer: the skeleton has no joint of this name: noh info lists them",
+                                  error);
     if (result == NOH_OK && k->bank) {
         result = fill_mask(k, d->floats, mask_floats, mask + joints, floats, where,
-                           "floats of a layer: no target of the meshes and no float of the clips has this name", error);
+                           "floats of a layer: no target of the meshes and no float of the clips has this name: "
+                           "noh info lists them",
+                           error);
     } else if (!k->bank) {
         noh_mask_fill(mask + joints, floats, 0);
     }

@@ -196,5 +196,7 @@ noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t s
     add_links(&s, links, is_of_eyes);
     if (place(&s, eyes)) return NOH_OK;
     return noh_fail(error, NOH_ERR_NOT_FOUND,
-                    "a face has no joints for its eyes, and no targets that shut or turn both", 0, 0);
+                    "a face has no joints for its eyes, and no targets that shut or turn both: set "
+                    "noh_kind_face.face.eyes to their centres",
+                    0, 0);
 }

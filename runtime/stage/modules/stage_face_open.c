@@ -200,11 +200,13 @@ static const char *open_shared(const noh_kind_desc *d, const noh_kind_face *from
         memcpy(f->rules.mouth, from->rules.mouth, sizeof f->rules.mouth);
     }
     f->flags = from->flags;
-    if (!open_joints(d, skeleton, f)) return "face of a kind: the skeleton has no joint of a given name";
+    if (!open_joints(d, skeleton, f))
+        return "face of a kind: the skeleton has no joint of a given name: noh info lists them";
     drop_strays(skeleton, f);
     for (int i = 0; i < 6; i++) square += f->desc.eyes[i / 3][i % 3] * f->desc.eyes[i / 3][i % 3];
     if (square == 0.0f && f->eyes[0].joint == NOH_NONE)
-        return "face of a kind: its skeleton has no joints for the eyes, so give their centres (noh_kind_face.face.eyes)";
+        return "face of a kind: it has no joints for the eyes: let noh_kind_find_eyes find them, and set "
+               "noh_kind_face.face.eyes";
     for (int e = 0; square == 0.0f && e < 2; e++) memcpy(f->desc.eyes[e], f->eyes[e].at, sizeof f->desc.eyes[e]);
     place_eyes(f);
     if (f->head.joint == NOH_NONE) f->desc.head_yaw_max = f->desc.head_pitch_max = 1e-6f;

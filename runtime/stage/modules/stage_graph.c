@@ -81,8 +81,8 @@ static noh_result list_graphs(const noh_kind_desc *d, const char *names, uint32_
     memset(list, 0, sizeof *list);
     while (noh_stage_next_word(&at, &word)) {
         if (word.takes_out || !add_matches(d, &word, list)) {
-            return noh_fail(error, NOH_ERR_NOT_FOUND, "graphs of a kind: a name that no graph of its packs has", kind,
-                            0);
+            return noh_fail(error, NOH_ERR_NOT_FOUND,
+                            "graphs of a kind: a name that no graph of its packs has: noh info lists them", kind, 0);
         }
     }
     return list->count <= NOH_STAGE_GRAPHS_MAX
@@ -163,8 +163,8 @@ static noh_result measure(const noh_kind_desc *d, const void *names, const noh_s
         return result;
     }
     if (!n->has_clips) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "a kind plays graphs, and none of its packs has clips for them",
-                        n->kind, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "graphs of a kind: none of its packs has clips for them: set clips or clip_packs", n->kind, 0);
     }
     needs->kind_bytes = carve_tables(&arena, list.count, n->shape.clip_count, d->root_axes != 0, &unused);
     for (uint32_t i = 0; i < list.count && result == NOH_OK; i++) {

@@ -157,7 +157,8 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     const noh_pack *pack = find_table(k->desc, &table);
     match_kind *m;
     if (!pack || !k->bank) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "match of a kind: its packs have no clips for it", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND,
+                        "match of a kind: its packs have no clips for it: set clips or clip_packs", 0, 0);
     }
     m = carve(&arena, table.header, k->bank->clips.clip_count);
     m->table = table;

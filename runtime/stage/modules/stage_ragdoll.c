@@ -33,7 +33,7 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
         return "substeps of a kind's ragdoll is not in 5..NOH_RAGDOLL_SUBSTEPS_MAX";
     if (!(r->mass >= 0.0f) || !noh_is_finite(r->mass)) return "mass of a kind's ragdoll is below 0 or not finite";
     if (!noh_is_finite(r->stagger_speed)) return "stagger_speed of a kind's ragdoll is not finite";
-    if (d->skeleton == NOH_NONE) return "a kind with ragdolls has no skeleton";
+    if (d->skeleton == NOH_NONE) return "ragdoll of a kind: it has no skeleton: use the pack of a skinned model";
     return r->world && noh_world_check(r->world, NULL) ? "world of a kind's ragdoll: see noh_world_check" : NULL;
 }
 

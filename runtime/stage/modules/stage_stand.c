@@ -143,7 +143,8 @@ noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand,
     noh_ragdoll_source source = { .pack = kind->mesh, .skeleton = kind->skeleton };
     memset(stand, 0, sizeof *stand);
     if (source.skeleton == NOH_NONE || !source.pack->runs[NOH_CHUNK_SKELETON].count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "stand: the kind has no skeleton: use the pack of a skinned model", 0,
+                        0);
     }
     const noh_result result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
     if (result != NOH_OK) return result;
@@ -152,7 +153,10 @@ noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand,
     if (noh_feet_rig_make(&source, &stand->legs, NULL)) stand->legs.leg_count = 0;
     if (noh_gaze_rig_make(source.pack, source.skeleton, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
     if (stand->arms.arm_count || stand->legs.leg_count || stand->trunk.joint_count) return NOH_OK;
-    return noh_fail(error, NOH_ERR_NOT_FOUND, "no joints have the names of arms, legs or a head", 0, 0);
+    return noh_fail(error, NOH_ERR_NOT_FOUND,
+                    "stand: no joints have the names of arms, legs or a head: fill in "
+                    "noh_kind_stand by hand",
+                    0, 0);
 }
 
 noh_modifier noh_stand_modifier(const noh_kind_stand *stand)
