@@ -2666,6 +2666,29 @@ static void instances_are_nodes(void **state)
     model_free(m);
 }
 
+/* A clip moves the weights of the first instance, which the others follow; another node with the mesh keeps its own. */
+static void weights_of_instances_are_animated(void **state)
+{
+    (void)state;
+    const float times[2] = { 0, 1 }, values[2] = { 0.25f, 1 }, moves[6] = { 1, 0, 0, 0, 2, 0 };
+    scene *s = morphing(up_deltas, ONE_TARGET);
+    add_array(s, times, sizeof times, F32, 2, "SCALAR");
+    add_array(s, values, sizeof values, F32, 2, "SCALAR");
+    add_array(s, moves, sizeof moves, F32, 2, "VEC3");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"extensions\":{\"EXT_mesh_gpu_instancing\":{"
+                    "\"attributes\":{\"TRANSLATION\":4}}}},{\"name\":\"other\",\"mesh\":0}],\"animations\":[{"
+                    "\"channels\":[{\"sampler\":0,\"target\":{" WEIGHTS_OF_N "}}],\"samplers\":[{\"input\":2,"
+                    "\"output\":3}]}]");
+    model *m = load(s);
+    assert_true(m->node_count == 4 && m->clip_count == 1 && m->clips[0].channel_count == 2);
+    const model_channel *c = m->clips[0].channels;
+    assert_true(c[0].path == MODEL_PATH_WEIGHTS && c[0].node == 2 && c[0].width == 1 && c[0].key_count == 2);
+    assert_floats(c[0].values, values, 2);
+    assert_true(c[1].path == MODEL_PATH_WEIGHTS && c[1].node == 1 && c[1].key_count == 1 && c[1].values[0] == 0.0f);
+    assert_int_equal(m->warning_count, 0);
+    model_free(m);
+}
+
 /* --- real files --- */
 
 /* Where the example assets lie, or a skipped test. */
@@ -2899,6 +2922,7 @@ int main(void)
         cmocka_unit_test(nodes_are_in_the_scene_once),
         cmocka_unit_test(bad_references),
         cmocka_unit_test(instances_are_nodes),
+        cmocka_unit_test(weights_of_instances_are_animated),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),
         cmocka_unit_test(compressed_head_has_the_same_shape),
         cmocka_unit_test(all_assets_load),

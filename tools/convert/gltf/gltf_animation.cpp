@@ -73,6 +73,24 @@ static target target_of(const file &f, const tinygltf::AnimationChannel &c)
     return { c.target_node, "pointer" };
 }
 
+/* Nodes from this one on are instances (gltf_scene.cpp): each draws the mesh of the node above it, which draws none. */
+static uint32_t first_instance(const file &f)
+{
+    uint32_t first = 0;
+    for (uint32_t node : f.node_of)
+        if (node != MODEL_NONE) first = std::max(first, node + 1);
+    return first;
+}
+
+/* The node that has a node's weights: its first instance, which the others follow by the names of their targets. */
+static uint32_t node_of_weights(const file &f, uint32_t node)
+{
+    if (f.out->nodes[node].mesh != MODEL_NONE) return node;
+    for (uint32_t n = first_instance(f); n < f.out->node_count; ++n)
+        if (f.out->nodes[n].parent == node && f.out->nodes[n].mesh != MODEL_NONE) return n;
+    return node;
+}
+
 /* Why a channel cannot be kept, or an empty text. Fills c.path and c.node. */
 static std::string reason_to_skip(const file &f, const target &t, const tinygltf::AnimationChannel &source,
                                   model_channel &c)
@@ -85,6 +103,7 @@ static std::string reason_to_skip(const file &f, const target &t, const tinygltf
     if (c.node == MODEL_NONE) return "its target node is not in the default scene";
     if (!path_of(t.path, c.path)) return "its path is unknown";
     if (c.path != MODEL_PATH_WEIGHTS) return "";
+    c.node = node_of_weights(f, c.node);
     /* if a mesh is not kept (points, lines), neither are its weights */
     const uint32_t mesh = f.out->nodes[c.node].mesh;
     if (mesh == MODEL_NONE && f.json.nodes[static_cast<size_t>(t.node)].mesh >= 0) return "its mesh was skipped";
@@ -235,12 +254,17 @@ static bool would_follow(const model &m, const model_channel &moved, uint32_t no
 }
 
 /* The channel whose weights a node would follow, or null. */
-static const model_channel *follows(const model &m, const model_clip &clip, uint32_t node)
+static const model_channel *follows(const file &f, const model_clip &clip, uint32_t node)
 {
+    const model &m = *f.out;
+    const uint32_t instances = first_instance(f);
     const model_channel *found = nullptr;
     for (uint32_t i = 0; i < clip.channel_count; ++i) {
         const model_channel &c = clip.channels[i];
         if (c.path == MODEL_PATH_WEIGHTS && c.node == node) return nullptr;
+        if (c.path == MODEL_PATH_WEIGHTS && std::min(c.node, node) >= instances &&
+            m.nodes[c.node].parent == m.nodes[node].parent)
+            return nullptr;
         if (!found && would_follow(m, c, node)) found = &c;
     }
     return found;
@@ -269,7 +293,7 @@ static void hold_others(file &f, const std::string &where, model_clip &out)
     for (uint32_t i = 0; i < out.channel_count; ++i)
         if (out.channels[i].path == MODEL_PATH_WEIGHTS) floats += out.channels[i].width;
     for (uint32_t n = 0; floats && n < f.out->node_count; ++n)
-        if (const model_channel *c = follows(*f.out, out, n)) {
+        if (const model_channel *c = follows(f, out, n)) {
             floats += f.out->meshes[f.out->nodes[n].mesh].target_count;
             if (floats > NOH_CLIP_FLOATS_MAX || held.size() >= NOH_CLIP_GROUPS_MAX / 2)
                 return leave_out(f, where,
