@@ -12,6 +12,7 @@
 #include "gpu/canvas.h"
 #include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_light_internal.h"
+#include "life/hair/hair_internal.h"
 
 #define SIDE 160u
 
@@ -309,12 +310,49 @@ static void light_is_counted_and_comes_back(void **state)
     pack_file_close(&file);
 }
 
+/* --turn: the head stands turned before it turns. The hair stays behind by the way of the turn, and is not thrown about
+ * by a leap to where the turn begins. */
+static void hair_turns_from_where_the_turn_begins(void **state)
+{
+    const double turned = 400.0 * (3.14159265358979 / 180.0) * 5.0 / 60.0; /* from the first step to the last */
+    pack_file file = open_file("wig.noh");
+    const figure_desc d = { .file = &file, .clips = &file, .hair = 1 };
+    double most = 0.0, beyond = -1.0;
+    figure f;
+    (void)state;
+    assert_int_equal(figure_open(&f, &d, NULL), 0);
+    assert_int_equal(figure_pose(&f), 0);
+    assert_int_equal(figure_live(&f, 0.1, -400.0), 0);
+    const noh_hair_desc *hair = &f.hair.cut.desc;
+    const uint32_t count = hair->hair_count * hair->point_count;
+    const char *made = noh_actor_modifier(f.stage, f.actors[f.hair.desc.kind], 0);
+    float *points = test_zeros(12u * (size_t)count);
+    assert_non_null(made);
+    noh_hair_points((const noh_hair *)(const void *)(made + 16), hair, points);
+    for (uint32_t i = 0; i < count; i++) {
+        const float *at = points + 3u * i, *rest = hair->rest + 3u * i;
+        const double x = (double)at[0] - (double)rest[0], y = (double)at[1] - (double)rest[1];
+        const double z = (double)at[2] - (double)rest[2], moved = sqrt(x * x + y * y + z * z);
+        most = fmax(most, moved);
+        beyond = fmax(beyond, moved - turned * hypot((double)rest[0], (double)rest[2]));
+    }
+    print_message("# hair moved by %.0f mm at most, by %.0f mm more than the turn\n", 1e3 * most, 1e3 * beyond);
+    assert_true(most > 0.01 && beyond < 0.02);
+    free(points);
+    figure_close(&f);
+    pack_file_close(&file);
+}
+
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(it_takes_the_bytes_that_it_plans), cmocka_unit_test(clips_and_held_floats_show),
-        cmocka_unit_test(debug_views_and_levels_show),      cmocka_unit_test(vertices_are_those_of_the_cpu),
-        cmocka_unit_test(without_a_gpu_it_is_posed),        cmocka_unit_test(light_is_counted_and_comes_back),
+        cmocka_unit_test(it_takes_the_bytes_that_it_plans),
+        cmocka_unit_test(clips_and_held_floats_show),
+        cmocka_unit_test(debug_views_and_levels_show),
+        cmocka_unit_test(vertices_are_those_of_the_cpu),
+        cmocka_unit_test(without_a_gpu_it_is_posed),
+        cmocka_unit_test(light_is_counted_and_comes_back),
+        cmocka_unit_test(hair_turns_from_where_the_turn_begins),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, fixture_tear_down);

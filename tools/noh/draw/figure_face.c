@@ -48,14 +48,16 @@ int figure_feel(figure *f, const option_list *emotions)
     return 0;
 }
 
-/* Each actor turned by an angle about y from where it began. */
-static int turn_to(figure *f, double degrees)
+/* Each actor turned by an angle about y from where it began. leaps: as if it had always been there */
+static int turn_to(figure *f, double degrees, int leaps)
 {
     const double half = degrees * (3.14159265358979 / 360.0);
     noh_error error = { NOH_OK, "", 0, 0 };
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
         const noh_place place = { .rotation = { 0.0f, (float)sin(half), 0.0f, (float)cos(half) }, .scale = 1.0f };
-        if (noh_actor_set_place(f->stage, f->actors[k], &place, &error)) return tool_fail_error("--turn", &error);
+        noh_result result = noh_actor_set_place(f->stage, f->actors[k], &place, &error);
+        if (!result && leaps) result = noh_actor_cut(f->stage, f->actors[k], &error);
+        if (result) return tool_fail_error("--turn", &error);
     }
     return 0;
 }
@@ -67,7 +69,7 @@ int figure_live(figure *f, double seconds, double turn)
     noh_appearance posed = own;
     int64_t ticks = noh_ticks_from_seconds(seconds > 0.0 ? seconds : 0.0);
     noh_error error = { NOH_OK, "", 0, 0 };
-    int status;
+    int status, begins = 1;
     posed.posed = 1;
     status = figure_set_look(f, &posed);
     while (!status && ticks > 0) {
@@ -75,7 +77,8 @@ int figure_live(figure *f, double seconds, double turn)
         const figure_body *body = f->desc.body;
         status = body ? figure_body_place(body, f->stage, f->kinds, f->actors, f->stage_desc.kind_count) : 0;
         ticks -= now;
-        if (!status && turn != 0.0) status = turn_to(f, -turn * (double)ticks / NOH_TICKS_PER_SECOND);
+        if (!status && turn != 0.0) status = turn_to(f, -turn * (double)ticks / NOH_TICKS_PER_SECOND, begins);
+        begins = 0;
         if (!status && noh_stage_frame(f->stage, now, NULL, NULL, NULL, &error)) {
             status = tool_fail_error("frame", &error);
         }
