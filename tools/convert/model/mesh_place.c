@@ -6,8 +6,6 @@
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 
-#define UNTILTED 0.9999 /* cosine of the angle between an axis and where the rest pose puts it */
-
 /* Row r of the turn that leaves right angles alone is sign[r] times the unit vector of axis[r]. */
 typedef struct right_turn {
     int axis[3];
@@ -26,25 +24,70 @@ static right_turn turn_of(const double world[16])
     return t;
 }
 
-static void untilt(double world[16])
-{
-    const right_turn t = turn_of(world);
-    double out[16];
-    int is_tilted = 0;
-    affine_identity(out);
-    for (int r = 0; r < 3; r++) {
-        const double row[3] = { world[r], world[4 + r], world[8 + r] }, length = sqrt(vec_dot(row, row));
-        for (int c = 0; c < 3; c++) out[4 * c + r] = c == t.axis[r] ? t.sign[r] * length : 0.0;
-        is_tilted |= fabs(row[t.axis[r]]) < UNTILTED * length;
-    }
-    if (is_tilted) memcpy(world, out, sizeof out);
-}
-
 static void place_of_joint(const model *m, const model_skin *skin, uint32_t joint, double out[16])
 {
     double bind[16];
     affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
     affine_multiply(m->nodes[skin->joints[joint]].world, bind, out);
+}
+
+/* The same of a node that is a joint of the skin, or else of another one. 0: it is no joint. */
+static int place_of_node(const model *m, const model_skin *own, uint32_t node, double out[16])
+{
+    for (uint32_t s = 0; s <= m->skin_count; s++) {
+        const model_skin *skin = s ? &m->skins[s - 1u] : own;
+        for (uint32_t j = 0; j < skin->joint_count; j++) {
+            if (skin->joints[j] != node) continue;
+            place_of_joint(m, skin, j, out);
+            return 1;
+        }
+    }
+    return 0;
+}
+
+/* The turn, without a shift, after which only the right angles of `place` are left. */
+static void untilting(const double place[16], double out[16])
+{
+    const right_turn t = turn_of(place);
+    double upright[16], linear[16], back[16];
+    affine_identity(upright);
+    memcpy(linear, place, sizeof linear);
+    for (int r = 0; r < 3; r++) {
+        const double row[3] = { place[r], place[4 + r], place[8 + r] };
+        for (int c = 0; c < 3; c++) upright[4 * c + r] = c == t.axis[r] ? t.sign[r] * sqrt(vec_dot(row, row)) : 0.0;
+        linear[12 + r] = 0.0;
+    }
+    affine_identity(out);
+    if (!affine_invert(linear, back)) affine_multiply(upright, back, out);
+}
+
+/* Where a joint is when its ancestors are not tilted. */
+static void untilted_joint(const model *m, const model_skin *skin, uint32_t node, double out[3])
+{
+    const double *at = m->nodes[node].world + 12;
+    memset(out, 0, 3 * sizeof *out);
+    for (uint32_t p = m->nodes[node].parent; p != MODEL_NONE; p = m->nodes[p].parent) {
+        const double *from = m->nodes[p].world + 12, way[3] = { at[0] - from[0], at[1] - from[1], at[2] - from[2] };
+        double place[16], turn[16], turned[3];
+        if (!place_of_node(m, skin, p, place)) continue;
+        untilting(place, turn);
+        affine_point(turn, way, turned);
+        for (int c = 0; c < 3; c++) out[c] += turned[c];
+        at = from;
+    }
+    for (int c = 0; c < 3; c++) out[c] += at[c];
+}
+
+/* About the joint: meshes may have origins of their own. */
+static void untilt(const model *m, const model_skin *skin, uint32_t node, double place[16])
+{
+    double turn[16], turned[16], before[3], after[3];
+    untilting(place, turn);
+    affine_multiply(turn, place, turned);
+    affine_point(turn, m->nodes[node].world + 12, before);
+    untilted_joint(m, skin, node, after);
+    for (int c = 0; c < 3; c++) turned[12 + c] += after[c] - before[c];
+    memcpy(place, turned, sizeof turned);
 }
 
 static void place(const model *m, const model_mesh *mesh, const model_node *node, uint32_t vertex, double out[16])
@@ -53,7 +96,7 @@ static void place(const model *m, const model_mesh *mesh, const model_node *node
     const uint32_t joint = skin ? mesh->joints[(size_t)vertex * MODEL_INFLUENCES_MAX] : 0u;
     if (skin && joint < skin->joint_count) {
         place_of_joint(m, skin, joint, out);
-        untilt(out);
+        untilt(m, skin, skin->joints[joint], out);
     } else {
         memcpy(out, node->world, sizeof node->world);
     }

@@ -6,8 +6,9 @@
 
 #define MESH_PLACES_MAX 16u
 
-/* For each node that draws the mesh, what moves the vertex to the world; at least one, at most MESH_PLACES_MAX. Of a
- * joint's turn only the right angles are left: the rest pose may tilt a head or turn an eye, the bind pose does not.
+/* For each node that draws the mesh, what moves the vertex to the world; at least one, at most MESH_PLACES_MAX. Of the
+ * turns of joints only right angles are left, each about its joint, from the root on: the rest pose may tilt a head or
+ * turn an eye, the bind pose does not.
  * returns  their count */
 uint32_t mesh_places(const model *m, uint32_t mesh, uint32_t vertex, double out[MESH_PLACES_MAX][16]);
 
