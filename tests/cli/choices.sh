@@ -48,6 +48,7 @@ check 'and that levels would take too long' grep -q '^LOD: no levels' "$work/out
 check 'without a warning' sh -c '! grep "^warning" "$1"' - "$work/out"
 told
 check 'the joints are there' joints
+check 'and no light transfer, which takes too long unasked' sh -c '! grep transfer "$1"' - "$work/told"
 face --plain
 expect 0 '--plain'
 check 'does not speak of them' sh -c '! grep "^eyes:\|^lips:\|^LOD:" "$1"' - "$work/out"
