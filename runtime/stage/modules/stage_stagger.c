@@ -369,6 +369,7 @@ void noh_stage_step_stagger(noh_stage_kind *k, noh_stage_actor *a, noh_stage_bod
         *left = way - (next - *at);
         *at = next;
     }
+    if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
     noh_character_wake(noh_stage_character(k, noh_stage_index(k, a)));
     if (s->weight <= 0.0f) b->moves = NOH_MOVES_BY_CLIPS;
     if (!stands && noh_stage_brace_fall(k, a, b, NULL, NULL) != NOH_OK) b->moves = NOH_MOVES_BY_CLIPS;

@@ -4,6 +4,8 @@
  * cross: long, thousands of frames */
 #include "support/busy_stage.h"
 
+#include "stage/modules/stage_ragdoll_internal.h"
+
 #include <float.h>
 #include <math.h>
 
@@ -322,6 +324,27 @@ static void what_moves_stays_within(void **state)
     close_trial(&t);
 }
 
+/* A state may hold the speed of a push: who staggers goes as far as places go, each way. */
+static void what_staggers_stays_within(void **state)
+{
+    trial t;
+    (void)state;
+    open_trial(&t);
+    for (int way = 0; way < 4; way++) {
+        noh_stage_body *body = noh_stage_body_of(&t.s.c.stage->kinds[WALKERS], 2);
+        assert_int_equal(noh_stage_set_state(t.s.c.stage, t.good, t.bytes, NULL), NOH_OK);
+        assert_int_equal(noh_actor_body(t.s.c.stage, t.s.actors[2]), NOH_BODY_STAGGERS);
+        body->of.stagger.speed[way / 2] = way & 1 ? 1e16f : -1e16f;
+        take_own(&t, "a push", 0.0f, 0);
+        assert_int_equal(noh_stage_step(t.s.c.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+        assert_true(largest_of(&t, 2) == NOH_NUMBER_MAX);
+        take_own(&t, "a push", 0.0f, 1);
+        busy_stage_frame(&t.s, 0);
+        take_own(&t, "a push", 0.0f, 2);
+    }
+    close_trial(&t);
+}
+
 /* An actor that is detached stays where it was shown, as far as places go. */
 static void what_is_let_go_stays_within(void **state)
 {
@@ -347,6 +370,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(a_stage_takes_its_own_states),
                                         cmocka_unit_test(what_moves_stays_within),
+                                        cmocka_unit_test(what_staggers_stays_within),
                                         cmocka_unit_test(what_is_let_go_stays_within) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
