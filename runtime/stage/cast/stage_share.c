@@ -104,7 +104,7 @@ typedef struct look_key {
 
 #define LOOKS_MAX 80u /* above NOH_TEXTURE_SETS_MAX */
 
-/* whole: otherwise its textures alone. */
+/* whole: with all fields; otherwise all but the textures are zero, the least look with these textures. */
 static look_key key_of(const noh_stage *s, const noh_stage_kind *k, uint32_t i, int whole)
 {
     const noh_appearance *look = &k->actors[i].look;
@@ -140,49 +140,69 @@ static uint32_t find_look(const look_key *looks, uint32_t count, const look_key 
     return first;
 }
 
-/* Sort the looks of seen actors. Returns how many there are; 0: more than fit. */
-static uint32_t sort_looks(const noh_stage *s, const noh_stage_kind *k, int whole, look_key *looks)
+static int is_at(const look_key *looks, uint32_t count, uint32_t at, const look_key *key)
 {
-    uint32_t count = 0, last = 0;
+    return at < count && !compare_looks(&looks[at], key);
+}
+
+/* Sort the looks of seen actors into what is there. Returns 0: more than fit, of which the first are there. */
+static int sort_looks(const noh_stage *s, const noh_stage_kind *k, int whole, look_key *looks, uint32_t *count)
+{
+    uint32_t last = 0;
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         if (!s->shown[k->first_actor + i].views) continue;
         const look_key key = key_of(s, k, i, whole);
-        if (count && !compare_looks(&looks[last], &key)) continue;
-        last = find_look(looks, count, &key);
-        if (last < count && !compare_looks(&looks[last], &key)) continue;
-        if (count == LOOKS_MAX) return 0;
-        looks[count] = key;
-        for (uint32_t at = count++; at > last; at--) { /* exchanged, as in stage_levels.c */
+        if (is_at(looks, *count, last, &key)) continue;
+        last = find_look(looks, *count, &key);
+        if (is_at(looks, *count, last, &key)) continue;
+        if (*count == LOOKS_MAX) return 0;
+        looks[*count] = key;
+        for (uint32_t at = (*count)++; at > last; at--) { /* exchanged, as in stage_levels.c */
             const look_key moved = looks[at];
             looks[at] = looks[at - 1u];
             looks[at - 1u] = moved;
         }
     }
-    return count ? count : 1u;
+    return 1;
 }
 
-/* Number the looks of seen actors. In a crowd of too many they are told apart by their textures alone. */
-NOH_NEVER_INLINE static uint32_t number_looks(noh_stage *s, const noh_stage_kind *k)
+/* Number the looks of seen actors. If there are too many, those that do not fit have the number of the one before them,
+ * which has the same textures: only they are drawn one by one. */
+NOH_NEVER_INLINE static void number_looks(noh_stage *s, const noh_stage_kind *k)
 {
     look_key looks[LOOKS_MAX];
-    uint32_t count = sort_looks(s, k, 1, looks);
-    const int whole = count != 0;
-    if (!whole) count = sort_looks(s, k, 0, looks);
+    uint32_t count = 0;
+    if (!sort_looks(s, k, 1, looks, &count)) {
+        count = 0;
+        (void)sort_looks(s, k, 0, looks, &count);
+        (void)sort_looks(s, k, 1, looks, &count);
+    }
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         noh_stage_shown *shown = &s->shown[k->first_actor + i];
         if (!shown->views) continue;
-        const look_key key = key_of(s, k, i, whole);
-        shown->look = (uint8_t)find_look(looks, count, &key);
+        const look_key key = key_of(s, k, i, 1);
+        const uint32_t at = find_look(looks, count, &key);
+        shown->look = (uint8_t)(is_at(looks, count, at, &key) ? at : at - 1u);
     }
-    return count;
 }
 
-/* The next place in its run for each seen actor of a look. */
-static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t look, uint32_t *next)
+/* The next place in its run for each seen actor, look by look. Until it has a place, an actor has 1 + the next actor of
+ * its look there; 0: none. */
+static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t *next)
 {
-    for (uint32_t i = 0; i < k->desc->actor_count; i++) {
+    uint16_t firsts[LOOKS_MAX] = { 0 };
+    for (uint32_t i = k->desc->actor_count; i--;) {
         noh_stage_shown *shown = &s->shown[k->first_actor + i];
-        if (shown->views && (NOH_PAGE ? k->actors[i].look.texture_set : shown->look) == look) {
+        const uint32_t look = NOH_PAGE ? k->actors[i].look.texture_set : shown->look;
+        if (!shown->views) continue;
+        shown->place = firsts[look];
+        firsts[look] = (uint16_t)(i + 1u);
+    }
+    for (uint32_t look = 0; look < LOOKS_MAX; look++) {
+        for (uint32_t after = firsts[look]; after;) {
+            const uint32_t i = after - 1u;
+            noh_stage_shown *shown = &s->shown[k->first_actor + i];
+            after = shown->place;
             shown->place = (uint16_t)next[run_of(s, k, i)]++;
             k->order[shown->place] = i;
         }
@@ -193,8 +213,8 @@ static void take_places(noh_stage *s, noh_stage_kind *k, uint32_t look, uint32_t
 static void put_in_order(noh_stage *s, noh_stage_kind *k)
 {
     const uint32_t runs = noh_stage_run_count(k);
-    const uint32_t looks = NOH_PAGE ? k->desc->texture_set_count + 1u : number_looks(s, k);
     uint32_t next[NOH_LOD_LEVELS_MAX * 4u + 1u] = { 0 }, count = 0;
+    if (!NOH_PAGE) number_looks(s, k);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         if (s->shown[k->first_actor + i].views) next[run_of(s, k, i)]++;
     }
@@ -204,7 +224,7 @@ static void put_in_order(noh_stage *s, noh_stage_kind *k)
         next[r] = k->runs[r];
     }
     k->runs[runs + 1u] = count;
-    for (uint32_t look = 0; look < looks; look++) take_places(s, k, look, next);
+    take_places(s, k, next);
 }
 
 /* ---- updates ---- */
