@@ -481,7 +481,8 @@ typedef struct noh_spring noh_spring;
 typedef struct noh_spring_move {
     noh_spring *spring;
     const noh_spring_desc *desc;
-    const noh_spring_carrier *carrier;    /* at the end of the call's time; interpolated in between */
+    const noh_spring_carrier *carrier;    /* at the end of the call's time; interpolated in between. Out of the range
+                                           * of noh_spring_init: the last one stays */
     const noh_spring_collider *colliders; /* [desc->collider_count], likewise; NULL if there are none */
     float *rotations;                     /* [desc->joint_count][4]: output of noh_spring_rotations */
     const noh_touches *touches;           /* [desc->joint_count] planes that an end stays in front of by its radius,

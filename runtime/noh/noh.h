@@ -819,7 +819,7 @@ void noh_stage_origin(const noh_stage *stage, float origin[3]);
 
 /* Begin a frame with views[view_count], 0..NOH_STAGE_VIEWS_MAX. An actor is shown if any view sees it, in the finest
  * detail that any view needs.
- * errors  ARG a number of a view is not finite or beyond NOH_VIEW_NUMBER_MAX, or a frame has begun */
+ * errors  ARG a number of a view is not finite or beyond NOH_VIEW_NUMBER_MAX (where: the view), or a frame has begun */
 noh_result noh_stage_frame_begin(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, noh_error *error);
 
 /* Begin a frame between the last two steps, for a game that steps at a fixed rate and draws at another. The frame

@@ -58,7 +58,7 @@ static inline int noh_is_number3(const float v[3])
 
 /* Results of frames from numbers, as saved states hold them: sums and products of what the game sets may be larger than
  * NOH_NUMBER_MAX, and the squares of these are finite still. */
-#define NOH_SOUND_MAX NOH_VIEW_NUMBER_MAX
+#define NOH_SOUND_MAX 1e18f
 
 static inline int noh_are_sound(const float *x, size_t count)
 {

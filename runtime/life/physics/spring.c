@@ -24,8 +24,8 @@ size_t noh_spring_size(const noh_spring_desc *desc)
 static int is_good(const noh_spring_joint *j)
 {
     const float square = noh_dot3(j->bone, j->bone), unit = noh_quat_dot(j->rest, j->rest);
-    return square > 1e-16f && noh_is_finite(16.0f * square * square) && unit > 0.99f && unit < 1.01f && j->stiffness >= 0.0f &&
-           noh_is_number(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
+    return square > 1e-16f && noh_is_finite(16.0f * square * square) && unit > 0.99f && unit < 1.01f &&
+           j->stiffness >= 0.0f && noh_is_number(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
            noh_is_number(j->radius) && noh_is_number3(j->gravity);
 }
 
@@ -53,6 +53,11 @@ static int turns(const float q[4])
     return square > 0.9f && square < 1.1f;
 }
 
+int noh_spring_carries(const noh_spring_carrier *carrier)
+{
+    return noh_is_number3(carrier->position) && turns(carrier->rotation);
+}
+
 noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *desc, const noh_spring_carrier *carrier,
                            noh_spring **spring, noh_error *error)
 {
@@ -60,8 +65,9 @@ noh_result noh_spring_init(void *memory, size_t bytes, const noh_spring_desc *de
     NOH_ASSERT(desc && carrier && spring);
     noh_result result = noh_spring_check_desc(desc, error);
     if (result) return result;
-    if (!noh_is_number3(carrier->position) || !turns(carrier->rotation)) {
-        return noh_fail(error, NOH_ERR_ARG, "the carrier of a spring is out of range, or its rotation is not unit", 0, 0);
+    if (!noh_spring_carries(carrier)) {
+        return noh_fail(error, NOH_ERR_ARG, "the carrier of a spring is out of range, or its rotation is not unit", 0,
+                        0);
     }
     result = noh_arena_open(&arena, memory, bytes, noh_spring_size(desc), error);
     if (result) return result;

@@ -22,6 +22,9 @@ void noh_spring_ends(const noh_spring *spring, const noh_spring_desc *desc, floa
  * errors  ARG, LIMIT: as noh_spring_init */
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error);
 
+/* Whether a carrier's numbers are within their range, and its rotation is unit. */
+int noh_spring_carries(const noh_spring_carrier *carrier);
+
 /* Put a chain at rest at its carrier. */
 void noh_spring_reset(noh_spring *spring, const noh_spring_desc *desc, const noh_spring_carrier *carrier);
 

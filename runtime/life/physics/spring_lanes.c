@@ -156,6 +156,12 @@ typedef struct moment {
     lane4 rotation;
 } moment;
 
+/* The carrier at the end of the call: as it was before where a number of it is out of range. */
+static const noh_spring_carrier *carrier_of(const noh_spring_move *move)
+{
+    return NOH_PAGE || noh_spring_carries(move->carrier) ? move->carrier : &move->spring->last;
+}
+
 /* Interpolate the carriers at this step. */
 static void move_carriers(const group *g, moment *m, lane3 *position)
 {
@@ -165,7 +171,7 @@ static void move_carriers(const group *g, moment *m, lane3 *position)
     for (uint32_t lane = 0; lane < NOH_LANES; lane++) {
         noh_spring *s = g->moves[lane]->spring;
         last_rows[lane] = s->last.position;
-        next_rows[lane] = g->moves[lane]->carrier->position;
+        next_rows[lane] = carrier_of(g->moves[lane])->position;
         stepped_rows[lane] = s->stepped.position;
         was_rows[lane] = s->moved;
         stepped_to[lane] = lane < g->used ? s->stepped.position : nowhere;
@@ -394,15 +400,16 @@ static span begin(const noh_spring_move *move, uint32_t ticks)
     const uint64_t time = (uint64_t)s->left + ticks, whole = time / NOH_SPRING_STEP_TICKS;
     span r = { (uint32_t)whole, ticks, 0 };
     if (whole > NOH_SPRING_STEPS_MAX) {
+        const noh_spring_carrier *to = carrier_of(move);
         noh_spring_carrier at;
         r.steps = NOH_SPRING_STEPS_MAX;
         r.kept = NOH_SPRING_STEPS_MAX * NOH_SPRING_STEP_TICKS + (uint32_t)(time % NOH_SPRING_STEP_TICKS);
         r.dropped = (uint32_t)(time - r.kept);
         const float t = (float)(ticks - r.kept) / (float)ticks;
         for (int k = 0; k < 3; k++) {
-            at.position[k] = s->last.position[k] + t * (move->carrier->position[k] - s->last.position[k]);
+            at.position[k] = s->last.position[k] + t * (to->position[k] - s->last.position[k]);
         }
-        noh_quat_nlerp(s->last.rotation, move->carrier->rotation, t, at.rotation);
+        noh_quat_nlerp(s->last.rotation, to->rotation, t, at.rotation);
         noh_spring_reset(s, move->desc, &at);
     }
     return r;
@@ -412,7 +419,7 @@ static void finish(const noh_spring_move *move, span time)
 {
     noh_spring *s = move->spring;
     s->left += time.kept - time.steps * NOH_SPRING_STEP_TICKS;
-    s->last = *move->carrier;
+    s->last = *carrier_of(move);
     if (s->collider_count) {
         memcpy(noh_spring_colliders(s), move->colliders, s->collider_count * sizeof *move->colliders);
         s->collides = 1;

@@ -7,12 +7,16 @@
 #include "noh/base.h"
 #include "noh/noh.h"
 
-static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count)
+NOH_STATIC_ASSERT((uint64_t)NOH_VIEW_NUMBER_MAX == (uint64_t)NOH_SOUND_MAX, views_are_sound);
+
+/* *where: the view */
+static const char *bad_views(const noh_stage *s, const noh_stage_view *views, uint32_t count, uint64_t *where)
 {
     if (s->phase != NOH_STAGE_IDLE) return "cannot begin a frame during a step or a frame";
     if (count > NOH_STAGE_VIEWS_MAX) return "view_count is above NOH_STAGE_VIEWS_MAX";
     for (uint32_t v = 0; v < count; v++) {
         const noh_stage_view *view = &views[v];
+        *where = v;
         if (!noh_are_sound(view->view_projection, 16)) return "view_projection of a view: not finite, or too large";
         if (!noh_are_sound(view->eye, 3) || !noh_are_sound(view->light, 3) || !noh_are_sound(view->column_rest, 4) ||
             !noh_are_sound(view->eye_rest, 3))
@@ -63,11 +67,12 @@ static void mark_carriers(noh_stage *s)
 noh_result noh_stage_frame_between(noh_stage *stage, const noh_stage_view *views, uint32_t view_count, float alpha,
                                    noh_error *error)
 {
-    const char *what = bad_views(stage, views, view_count);
+    uint64_t where = 0;
+    const char *what = bad_views(stage, views, view_count, &where);
     NOH_ASSERT(stage && (views || !view_count));
     if (!what && !(alpha >= 0.0f && alpha <= 1.0f)) what = "alpha is outside of 0..1";
     if (what) {
-        return noh_fail(error, NOH_ERR_ARG, what, 0, 0);
+        return noh_fail(error, NOH_ERR_ARG, what, where, 0);
     }
     stage->cut = 0;
     choose_origin(stage, views, view_count);

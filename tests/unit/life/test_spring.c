@@ -710,6 +710,34 @@ static void the_largest_numbers_swing(void **state)
     free(memory);
 }
 
+/* A carrier that init refuses moves nothing, by any number of steps: the chain hangs where it was, its state is taken,
+ * and it goes on from there. */
+static void a_wild_carrier_moves_nothing(void **state)
+{
+    static const float wild[] = { NAN, INFINITY, -1e30f };
+    static const uint32_t ticks[] = { 400u, 800u, 5u * SECOND };
+    const noh_spring_desc desc = hanging(1.0f, 0.3f, 0.5f);
+    const noh_spring_carrier at = { { 1.0f, 2.0f, 3.0f }, { 0.0f, 0.6f, 0.0f, 0.8f } };
+    const size_t bytes = noh_spring_size(&desc);
+    (void)state;
+    for (size_t i = 0; i < 2u * TEST_COUNT(wild) * TEST_COUNT(ticks); i++) {
+        const float number = wild[i / 2u % TEST_COUNT(wild)];
+        noh_spring_carrier bad = at;
+        noh_spring *one = made(&desc, &at), *other = made(&desc, &at);
+        *(i & 1u ? &bad.position[1] : &bad.rotation[3]) = number;
+        (void)step_one(one, &desc, &at, NULL, ticks[i / 6u]);
+        (void)step_one(one, &desc, &bad, NULL, ticks[i / 6u]);
+        assert_null(noh_spring_check(one, &desc));
+        (void)step_one(one, &desc, &at, NULL, SECOND / 4u);
+        (void)step_one(other, &desc, &at, NULL, ticks[i / 6u]);
+        (void)step_one(other, &desc, &at, NULL, ticks[i / 6u]);
+        (void)step_one(other, &desc, &at, NULL, SECOND / 4u);
+        assert_memory_equal(one, other, bytes);
+        free(one);
+        free(other);
+    }
+}
+
 int main(int argument_count, char **arguments)
 {
     static const struct CMUnitTest tests[] = {
@@ -726,6 +754,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(every_width_and_company_gives_the_same_bits),
         cmocka_unit_test(bad_values_are_refused),
         cmocka_unit_test(the_largest_numbers_swing),
+        cmocka_unit_test(a_wild_carrier_moves_nothing),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

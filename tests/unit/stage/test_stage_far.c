@@ -323,7 +323,7 @@ static void wild_views_are_refused(void **state)
     static const float wild[] = { NAN, INFINITY, -INFINITY, 3e18f, -FLT_MAX };
     test_random r = test_random_from(19);
     noh_actor actors[CAST_ACTORS];
-    noh_stage_view view = cast_view(0, 8.0f);
+    noh_stage_view view = cast_view(0, 8.0f), views[3] = { view, view, view };
     cast c;
     (void)state;
     cast_open(&c);
@@ -339,8 +339,10 @@ static void wild_views_are_refused(void **state)
         for (uint32_t w = 0; w < sizeof wild / sizeof *wild; w++) {
             noh_error error;
             *at = wild[w];
-            assert_int_equal(noh_stage_frame_begin(c.stage, &view, 1, &error), NOH_ERR_ARG);
+            views[1] = view;
+            assert_int_equal(noh_stage_frame_begin(c.stage, views, 3, &error), NOH_ERR_ARG);
             assert_non_null(strstr(error.what, "of a view: not finite, or too large"));
+            assert_int_equal(error.where, 1);
         }
         *at = kept;
     }
