@@ -65,7 +65,8 @@ int noh_skin_instance()
 #endif
 }
 
-/* Rows 0 to 2 place the instance in the world, row 3 is its tile and tint: noh_tile_row. */
+/* Rows 0 to 2 place the instance in the world, row 3 is its tile and tint: noh_tile_row. Its w counts the vertices that
+ * targets move; the fraction is half of what targets open the lips. */
 vec4 noh_crowd_row(int i)
 {
     return noh_skin_texel(noh_skin_instance() + i);

@@ -393,7 +393,8 @@ typedef struct noh_node {
 /* The lighting model of a material. noh_material.surface_values (x, y, z, w) and then surface_more hold, for
  *   skin   x millimetres per world unit, for scattering; 0: 1000. Then the inside of the mouth, in the bind pose and
  *          mesh space: yzw its centre, at the foremost teeth; surface_more: half its width, half its height, 1 over the
- *          depth where no light arrives, and half the lips' gap at rest, in such depths. Zeros: none
+ *          depth where no light arrives, and half the lips' gap at rest, in such depths, or 0
+ *          for 0.24. Zeros: none
  *   eye    xyz the gaze in the bind pose and mesh space, with the iris radius as its length; w the sine of the angle at
  *          the eyeball's centre between the gaze and the rim of the iris. surface_more: the edges of the upper and
  *          lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away from the nose, the

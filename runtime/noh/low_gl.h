@@ -385,7 +385,8 @@ void noh_gl_skin_set_matrices(noh_gl_skin *skin, uint32_t instance, const float 
 
 /* Set the placement of one instance, for noh_gl_draw_crowd.
  * shapes  world[12] rows of 3 x 4
- * morph   its accumulated deltas; NULL: no target is active
+ * morph   its accumulated deltas, by which skin and teeth also know how far its lips are open: again after
+ *         noh_gl_morph_set_weights. NULL: no target is active
  * errors  UNSUPPORTED palettes are in a uniform buffer, which cannot draw crowds; ARG `world` mirrors (where: the
  *         instance): one draw cannot have triangles of both windings, so draw this instance alone */
 noh_result noh_gl_skin_set_place(noh_gl_skin *skin, uint32_t instance, const float world[12],

@@ -5,6 +5,7 @@
 #include "noh/pack.h"
 
 #include <stddef.h>
+#include <string.h>
 
 /* Colours are sRGB, everything else is data. */
 static noh_result check_texture_of(const noh_check *check, uint32_t texture, int is_data, uint64_t where)
@@ -22,26 +23,21 @@ static noh_result check_texture_of(const noh_check *check, uint32_t texture, int
                : noh_check_fail(check, "material uses a colour texture for data, or a data texture for colours", where);
 }
 
+/* The first two are of colours; the sixth and seventh, too, in a toon. */
 static noh_result check_material_textures(const noh_check *check, const noh_material *m, uint64_t at)
 {
-    const int is_toon = m->surface == NOH_SURFACE_TOON;
-    const struct {
-        size_t field;
-        uint32_t texture;
-        int is_data;
-    } textures[] = {
-        { offsetof(noh_material, base_color_texture), m->base_color_texture, 0 },
-        { offsetof(noh_material, emissive_texture), m->emissive_texture, 0 },
-        { offsetof(noh_material, normal_texture), m->normal_texture, 1 },
-        { offsetof(noh_material, surface_texture), m->surface_texture, 1 },
-        { offsetof(noh_material, wrinkle_texture), m->wrinkle_texture, 1 },
-        { offsetof(noh_material, more_textures), m->more_textures[0], !is_toon },
-        { offsetof(noh_material, more_textures) + 4u, m->more_textures[1], !is_toon },
-        { offsetof(noh_material, more_textures) + 8u, m->more_textures[2], 1 },
+    static const uint8_t fields[8] = {
+        offsetof(noh_material, base_color_texture), offsetof(noh_material, emissive_texture),
+        offsetof(noh_material, normal_texture),     offsetof(noh_material, surface_texture),
+        offsetof(noh_material, wrinkle_texture),    offsetof(noh_material, more_textures),
+        offsetof(noh_material, more_textures) + 4u, offsetof(noh_material, more_textures) + 8u,
     };
+    const uint32_t colors = m->surface == NOH_SURFACE_TOON ? 0x63u : 3u;
     noh_result result = NOH_OK;
-    for (size_t i = 0; !result && i < sizeof textures / sizeof textures[0]; i++) {
-        result = check_texture_of(check, textures[i].texture, textures[i].is_data, at + textures[i].field);
+    for (uint32_t i = 0; !result && i < sizeof fields; i++) {
+        uint32_t texture;
+        memcpy(&texture, (const uint8_t *)m + fields[i], sizeof texture);
+        result = check_texture_of(check, texture, !(colors >> i & 1u), at + fields[i]);
     }
     return result;
 }
@@ -141,6 +137,9 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result && m->surface == NOH_SURFACE_SKIN && m->surface_values[0] < 0.0f) {
         result = noh_check_fail(check, "skin has less than 0 millimetres in a unit",
                                 at + offsetof(noh_material, surface_values));
+    }
+    if (!result && (m->surface == NOH_SURFACE_SKIN || m->surface == NOH_SURFACE_TEETH) && m->surface_more[3] < 0.0f) {
+        result = noh_check_fail(check, "the gap of lips is below 0", at + offsetof(noh_material, surface_more));
     }
     return result ? result : check_toon(check, m, at);
 }

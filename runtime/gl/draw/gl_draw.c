@@ -288,13 +288,14 @@ static void set_toon(const noh_gl_renderer *r, const noh_gl_variant *v, const no
     r->gl->Uniform3fv(v->u_surface_more, 4, more[0]);
 }
 
-/* Half the lips' gap, in depths of the mouth: endless where no place of the mouth is known. A crowd adds its own
- * opening. */
+/* Half the lips' gap, in depths of the mouth: endless where no place of the mouth is known, and never so small that
+ * depths over it are not finite. A crowd adds its own opening. */
 static float half_gap(const noh_material *m, const noh_gl_morph_binding *morph, int is_crowd)
 {
     const float *more = m->surface_more;
     if (!(more[m->surface == NOH_SURFACE_SKIN ? 2 : 0] > 0.0f)) return 1e9f;
-    return (more[3] > 0.0f ? more[3] : 0.24f) + (morph && !is_crowd ? morph->lips : 0.0f);
+    const float rest = more[3] > 0.0f ? more[3] : 0.24f;
+    return (rest > 1.0f / 256.0f ? rest : 1.0f / 256.0f) + (morph && !is_crowd ? morph->lips : 0.0f);
 }
 
 /* Uniforms of skin, eye, teeth, toon and hair materials. The unit of skin defaults to metres. */

@@ -210,9 +210,10 @@ static noh_result no_crowds(uint32_t instance, noh_error *error)
                     instance, 0);
 }
 
-/* Write the row of a tile with its tint, as floats: its numbers are below 2^24 and so exact. Stored as integer bits
- * they would be denormal floats, which GPUs may flush to zero. last: the touched vertices, and half of how far the lips
- * are open, which is below 1 */
+/* Write the row of a tile with its tint, as floats: its whole numbers are below 2^24 and so exact. Stored as integer
+ * bits they would be denormal floats, which GPUs may flush to zero. last: the touched vertices, and half of how far the
+ * lips are open, below 0.75. That is exact up to 65,535 vertices; of more it is rounded, and never to a further
+ * vertex */
 static void put_tile(noh_gl_skin *skin, uint32_t row, const uint32_t tile[3], float last, const uint32_t tint[3])
 {
     float values[4];

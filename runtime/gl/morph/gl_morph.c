@@ -288,7 +288,8 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
     return morph->meshes[mesh].first_instance + i;
 }
 
-/* noh_gl_morph_binding.lips, in steps that a crowd's row holds (gl_skin.c). */
+/* noh_gl_morph_binding.lips, in steps that a crowd's row holds, and below 1.5: half of it, after the largest count, is
+ * not rounded to 1 there (gl_skin.c). */
 static float lips_of(const noh_gl_morph *m, uint32_t instance)
 {
     const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;

@@ -423,6 +423,10 @@ static float nan_value(void)
     X(material_more_nan, DATA, "not finite", f->materials[1].surface_more[5] = nan_value())                          \
     X(material_skin, DATA, "less than 0 millimetres",                                                                \
       (f->materials[0].surface = NOH_SURFACE_SKIN, f->materials[0].surface_values[0] = -1.0f))                       \
+    X(material_skin_gap, DATA, "gap of lips",                                                                        \
+      (f->materials[0].surface = NOH_SURFACE_SKIN, f->materials[0].surface_more[3] = -0.1f))                         \
+    X(material_teeth_gap, DATA, "gap of lips",                                                                       \
+      (f->materials[0].surface = NOH_SURFACE_TEETH, f->materials[0].surface_more[3] = -1e-40f))                      \
     X(material_toon, DATA, "hardness of a toon",                                                                     \
       (f->materials[0].surface = NOH_SURFACE_TOON, f->materials[0].surface_more[0] = 1.5f))                          \
     X(material_toon_color, DATA, "toon's rim or outline",                                                            \
