@@ -154,7 +154,7 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
         return 1;
     }
-    meshes_upright(s->m);
+    if (meshes_upright(s->m)) return out_of_memory(error);
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }

@@ -194,7 +194,7 @@ static void skinned_meshes_stand_upright(void **state)
     for (int skinned = 0; skinned < 3; skinned++) {
         model *m = turned_eyes(skinned), *upright = turned_eyes(skinned);
         model_error error;
-        meshes_upright(upright);
+        assert_int_equal(meshes_upright(upright), 0);
         for (uint32_t v = 0; v < 2u * BALL; v++) {
             const float *was = m->meshes[0].position + 3u * v, *is = upright->meshes[0].position + 3u * v;
             double before[3], after[3];

@@ -73,8 +73,8 @@ static model *eyes_of(double head_tilt, const double turns[2], int is_own, const
 
 static void eyes_stay_side_by_side(void **state)
 {
-    static const double tilts[][3] = { { 0, 0, 0 },   { 0, 0.5, 0.5 },  { 0, 2, 2 },     { 0, 2, 0 },
-                                       { 17, 0, 0 },  { -17, 3, -0.3 }, { 0.5, 0.2, 9 }, { 40, -20, 0 } };
+    static const double tilts[][3] = { { 0, 0, 0 },  { 0, 0.5, 0.5 },  { 0, 2, 2 },     { 0, 2, 0 },
+                                       { 17, 0, 0 }, { -17, 3, -0.3 }, { 0.5, 0.2, 9 }, { 40, -20, 0 } };
     static const float off[3] = { 0.01f, -0.002f, 0.012f };
     (void)state;
     for (size_t i = 0; i < 2u * TEST_COUNT(tilts); i++) {
@@ -95,8 +95,48 @@ static void eyes_stay_side_by_side(void **state)
     }
 }
 
+/* All skins of a figure turn as their topmost joint, however a limb is bent. */
+static void limbs_turn_no_mesh(void **state)
+{
+    static const double z_up[16] = { 1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1 };
+    static const double turns[][2] = { { -50, 40 }, { -90, 60 }, { 170, 0 } };
+    static const float off[3] = { 0.01f, -0.002f, 0.012f };
+    (void)state;
+    for (size_t i = 0; i < 4u * TEST_COUNT(turns); i++) {
+        const int is_z_up = i % 2u == 1u, is_lean = i / 2u % 2u == 1u;
+        model *m = eyes_of(is_lean ? 10.0 : 0.0, turns[i / 4u], 1, off);
+        for (uint32_t n = 0; is_z_up && n < 3; n++) {
+            double before[16];
+            memcpy(before, m->nodes[n].world, sizeof before);
+            affine_multiply(z_up, before, m->nodes[n].world);
+        }
+        assert_int_equal(meshes_upright(m), 0);
+        for (uint32_t e = 0; e < 2; e++) {
+            const float *p = m->meshes[e].position;
+            assert_true(p[0] == off[0] && p[1] == (is_z_up ? off[2] : off[1]) && p[2] == (is_z_up ? -off[1] : off[2]));
+        }
+        model_free(m);
+    }
+}
+
+/* A root that lies between the axes says nothing of them. */
+static void a_leaning_root_turns_no_mesh(void **state)
+{
+    static const double turns[2] = { 0, 0 };
+    static const float off[3] = { 0.01f, -0.002f, 0.012f };
+    (void)state;
+    model *m = eyes_of(-50.0, turns, 1, off);
+    assert_int_equal(meshes_upright(m), 0);
+    assert_memory_equal(m->meshes[0].position, off, sizeof off);
+    model_free(m);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(eyes_stay_side_by_side) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(eyes_stay_side_by_side),
+        cmocka_unit_test(limbs_turn_no_mesh),
+        cmocka_unit_test(a_leaning_root_turns_no_mesh),
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

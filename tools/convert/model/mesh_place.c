@@ -1,10 +1,13 @@
 #include "mesh_place.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/affine.h"
 #include "convert/model/model_build.h"
+
+#define TILT_MAX 0.94 /* cosine of 20 degrees: hips at rest lean less from the axes of their program */
 
 /* Row r of the turn that leaves right angles alone is sign[r] times the unit vector of axis[r]. */
 typedef struct right_turn {
@@ -12,15 +15,22 @@ typedef struct right_turn {
     double sign[3];
 } right_turn;
 
+/* The turn that is nearest to a matrix's: no two rows have one axis. */
 static right_turn turn_of(const double world[16])
 {
-    right_turn t;
-    for (int r = 0; r < 3; r++) {
-        int most = 0;
-        for (int c = 1; c < 3; c++) most = fabs(world[4 * c + r]) > fabs(world[4 * most + r]) ? c : most;
-        t.axis[r] = most;
-        t.sign[r] = world[4 * most + r] < 0.0 ? -1.0 : 1.0;
+    static const uint8_t orders[6][3] = {
+        { 0, 1, 2 }, { 0, 2, 1 }, { 1, 0, 2 }, { 1, 2, 0 }, { 2, 0, 1 }, { 2, 1, 0 }
+    };
+    right_turn t = { .axis = { 0, 1, 2 } };
+    double most = -1.0;
+    for (int i = 0; i < 6; i++) {
+        double sum = 0.0;
+        for (int r = 0; r < 3; r++) sum += fabs(world[4 * orders[i][r] + r]);
+        if (!(sum > most)) continue;
+        most = sum;
+        for (int r = 0; r < 3; r++) t.axis[r] = orders[i][r];
     }
+    for (int r = 0; r < 3; r++) t.sign[r] = world[4 * t.axis[r] + r] < 0.0 ? -1.0 : 1.0;
     return t;
 }
 
@@ -136,36 +146,32 @@ static int is_shared(const model *m, uint32_t skin)
     return 0;
 }
 
-/* The turn by which the joints of nearly all vertices place them. 0: there is none, or it mirrors. */
-static int find_turn(const model *m, uint32_t skin, right_turn *out)
+/* Of the ancestors of a skin's first joint that are joints, too, the topmost: parents come first. */
+static uint32_t top_of(const model *m, const model_skin *skin)
 {
-    uint64_t counts[2][3][3] = { { { 0 } } }, vertices = 0; /* [negative][row][axis] */
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const model_mesh *mesh = &m->meshes[i];
-        if (skin_of(m, i) != skin) continue;
-        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
-            const uint32_t joint = mesh->joints[(size_t)v * MODEL_INFLUENCES_MAX];
-            double at[16];
-            if (joint >= m->skins[skin].joint_count) return 0;
-            place_of_joint(m, &m->skins[skin], joint, at);
-            const right_turn t = turn_of(at);
-            for (int r = 0; r < 3; r++) counts[t.sign[r] < 0.0][r][t.axis[r]]++;
-            vertices++;
-        }
+    uint32_t top = MODEL_NONE;
+    double place[16];
+    for (uint32_t j = 0; j < skin->joint_count; j++) top = skin->joints[j] < top ? skin->joints[j] : top;
+    for (uint32_t p = top == MODEL_NONE ? top : m->nodes[top].parent; p != MODEL_NONE; p = m->nodes[p].parent) {
+        if (place_of_node(m, skin, p, place)) top = p;
     }
+    return top;
+}
+
+/* The turn by which the topmost joint of the skeleton places a skin's meshes, so that all skins of a figure take one:
+ * other joints turn limbs. 0: it is tilted, or it mirrors. */
+static int find_turn(const model *m, const model_skin *skin, right_turn *out)
+{
+    const uint32_t top = top_of(m, skin);
+    double place[16];
+    if (top == MODEL_NONE || !place_of_node(m, skin, top, place)) return 0;
+    *out = turn_of(place);
     for (int r = 0; r < 3; r++) {
-        int found = 0;
-        for (int k = 0; k < 6; k++) {
-            if (counts[k / 3][r][k % 3] * 10u <= vertices * 8u) continue;
-            out->axis[r] = k % 3;
-            out->sign[r] = k / 3 ? -1.0 : 1.0;
-            found = 1;
-        }
-        if (!found) return 0;
+        const double row[3] = { place[r], place[4 + r], place[8 + r] };
+        if (!(fabs(row[out->axis[r]]) > TILT_MAX * sqrt(vec_dot(row, row)))) return 0;
     }
-    const int a = out->axis[0], b = out->axis[1], c = out->axis[2];
     const double sign = out->sign[0] * out->sign[1] * out->sign[2];
-    return a != b && b != c && c != a && sign * ((b - a + 3) % 3 == 1 ? 1.0 : -1.0) > 0.0;
+    return sign * ((out->axis[1] - out->axis[0] + 3) % 3 == 1 ? 1.0 : -1.0) > 0.0;
 }
 
 static void turn_vectors(const right_turn *t, float *vectors, size_t count, size_t stride)
@@ -198,15 +204,27 @@ static void turn_back(const right_turn *t, float matrix[16])
     }
 }
 
-void meshes_upright(model *m)
+static int is_upright(const right_turn *t)
 {
-    for (uint32_t s = 0; s < m->skin_count; s++) {
-        right_turn t;
-        if (is_shared(m, s) || !find_turn(m, s, &t)) continue;
-        if (t.axis[0] == 0 && t.axis[1] == 1 && t.sign[0] > 0.0 && t.sign[1] > 0.0) continue;
-        for (uint32_t i = 0; i < m->mesh_count; i++) {
-            if (skin_of(m, i) == s) turn_mesh(&t, &m->meshes[i]);
-        }
-        for (uint32_t j = 0; j < m->skins[s].joint_count; j++) turn_back(&t, m->skins[s].inverse_bind + 16 * (size_t)j);
+    return t->axis[0] == 0 && t->axis[1] == 1 && t->sign[0] > 0.0 && t->sign[1] > 0.0;
+}
+
+int meshes_upright(model *m)
+{
+    static const right_turn none = { { 0, 1, 2 }, { 1.0, 1.0, 1.0 } };
+    right_turn *turns = model_zeros(m->skin_count, sizeof *turns);
+    if (!turns) return 1;
+    for (uint32_t s = 0; s < m->skin_count; s++) { /* all before any: skins look at each other's joints */
+        if (is_shared(m, s) || !find_turn(m, &m->skins[s], &turns[s])) turns[s] = none;
     }
+    for (uint32_t s = 0; s < m->skin_count; s++) {
+        const right_turn *t = &turns[s];
+        if (is_upright(t)) continue;
+        for (uint32_t i = 0; i < m->mesh_count; i++) {
+            if (skin_of(m, i) == s) turn_mesh(t, &m->meshes[i]);
+        }
+        for (uint32_t j = 0; j < m->skins[s].joint_count; j++) turn_back(t, m->skins[s].inverse_bind + 16 * (size_t)j);
+    }
+    free(turns);
+    return 0;
 }

@@ -13,8 +13,10 @@
 uint32_t mesh_places(const model *m, uint32_t mesh, uint32_t vertex, double out[MESH_PLACES_MAX][16]);
 
 /* Skinned meshes take the axes that the world has in the rest pose: files of programs whose z points up have a turn in
- * their joints, and up, ahead, left and right of a mesh's own space would be wrong. Vertices turn by right angles, the
- * skins' matrices turn back: the figure does not move. Skins whose meshes others draw, too, stay. */
-void meshes_upright(model *m);
+ * their joints, and up, ahead, left and right of a mesh's own space would be wrong. Vertices turn by the right angles of
+ * the skeleton's topmost joint, the skins' matrices turn back: the figure does not move. Skins whose meshes others draw,
+ * too, stay, and those below a topmost joint that leans from all axes.
+ * errors  1: out of memory */
+int meshes_upright(model *m);
 
 #endif
