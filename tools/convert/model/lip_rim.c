@@ -95,53 +95,66 @@ static int stays(const lip_rim *h, uint32_t v)
     return h->island[v] == h->skin && (double)h->moved[v] < 0.25 * h->most;
 }
 
-static const float *sorted_by;
-
-static int by_x(const void *a, const void *b)
+/* The place of a cell in h->work, which holds the first vertex of each. Cells may share one. */
+static uint32_t place_of_cell(const lip_rim *h, const double cell[3])
 {
-    const float x = sorted_by[3 * (size_t) * (const uint32_t *)a], y = sorted_by[3 * (size_t) * (const uint32_t *)b];
-    return (x > y) - (x < y);
+    uint64_t hash = 0;
+    for (int i = 0; i < 3; i++) hash = hash * 0x9E3779B97F4A7C15u + (uint64_t)(int64_t)cell[i];
+    return (uint32_t)((hash ^ hash >> 32) % h->mesh->vertex_count);
 }
 
-/* The first of a sorted list at x or beyond. */
-static uint32_t first_at(const lip_rim *h, uint32_t count, double x)
+static void cell_of(const lip_rim *h, uint32_t v, double side, double out[3])
 {
-    uint32_t low = 0, high = count;
-    while (low < high) {
-        const uint32_t middle = low + (high - low) / 2u;
-        if ((double)h->mesh->position[3 * (size_t)h->work[middle]] < x) {
-            low = middle + 1u;
-        } else {
-            high = middle;
+    lip_point(h->mesh->position, v, out);
+    for (int i = 0; i < 3; i++) out[i] = fmin(fmax(floor(out[i] / side), -1e15), 1e15);
+}
+
+/* List what stays by cells. */
+static void fill_cells(lip_rim *h, double side)
+{
+    double cell[3];
+    for (uint32_t v = 0; v < h->mesh->vertex_count; v++) h->work[v] = h->next[v] = MODEL_NONE;
+    for (uint32_t v = 0; v < h->mesh->vertex_count; v++) {
+        if (!stays(h, v)) continue;
+        cell_of(h, v, side, cell);
+        const uint32_t place = place_of_cell(h, cell);
+        h->next[v] = h->work[place];
+        h->work[place] = v;
+    }
+}
+
+/* What stays nearest to a vertex, no further away than a cell's side; MODEL_NONE: nothing. Equal ones: the last. */
+static uint32_t nearest_of(const lip_rim *h, uint32_t v, double side)
+{
+    uint32_t found = MODEL_NONE;
+    double nearest = side, middle[3];
+    cell_of(h, v, side, middle);
+    for (int i = 0; i < 27; i++) {
+        const double cell[3] = { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 };
+        for (uint32_t u = h->work[place_of_cell(h, cell)]; u != MODEL_NONE; u = h->next[u]) {
+            const double apart = lip_between(h, v, u);
+            if (!(apart < nearest || (apart <= nearest && (found == MODEL_NONE || u > found)))) continue;
+            nearest = apart;
+            found = u;
         }
     }
-    return low;
+    return found;
 }
 
+/* If there are too many, they are taken at equal steps, so that both corners are among them in whatever order. */
 static void find_rim(lip_rim *h, double touch)
 {
-    uint32_t uppers = 0;
-    h->rim_count = 0;
+    uint32_t count = 0, at = 0;
+    fill_cells(h, touch);
     for (uint32_t v = 0; v < h->mesh->vertex_count; v++) {
-        if (stays(h, v)) h->work[uppers++] = v;
+        if (goes_along(h, v)) count += (h->next[v] = nearest_of(h, v, touch)) != MODEL_NONE;
     }
-    sorted_by = h->mesh->position;
-    qsort(h->work, uppers, sizeof *h->work, by_x);
-    for (uint32_t v = 0; v < h->mesh->vertex_count && h->rim_count < LIP_RIM_MAX; v++) {
-        const double x = (double)h->mesh->position[3 * (size_t)v];
-        double nearest = touch;
-        uint32_t upper = MODEL_NONE;
-        if (!goes_along(h, v)) continue;
-        for (uint32_t u = first_at(h, uppers, x - touch); u < uppers; u++) {
-            if ((double)h->mesh->position[3 * (size_t)h->work[u]] > x + touch) break;
-            const double apart = lip_between(h, v, h->work[u]);
-            if (!(apart <= nearest)) continue;
-            nearest = apart;
-            upper = h->work[u];
-        }
-        if (upper == MODEL_NONE) continue;
-        h->upper[h->rim_count] = upper;
-        h->rim[h->rim_count++] = v;
+    h->rim_count = count < LIP_RIM_MAX ? count : LIP_RIM_MAX;
+    for (uint32_t v = 0, taken = 0; taken < h->rim_count; v++) {
+        if (!goes_along(h, v) || h->next[v] == MODEL_NONE) continue;
+        if (at++ < (uint64_t)taken * count / h->rim_count) continue;
+        h->upper[taken] = h->next[v];
+        h->rim[taken++] = v;
     }
 }
 
@@ -206,9 +219,10 @@ int lip_rim_find(const model_mesh *mesh, lip_rim *h, const char **why)
     h->mesh = mesh;
     h->island = model_zeros(count, sizeof *h->island);
     h->work = model_zeros(count, sizeof *h->work);
+    h->next = model_zeros(count, sizeof *h->next);
     h->moved = model_zeros(count, sizeof *h->moved);
     h->bite = model_zeros(count, 3 * sizeof *h->bite);
-    if (!h->island || !h->work || !h->moved || !h->bite) return 1;
+    if (!h->island || !h->work || !h->next || !h->moved || !h->bite) return 1;
     *why = look(h);
     return 0;
 }
@@ -217,6 +231,7 @@ void lip_rim_free(lip_rim *h)
 {
     free(h->island);
     free(h->work);
+    free(h->next);
     free(h->moved);
     free(h->bite);
 }

@@ -16,6 +16,7 @@ typedef struct lip_rim {
     const model_mesh *mesh;
     uint32_t *island; /* [vertex_count] */
     uint32_t *work;   /* [vertex_count] */
+    uint32_t *next;   /* [vertex_count] of what stays, the next of its cell; of what goes along, what is nearest to it */
     float *moved;     /* [vertex_count] how far the open mouth moves it */
     float *bite;      /* [vertex_count][3] rest, and the deltas of the recipe's FF */
     double most;      /* the farthest of `moved` */
