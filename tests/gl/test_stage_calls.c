@@ -12,8 +12,15 @@
 #define HASHES_MAX 4096u
 #define KNOWN 64u
 
+/* Kinds after the kinds of the cast. */
+enum { COATS = CAST_KINDS, ROAMERS, ALL_KINDS };
+#define EACH 3u /* of coats and roamers */
+
 typedef struct game {
     cast c;
+    noh_file files[2]; /* of coats and roamers */
+    noh_pack packs[2];
+    noh_kind_desc kinds[ALL_KINDS];
     gpu g;
     test_random calls;      /* draws what is called: the same for both stages */
     test_random driver;     /* draws when contexts are lost, and what refuses a restore */
@@ -21,7 +28,7 @@ typedef struct game {
     uint8_t *saved;         /* a copy of the state, size bytes */
     size_t saved_bytes;
     int in_frame, lost, loses;
-    uint32_t actor_count; /* at most */
+    uint32_t kind_count, actor_count; /* actors: at most */
     uint32_t view_count, done, failed, losses, refusals;
     uint64_t hashes[HASHES_MAX];
     uint32_t hash_count;
@@ -72,7 +79,7 @@ static noh_result call_spawn(game *g, noh_error *error)
 {
     const noh_place place = somewhere(g);
     noh_actor actor = { 0 };
-    const noh_result result = noh_stage_spawn(g->c.stage, below(g, 12) ? below(g, CAST_KINDS) : CAST_KINDS,
+    const noh_result result = noh_stage_spawn(g->c.stage, below(g, 12) ? below(g, g->kind_count) : g->kind_count,
                                               below(g, 3) ? &place : NULL, &actor, error);
     if (!result) g->known[below(g, KNOWN)] = actor;
     return result;
@@ -149,6 +156,71 @@ static noh_result call_parameter(game *g, noh_error *error)
     return noh_actor_set_parameter(g->c.stage, somebody(g), below(g, 6), number(g), error);
 }
 
+/* Coats, and then the actors of motion matching, are the last ones. */
+static noh_actor one_of(game *g, uint32_t kind)
+{
+    const uint32_t first = g->actor_count - g->kinds[ROAMERS].actor_count -
+                           (kind == COATS ? g->kinds[COATS].actor_count : 0u);
+    if (g->kind_count < ALL_KINDS || below(g, 4) == 0) return somebody(g);
+    return noh_stage_actor_at(g->c.stage, first + below(g, g->kinds[kind].actor_count));
+}
+
+static noh_result call_wear(game *g, noh_error *error)
+{
+    const noh_actor wearer = below(g, 2) ? one_of(g, ROAMERS) : somebody(g);
+    return noh_actor_wear(g->c.stage, one_of(g, COATS), wearer, error);
+}
+
+static noh_result call_match(game *g, noh_error *error)
+{
+    static const char *const tags[] = { NULL, "", "first", "no such tag" };
+    noh_match_goal goal;
+    memset(&goal, 0, sizeof goal);
+    for (int i = 0; i < 3; i++) goal.velocity[i] = number(g);
+    if (below(g, 3) == 0) goal.facing[0] = number(g), goal.facing[2] = number(g);
+    goal.tags = tags[below(g, TEST_COUNT(tags))];
+    return noh_actor_match(g->c.stage, one_of(g, ROAMERS), below(g, 6) ? &goal : NULL, error);
+}
+
+static noh_result call_shift(game *g, noh_error *error)
+{
+    float by[3];
+    for (int i = 0; i < 3; i++) by[i] = number(g);
+    return noh_stage_shift_origin(g->c.stage, by, error);
+}
+
+/* The game's own modifier: a joint goes round a point, by its state. */
+typedef struct round_trip {
+    float at, speed;
+    uint32_t calls, reserved;
+} round_trip;
+
+static void go_round(noh_modifier_work *work)
+{
+    round_trip *trip = work->state;
+    if (work->cut) trip->at = 0.0f;
+    trip->at = fmodf(trip->at + trip->speed * (float)work->ticks / (float)NOH_TICKS_PER_SECOND, 6.0f);
+    trip->calls++;
+    work->local[1].translation[0] += 0.01f * trip->at;
+}
+
+static const char *check_trip(const void *user, const void *state)
+{
+    const round_trip *trip = state;
+    (void)user;
+    return trip->at > -7.0f && trip->at < 7.0f && trip->speed >= -50.0f && trip->speed <= 50.0f ? NULL : "a bad trip";
+}
+
+static noh_result call_modifier(game *g, noh_error *error)
+{
+    round_trip *trip = noh_actor_modifier(g->c.stage, one_of(g, ROAMERS), below(g, 3));
+    const float speed = (float)below(g, 100) - 50.0f;
+    (void)error;
+    assert_true(!trip || !g->in_frame);
+    if (trip) trip->speed = speed;
+    return NOH_OK;
+}
+
 /* What asks may be called at any time; what it says must be finite. */
 static noh_result call_ask(game *g, noh_error *error)
 {
@@ -219,10 +291,21 @@ static noh_result call_end(game *g, noh_error *error)
     return result;
 }
 
+/* The driver refuses one of the next calls: the context is as good as lost. */
+static void refuse_a_draw(game *g)
+{
+    static const char *const functions[] = { "glDrawElements", "glUseProgram", "glBindBuffer", "glBufferSubData" };
+    const char *function = functions[test_random_below(&g->driver, TEST_COUNT(functions))];
+    assert_true(noh_null_refuse(g->g.context, function, test_random_below(&g->driver, 4), GL_OUT_OF_MEMORY));
+    g->lost = 1;
+    g->losses++;
+}
+
 static noh_result call_draw(game *g, noh_error *error)
 {
     const noh_pass pass = (noh_pass)below(g, 4);
     noh_draw draws[8];
+    if (g->loses && !g->lost && test_random_below(&g->driver, 16) == 0) refuse_a_draw(g);
     (void)noh_stage_list_draws(g->c.stage, below(g, 4), pass == NOH_PASS_BLENDED, draws, 8);
     return noh_stage_draw(g->c.stage, pass, below(g, 4), NULL, error);
 }
@@ -265,6 +348,7 @@ static const call calls[] = {
     { call_hold, 4, 1, 0 },  { call_graph, 2, 1, 0 },   { call_step, 10, 1, 0 },  { call_parameter, 1, 1, 0 },
     { call_ask, 4, 0, 0 },   { call_pick, 1, 0, 0 },    { call_begin, 12, 1, 0 }, { call_jobs, 8, 1, 1 },
     { call_end, 14, 1, 1 },  { call_draw, 8, 0, 0 },    { call_save, 1, 0, 0 },   { call_load, 1, 1, 0 },
+    { call_wear, 4, 1, 0 },  { call_match, 3, 1, 0 },   { call_shift, 1, 1, 0 },  { call_modifier, 1, 1, 0 },
 };
 
 /* Mostly one that fits: a frame is begun and ended in turn, and within it little else may be called. */
@@ -325,6 +409,37 @@ static void restore(game *g)
 
 /* ---- a game ---- */
 
+static void map_more(game *g, uint32_t which, const char *name)
+{
+    const char *build = getenv("NOH_BUILD");
+    char path[1024];
+    snprintf(path, sizeof path, "%s/demo/%s.noh", build ? build : "build", name);
+    assert_int_equal(noh_file_map(path, &g->files[which], NULL), NOH_OK);
+    g->packs[which] = test_open(g->files[which].data, g->files[which].bytes);
+}
+
+/* Coats for those with joints, and puppets that go by motion matching with a modifier of the game's. */
+static void add_kinds(game *g)
+{
+    static const noh_modifier trips = {
+        .name = "trip", .modify = go_round, .check = check_trip, .state_bytes = sizeof(round_trip)
+    };
+    noh_kind_desc *coats = &g->kinds[COATS], *roamers = &g->kinds[ROAMERS];
+    map_more(g, 0, "coat");
+    map_more(g, 1, "roam");
+    g->kind_count = ALL_KINDS;
+    coats->mesh = &g->packs[0];
+    coats->worn_by = 1u << PUPPETS | 1u << ROAMERS;
+    coats->springs = noh_springs_module(NULL);
+    *roamers = g->kinds[PUPPETS];
+    memset(&roamers->graphs, 0, sizeof roamers->graphs);
+    roamers->clips = &g->packs[1];
+    roamers->match = noh_match_module(NULL);
+    roamers->modifiers = &trips;
+    roamers->modifier_count = 1;
+    coats->actor_count = roamers->actor_count = EACH;
+}
+
 /* alone: one actor of each kind, as finished vertices want it */
 static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int loses)
 {
@@ -340,9 +455,14 @@ static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int lose
     g->c.kinds[PUPPETS].graphs = noh_graph_module("*");
     g->c.kinds[PUPPETS].inertia = 1;
     g->c.kinds[MASKS].visible_max = alone ? 1 : 4;
-    for (uint32_t i = 0; i < CAST_KINDS; i++) {
-        if (alone) g->c.kinds[i].actor_count = 1;
-        g->actor_count += g->c.kinds[i].actor_count;
+    memcpy(g->kinds, g->c.kinds, sizeof g->c.kinds);
+    g->kind_count = CAST_KINDS;
+    if (alone || path == NOH_MORPH_AUTO) add_kinds(g); /* in some stages: they take time */
+    g->c.desc.kinds = g->kinds;
+    g->c.desc.kind_count = g->kind_count;
+    for (uint32_t i = 0; i < g->kind_count; i++) {
+        if (alone) g->kinds[i].actor_count = 1;
+        g->actor_count += g->kinds[i].actor_count;
     }
     g->c.desc.slot_moves = 3;
     g->c.desc.job_count = 3;
@@ -355,14 +475,20 @@ static void open_game(game *g, uint32_t seed, uint32_t path, int alone, int lose
     g->saved = test_aligned(noh_stage_state(g->c.stage, &g->saved_bytes), g->saved_bytes);
 }
 
+static void close_files(game *g)
+{
+    cast_close(&g->c);
+    for (int i = 0; i < 2; i++) noh_file_unmap(&g->files[i]);
+    free(g->saved);
+}
+
 static void close_game(game *g)
 {
     noh_null_report report;
     cast_close_stage(&g->c);
     noh_null_report_of(g->g.context, &report);
     for (int kind = 0; kind < NOH_NULL_KINDS; kind++) assert_int_equal(report.live[kind], 0);
-    cast_close(&g->c);
-    free(g->saved);
+    close_files(g);
     gpu_close(&g->g);
 }
 
@@ -382,7 +508,7 @@ static void one_call(game *g)
                     result == NOH_ERR_DATA);
     }
     if (!in_frame && !g->in_frame && (result || !c->state)) assert_true(noh_stage_hash(g->c.stage) == before);
-    no_violation(g);
+    if (!g->lost) no_violation(g);
     if (g->in_frame) return;
     if (g->hash_count < HASHES_MAX) g->hashes[g->hash_count++] = noh_stage_hash(g->c.stage);
     if (g->lost) restore(g);
@@ -442,8 +568,7 @@ static void a_lost_stage_is_deleted(void **state)
     noh_null_report_of(g->g.context, &after);
     assert_memory_equal(&before, &after, sizeof before);
     assert_memory_equal(&g->g.ledger, &nothing, sizeof nothing);
-    cast_close(&g->c);
-    free(g->saved);
+    close_files(g);
     renew(g);
     gpu_close(&g->g);
     free(g);

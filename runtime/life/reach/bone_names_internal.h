@@ -21,7 +21,7 @@ typedef struct noh_bone_name {
     const char *keys;
 } noh_bone_name;
 
-/* In the order of noh_bone, from the hips; a bone that each side has is listed once. */
+/* In the order of noh_bone, from the hips; a bone of both sides has one row. */
 extern const noh_bone_name noh_bone_names[NOH_BONE_NAMES];
 
 /* Keys of what stands in front of names or behind them, with blanks between them. */
