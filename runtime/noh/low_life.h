@@ -621,8 +621,8 @@ typedef struct noh_retarget_rig {
 } noh_retarget_rig;
 
 /* Find bones by names, as the converter does, in packs with or without meshes: of Unity, Mixamo, Unreal, VRM, Daz and
- * others. Hips are above both thighs. Where names give no two thighs, the rows of noh_ragdoll_find_rows give hips, spine,
- * upper chest, head (or the neck below it), arms, legs and toes; left is then at +x.
+ * others. Hips are above both thighs. Where names give no two thighs, the rows of noh_ragdoll_find_rows give hips,
+ * spine, upper chest, head (or the neck below it), arms, legs and toes; left is then at +x.
  * errors   NOT_FOUND there are no two thighs: fill in `bones` by hand */
 noh_result noh_retarget_rig_make(const noh_ragdoll_source *source, noh_retarget_rig *rig, noh_error *error);
 

@@ -160,7 +160,8 @@ static noh_result open_all(const noh_stage_desc *desc, const noh_stage_plan *pla
 
 static noh_result of_another_desc(const noh_stage_plan *plan, noh_error *error)
 {
-    return noh_fail(error, NOH_ERR_ARG, "the plan of a stage was made for another desc: make one for this desc", 0, plan->cpu_bytes);
+    return noh_fail(error, NOH_ERR_ARG, "the plan of a stage was made for another desc: make one for this desc", 0,
+                    plan->cpu_bytes);
 }
 
 /* The sizes of all that plays follow from what the plan says of the clips: it is read again, and believed where it is
