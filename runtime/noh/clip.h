@@ -587,6 +587,7 @@ typedef struct noh_clip_map {
     float ratio;                         /* of the target's size to the source's, each in its own unit */
     /* private: a pose of the source as one of the target, or its first joint_count joints */
     void (*pose)(const struct noh_clip_map *map, const noh_transform *from, uint32_t joint_count, noh_transform *to);
+    uint32_t least; /* private: a pose of fewer joints is cut from one of this many, on which they depend; 0: none */
 } noh_clip_map;
 
 typedef struct noh_clip_bank_desc {

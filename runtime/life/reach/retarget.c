@@ -346,6 +346,17 @@ static void pose_of_clip(const noh_clip_map *map, const noh_transform *from, uin
     noh_retarget_pose((const noh_retarget *)(const void *)map, from, NULL, joint_count, to);
 }
 
+/* Where the hips are the first joint, legs that do not reach move it: a pose of one joint then needs the legs'. */
+static uint32_t joints_for_first(const noh_retarget *r)
+{
+    uint32_t least = 0;
+    for (uint32_t i = 0; i < 6 && r->moved[1][TARGET] == 0; i++) {
+        const noh_retarget_limb *leg = &r->limbs[i / 3u];
+        if (leg->exists && leg->target[i % 3u] >= least) least = leg->target[i % 3u] + 1u;
+    }
+    return least;
+}
+
 noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *source, const noh_retarget_rig *target,
                              uint32_t flags, noh_retarget_joint *joints, noh_error *error)
 {
@@ -376,5 +387,6 @@ noh_result noh_retarget_init(noh_retarget *retarget, const noh_retarget_rig *sou
     map_joints(&m, joints);
     find_moved(&m);
     for (uint32_t i = 0; i < 4; i++) make_limb(&m, i, forward);
+    retarget->clips.least = joints_for_first(retarget);
     return NOH_OK;
 }

@@ -35,7 +35,7 @@ typedef struct counts {
     int roots;
     uint32_t reserve_bytes; /* 0: none */
     size_t clip_max;        /* bytes of the largest clip in its pack */
-    uint32_t mapped;        /* joints of the map's source; 0: no clip needs it */
+    uint32_t mapped;        /* joints in memory for the map; 0: no clip needs it */
 } counts;
 
 /* The layout. NULL while measuring. */
@@ -105,7 +105,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
                         noh_bank_where(found->at), (uint64_t)c->shape.clip_count + 1u);
     }
     c->shape.clip_count++;
-    if (found->is_mapped) c->mapped = b->map->source->joint_count;
+    if (!NOH_PAGE && found->is_mapped) c->mapped = noh_bank_map_joints(b->map);
     if (!NOH_PAGE && found->clip.byte_count > c->clip_max) c->clip_max = found->clip.byte_count;
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;

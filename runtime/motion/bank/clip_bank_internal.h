@@ -37,6 +37,12 @@ struct noh_bank_clip {
     uint16_t is_mapped; /* 1: its joints are of the map's source */
 };
 
+/* The joints that a map needs in memory for one pose: its source's, and those that fewer joints are cut from. */
+static inline uint32_t noh_bank_map_joints(const noh_clip_map *map)
+{
+    return map->source->joint_count + map->least;
+}
+
 /* What bytes of the bank take in it: a multiple of 16. */
 static inline size_t noh_clip_bank_align(size_t bytes)
 {

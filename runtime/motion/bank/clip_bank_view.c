@@ -42,7 +42,7 @@ static const struct noh_bank_clip *bound_clip(const noh_clip_bank *bank, uint32_
     return noh_clip_is_absent(&bank->clips, index) ? &nothing : &bank->bound[index];
 }
 
-/* How many joints of a clip are read for the first joint_count of the skeleton: of another skeleton all. */
+/* How many joints of a clip are read for the first joint_count of the skeleton. A map takes a whole pose. */
 static uint32_t joints_of(const noh_clip_bank *bank, const struct noh_bank_clip *clip, uint32_t joint_count)
 {
     if (!NOH_PAGE && clip->is_mapped && joint_count) return bank->map->source->joint_count;
@@ -54,10 +54,16 @@ static noh_transform *pose_of(const struct noh_bank_clip *clip, noh_transform *m
     return !NOH_PAGE && clip->is_mapped ? mapped : pose;
 }
 
-static void take_mapped(const noh_clip_bank *bank, const struct noh_bank_clip *clip, const noh_transform *mapped,
+/* The first joints of a pose may depend on later ones: root motion takes one joint, which has to be as in the whole
+ * pose. */
+static void take_mapped(const noh_clip_bank *bank, const struct noh_bank_clip *clip, noh_transform *mapped,
                         uint32_t joint_count, noh_transform *pose)
 {
-    if (!NOH_PAGE && clip->is_mapped && joint_count) bank->map->pose(bank->map, mapped, joint_count, pose);
+    if (NOH_PAGE || !clip->is_mapped || !joint_count) return;
+    const noh_clip_map *map = bank->map;
+    noh_transform *whole = joint_count < map->least ? mapped + map->source->joint_count : pose;
+    map->pose(map, mapped, joint_count < map->least ? map->least : joint_count, whole);
+    if (whole != pose) memcpy(pose, whole, joint_count * sizeof *pose);
 }
 
 static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_t joint_count, noh_transform *pose,
@@ -107,7 +113,8 @@ static size_t carve(noh_arena *arena, const noh_clip_bank *bank, noh_clip_bank_v
     *view = noh_arena_carve(arena, sizeof **view, 16u);
     *clips = noh_arena_carve(arena, noh_clip_view_size(bank->cache), 16u);
     *sampled = noh_arena_carve(arena, bank->sampled_count * sizeof **sampled, 4u);
-    *mapped = bank->map ? noh_arena_carve(arena, bank->map->source->joint_count * sizeof **mapped, 4u) : NULL;
+    *mapped = !NOH_PAGE && bank->map ? noh_arena_carve(arena, noh_bank_map_joints(bank->map) * sizeof **mapped, 4u)
+                                     : NULL;
     return arena->used;
 }
 

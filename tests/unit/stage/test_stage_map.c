@@ -77,7 +77,7 @@ static void open_show(show *w, const char *recording, uint32_t jobs)
     w->packs[1] = &w->c.packs[LENDER];
     make_rig(w, 0, w->packs[1]);
     make_rig(w, 1, w->packs[0]);
-    w->map.clips = (noh_clip_map){ &w->skeletons[0], &w->skeletons[1], 1.0f, NULL };
+    w->map.clips = (noh_clip_map){ &w->skeletons[0], &w->skeletons[1], 1.0f, NULL, 0 };
     w->c.kinds[0].mesh = &w->c.packs[PUPPETS];
     w->c.kinds[0].clip_packs = w->packs;
     w->c.kinds[0].clip_pack_count = 2;
@@ -171,6 +171,59 @@ static void the_pose_is_the_maps(void **state)
         free(l.memory);
         close_show(&w);
     }
+}
+
+static void expect_shown(const show *w, const noh_transform *pose, const float from[3], float error)
+{
+    static float matrices[12 * JOINTS];
+    noh_local_to_model(&w->skeletons[1], pose, w->skeletons[1].joint_count, matrices);
+    for (uint32_t j = 0; j < w->skeletons[1].joint_count; j++) {
+        float m[12];
+        assert_int_equal(noh_actor_joint(w->c.stage, w->actors[0], j, m, &said), NOH_OK);
+        for (uint32_t i = 0; i < 12; i++) {
+            const float wanted = matrices[12u * j + i] - (i % 4u == 3u ? from[i / 4u] : 0.0f);
+            if (fabsf(m[i] - wanted) > error) fail_msg("joint %u, %u: %g, not %g", j, i, (double)m[i], (double)wanted);
+        }
+    }
+}
+
+/* Hips that are joint 0 go down for legs with a wide stance. What root motion takes from the pose, the place gets, so
+ * joints are in the world where the whole pose has them. */
+static void root_motion_is_of_the_pose_that_is_shown(void **state)
+{
+    noh_transform from[JOINTS], to[JOINTS];
+    float start[3], low = 0.0f;
+    show w;
+    (void)state;
+    open_show(&w, "Knight__Jump_Full_Long", 1);
+    w.rigs[1].bones[NOH_BONE_HIPS] = 0;
+    w.rigs[1].bones[NOH_BONE_ROOT] = NOH_JOINT_ROOT;
+    make_map(&w);
+    for (int i = 0; i < 2; i++) w.map.limbs[i].stance[0] += (i ? -0.5f : 0.5f) * w.map.limbs[i].length;
+    w.c.kinds[0].root_axes = NOH_ROOT_X | NOH_ROOT_Y | NOH_ROOT_Z;
+    w.c.kinds[0].root_up = 1;
+    w.c.desc.full_detail = 1;
+    cast_make(&w.c, NULL);
+    enter(&w);
+    play(&w, 0, w.clip, 1);
+    const lender l = open_lender(&w);
+    for (uint32_t f = 0; f < 40; f++) {
+        uint32_t tick = 0;
+        if (f) {
+            frame(&w, 1400);
+            tick = (uint32_t)(noh_actor_track(w.c.stage, w.actors[0], 0)->position / 65536);
+        }
+        l.bank->clips.sample(l.bank->clips.user, 0, tick, w.skeletons[0].joint_count, from, 0, NULL);
+        noh_retarget_pose(&w.map, from, NULL, 1, to);
+        const float alone = to[0].translation[1];
+        noh_retarget_pose(&w.map, from, NULL, w.skeletons[1].joint_count, to);
+        low = fmaxf(low, alone - to[0].translation[1]);
+        if (!f) memcpy(start, to[0].translation, sizeof start);
+        if (f) expect_shown(&w, to, start, 1e-3f);
+    }
+    assert_true(low > 0.02f);
+    free(l.memory);
+    close_show(&w);
 }
 
 /* ---- what the converter makes ---- */
@@ -438,6 +491,7 @@ static void maps_of_other_skeletons_are_refused(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_pose_is_the_maps),
+    cmocka_unit_test(root_motion_is_of_the_pose_that_is_shown),
     cmocka_unit_test(it_is_near_what_the_converter_makes),
     cmocka_unit_test(the_plan_has_its_bytes),
     cmocka_unit_test(it_is_saved_and_forked),
