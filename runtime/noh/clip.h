@@ -610,7 +610,8 @@ typedef struct noh_clip_bank_desc {
      * time (low_motion.h); default (0) the full rate */
     uint32_t sample_rate_needed;
     uint32_t reserve_bytes; /* private, as noh_kind_desc.clip_reserve (noh.h); 0 */
-    /* clips of map->source play, too, as poses of the skeleton. Must outlive the bank. Default (NULL) none */
+    /* clips of map->source play, too, as poses of the skeleton, which map->target has to be. In a pack, one of the
+     * skeleton itself hides mapped ones of its name. Must outlive the bank, unchanged. Default (NULL) none */
     const noh_clip_map *map;
 } noh_clip_bank_desc;
 
@@ -622,7 +623,7 @@ typedef struct noh_clip_bank_needs {
     uint32_t cached_segment_count; /* segments that the cache will hold */
     uint32_t segment_count;        /* segments of all clips */
     uint32_t foreign_count;        /* clips left out because they move another skeleton */
-    uint32_t replaced_count;       /* clips left out because a later pack has one of the same name */
+    uint32_t replaced_count;       /* clips left out for one of the same name: in a later pack, or not through `map` */
 } noh_clip_bank_needs;
 
 typedef struct noh_clip_bank {

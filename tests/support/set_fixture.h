@@ -68,8 +68,8 @@ static inline void set_fixture_clip(const raw_skeleton *s, raw_clip *c, uint32_t
     set_fixture_floats(c, 1, name);
 }
 
-/* The pack of a raw set, which is freed, and of graphs (NULL: none). */
-static inline set_fixture set_fixture_of_graphs(raw_set *raw, graph_file *graphs)
+/* The pack of raw sets, which are freed, and of graphs (NULL: none). */
+static inline set_fixture set_fixture_of_sets(raw_set **raws, uint32_t count, graph_file *graphs)
 {
     set_fixture x;
     model *empty = model_new();
@@ -79,7 +79,7 @@ static inline set_fixture set_fixture_of_graphs(raw_set *raw, graph_file *graphs
     model_error error;
     byte_buffer out = { NULL, 0, 0, 0 };
     memset(&settings, 0, sizeof settings);
-    if (clips_encode(&raw, 1, &settings, &made, &error)) {
+    if (clips_encode(raws, count, &settings, &made, &error)) {
         fail_msg("%s", error.what);
     }
     chunks[NOH_CHUNK_GRAPH] = graphs;
@@ -92,8 +92,13 @@ static inline set_fixture set_fixture_of_graphs(raw_set *raw, graph_file *graphs
     buffer_free(&out);
     clips_free(&made);
     model_free(empty);
-    raw_set_free(raw);
+    for (uint32_t i = 0; i < count; i++) raw_set_free(raws[i]);
     return x;
+}
+
+static inline set_fixture set_fixture_of_graphs(raw_set *raw, graph_file *graphs)
+{
+    return set_fixture_of_sets(&raw, 1, graphs);
 }
 
 static inline set_fixture set_fixture_of(raw_set *raw)

@@ -88,7 +88,7 @@ static int fits(const noh_bank_binding *b, noh_bank_found *found)
     clip->bind = built_with.bind_pose;
     if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
         (b->mesh == pack && h->skeleton != b->skeleton_index)) {
-        found->is_mapped = b->map && is_same(&built_with, b->map->source);
+        found->is_mapped = !NOH_PAGE && b->map && is_same(&built_with, b->map->source);
         return found->is_mapped;
     }
     return 1;
@@ -100,17 +100,31 @@ static uint32_t name_hash_at(const noh_bank_binding *b, noh_bank_place at)
     return pack->chunks[pack->runs[NOH_CHUNK_CLIP].first + at.index].name_hash;
 }
 
-/* Find the first clip of a pack that fits and has this name. Returns 0 if there is none. */
-static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
+/* Find the first clip of a pack that has this name and fits: without the map, or only through it. Returns 0 if there
+ * is none. */
+static int find_as(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, int is_mapped, noh_bank_found *found)
 {
     noh_bank_place at = { pack, 0 };
     for (; at.index < b->packs[pack]->runs[NOH_CHUNK_CLIP].count; at.index++) {
         if (name_hash_at(b, at) == name_hash) {
             found->at = at;
-            if (fits(b, found)) return 1;
+            if (fits(b, found) && (NOH_PAGE || found->is_mapped == is_mapped)) return 1;
         }
     }
     return 0;
+}
+
+/* Find a pack's clip of a name; one of the skeleton itself comes before one that plays through the map. */
+static int find_name(const noh_bank_binding *b, uint32_t pack, uint32_t name_hash, noh_bank_found *found)
+{
+    return find_as(b, pack, name_hash, 0, found) || (!NOH_PAGE && b->map && find_as(b, pack, name_hash, 1, found));
+}
+
+/* Whether a clip that plays through the map has its name from a clip of the skeleton itself in its pack. */
+static int is_hidden(const noh_bank_binding *b, const noh_bank_found *found)
+{
+    noh_bank_found own;
+    return !NOH_PAGE && found->is_mapped && find_as(b, found->at.pack, name_hash_at(b, found->at), 0, &own);
 }
 
 /* A clip replaces the clip of the same name in the first pack that has it, so an added pack renumbers no clip: a clip
@@ -139,7 +153,7 @@ int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank
         }
         next->index++;
         found->at = at;
-        if (fits(b, found) && resolve(b, at, found)) return 1;
+        if (fits(b, found) && !is_hidden(b, found) && resolve(b, at, found)) return 1;
     }
     return 0;
 }

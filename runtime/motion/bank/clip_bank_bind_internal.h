@@ -48,7 +48,8 @@ typedef struct noh_bank_found {
 noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error);
 
 /* Get the next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 if there is none. A
- * clip is replaced by one of the same name in a later pack. */
+ * clip is replaced by one of the same name in a later pack, and in its own pack one that plays through the map by one
+ * that does not. */
 int noh_bank_next_clip(const noh_bank_binding *b, noh_bank_place *next, noh_bank_found *found);
 
 /* Count the clips of all packs that fit, including replaced ones. */

@@ -310,6 +310,104 @@ static void a_clip_of_another_skeleton_replaces_none_and_is_counted(void **state
     free(other.bytes);
 }
 
+/* ---- clips of another skeleton, through a map ---- */
+
+#define OWN "clip1"
+
+/* The source has a joint more, which the target leaves out. */
+static void leave_out_last(const noh_clip_map *map, const noh_transform *from, uint32_t joint_count, noh_transform *to)
+{
+    assert_in_range(joint_count, 1, map->target->joint_count);
+    memcpy(to, from, joint_count * sizeof *to);
+}
+
+static noh_skeleton skeleton_of(const noh_pack *pack, uint32_t index)
+{
+    noh_skeleton s;
+    assert_int_equal(noh_pack_skeleton_at(pack, index, &s, NULL, NULL), NOH_OK);
+    return s;
+}
+
+static raw_set *own_clip1(uint32_t number)
+{
+    raw_set *raw = raw_of(JOINTS, &number, 1);
+    rename_to(&raw->clips[0].name, OWN);
+    return raw;
+}
+
+/* Both skeletons in one pack, in either order: the source's clips "clip0" and "clip1", and an own "clip1". */
+static set_fixture pack_of_both(int own_is_first)
+{
+    static const uint32_t numbers[] = { 0, 1 };
+    raw_set *theirs = raw_of(JOINTS + 1u, numbers, 2), *ours = own_clip1(4);
+    raw_set *raws[] = { own_is_first ? ours : theirs, own_is_first ? theirs : ours };
+    return set_fixture_of_sets(raws, 2, NULL);
+}
+
+/* Where the bank's clip of this name is from, and how many joints it has. */
+static void expect_from(const noh_clip_bank *bank, const noh_pack *const *packs, const char *name, uint32_t pack,
+                        uint32_t joints)
+{
+    const uint32_t clip = noh_clip_bank_find(bank, name);
+    noh_pack_clip found;
+    assert_int_not_equal(clip, NOH_NONE);
+    assert_int_equal(bank->packs[clip], pack);
+    assert_int_equal(noh_pack_clip_at(packs[pack], bank->pack_clips[clip], &found, NULL), NOH_OK);
+    assert_int_equal(found.header->joint_count, joints);
+}
+
+static void in_one_pack_own_clips_hide_mapped_ones(void **state)
+{
+    (void)state;
+    for (int own_is_first = 0; own_is_first < 2; own_is_first++) {
+        set_fixture both = pack_of_both(own_is_first), ours = set_fixture_of(own_clip1(5));
+        const noh_pack *packs[] = { &ours.pack, &both.pack };
+        const uint32_t own = own_is_first ? 0u : 1u;
+        const noh_skeleton source = skeleton_of(&both.pack, 1u - own), target = skeleton_of(&both.pack, own);
+        const noh_clip_map map = { &source, &target, 1.0f, leave_out_last, 0 };
+        noh_clip_bank_desc desc = { .clips = &both.pack, .skeleton = own, .map = &map };
+        noh_clip_bank *bank = test_clip_bank(&desc);
+        assert_int_equal(bank->clips.clip_count, 2);
+        assert_int_equal(bank->replaced_count, 1);
+        expect_from(bank, packs + 1, OWN, 0, JOINTS);
+        expect_from(bank, packs + 1, "clip0", 0, JOINTS + 1u);
+        free(bank);
+        /* the same in a pack that replaces an earlier one's */
+        desc = desc_of(packs, 2);
+        desc.map = &map;
+        bank = test_clip_bank(&desc);
+        assert_int_equal(bank->clips.clip_count, 2);
+        assert_int_equal(bank->replaced_count, 2);
+        expect_from(bank, packs, OWN, 1, JOINTS);
+        expect_from(bank, packs, "clip0", 1, JOINTS + 1u);
+        free(bank);
+        free(both.bytes);
+        free(ours.bytes);
+    }
+}
+
+static void of_two_packs_the_last_gives_own_and_mapped_clips(void **state)
+{
+    static const uint32_t numbers[] = { 0, 1 };
+    set_fixture ours = set_fixture_of(own_clip1(4)), theirs = set_fixture_of(raw_of(JOINTS + 1u, numbers, 2));
+    const noh_skeleton source = skeleton_of(&theirs.pack, 0), target = skeleton_of(&ours.pack, 0);
+    const noh_clip_map map = { &source, &target, 1.0f, leave_out_last, 0 };
+    (void)state;
+    for (uint32_t own_at = 0; own_at < 2; own_at++) {
+        const noh_pack *packs[] = { own_at ? &theirs.pack : &ours.pack, own_at ? &ours.pack : &theirs.pack };
+        noh_clip_bank_desc desc = desc_of(packs, 2);
+        desc.mesh = &ours.pack;
+        desc.map = &map;
+        noh_clip_bank *bank = test_clip_bank(&desc);
+        assert_int_equal(bank->clips.clip_count, 2);
+        expect_from(bank, packs, OWN, 1, own_at ? JOINTS : JOINTS + 1u);
+        expect_from(bank, packs, "clip0", 1u - own_at, JOINTS + 1u);
+        free(bank);
+    }
+    free(ours.bytes);
+    free(theirs.bytes);
+}
+
 /* ---- what is refused ---- */
 
 static void expect_error(const noh_clip_bank_desc *desc, noh_result result, const char *word, uint64_t where)
@@ -461,6 +559,8 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_clip_of_another_skeleton_replaces_none_and_is_counted),
     cmocka_unit_test(errors_say_which_pack),
     cmocka_unit_test(another_unit_in_a_later_pack_is_refused),
+    cmocka_unit_test(in_one_pack_own_clips_hide_mapped_ones),
+    cmocka_unit_test(of_two_packs_the_last_gives_own_and_mapped_clips),
     cmocka_unit_test(lists_of_packs_are_checked),
     cmocka_unit_test(packs_without_clips_are_passed_over_or_not_found),
     cmocka_unit_test(more_clips_than_a_bank_holds_are_refused),
