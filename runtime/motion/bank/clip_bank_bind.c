@@ -1,4 +1,5 @@
 #include "motion/bank/clip_bank_bind_internal.h"
+#include "motion/bank/clip_bank_internal.h"
 
 #include <string.h>
 
@@ -42,6 +43,14 @@ static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_erro
     return NOH_OK;
 }
 
+int noh_bank_map_fits(const noh_clip_map *map, const noh_skeleton *skeleton)
+{
+    const noh_skeleton *to = map->target;
+    return map->source && to && map->pose && to->joint_count == skeleton->joint_count &&
+           map->least <= to->joint_count &&
+           !memcmp(to->parents, skeleton->parents, to->joint_count * sizeof *to->parents);
+}
+
 noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error)
 {
     noh_result r;
@@ -54,6 +63,11 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
     r = bind_skeleton(desc->skeleton, b, error);
     for (uint32_t i = 0; !r && i < b->pack_count; i++) {
         r = check_units(b, i, error);
+    }
+    if (!NOH_PAGE && !r && b->map && !noh_bank_map_fits(b->map, &b->skeleton)) {
+        return noh_fail(error, NOH_ERR_ARG,
+                        "map of a clip bank is not whole, or its target is another skeleton than the bank's",
+                        b->skeleton.joint_count, 0);
     }
     return r;
 }

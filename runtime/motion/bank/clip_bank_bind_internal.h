@@ -44,7 +44,7 @@ typedef struct noh_bank_found {
 } noh_bank_found;
 
 /* Bind the clips of desc's packs to its skeleton.
- * errors  ARG skeleton; NOT_FOUND the clips' skeleton has another unit (where: its place) */
+ * errors  ARG skeleton, or map; NOT_FOUND the clips' skeleton has another unit (where: its place) */
 noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error);
 
 /* Get the next clip of the bank, from *next on, which starts as zeros. Advances *next; returns 0 if there is none. A

@@ -37,6 +37,9 @@ struct noh_bank_clip {
     uint16_t is_mapped; /* 1: its joints are of the map's source */
 };
 
+/* Test whether a map is complete and its target's joints are the skeleton's. */
+int noh_bank_map_fits(const noh_clip_map *map, const noh_skeleton *skeleton);
+
 /* The joints that a map needs in memory for one pose: its source's, and those that fewer joints are cut from. */
 static inline uint32_t noh_bank_map_joints(const noh_clip_map *map)
 {

@@ -1,9 +1,8 @@
 /* stage_desc.c: what is wrong with a desc, and its defaults. */
-#include <string.h>
-
 #include "core/base/name_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "motion/anim/controller_internal.h"
+#include "motion/bank/clip_bank_internal.h"
 #include "stage/character/lod_internal.h"
 #include "noh/base.h"
 #include "noh/pack.h"
@@ -201,10 +200,7 @@ static const char *bad_layer(const noh_layer_desc *layer)
 static int bad_map(const noh_kind_desc *d)
 {
     noh_skeleton own;
-    return d->map && (!d->map->source || !d->map->target || !d->map->pose ||
-                      noh_pack_skeleton_at(d->mesh, d->skeleton, &own, NULL, NULL) ||
-                      own.joint_count != d->map->target->joint_count ||
-                      memcmp(own.parents, d->map->target->parents, own.joint_count * sizeof *own.parents) != 0);
+    return d->map && (noh_pack_skeleton_at(d->mesh, d->skeleton, &own, NULL, NULL) || !noh_bank_map_fits(d->map, &own));
 }
 
 static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)

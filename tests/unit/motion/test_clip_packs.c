@@ -467,6 +467,35 @@ static void another_unit_in_a_later_pack_is_refused(void **state)
     free(inches.bytes);
 }
 
+static void maps_are_checked(void **state)
+{
+    static const uint32_t numbers[] = { 0, 1 };
+    set_fixture ours = set_fixture_of(own_clip1(4)), theirs = set_fixture_of(raw_of(JOINTS + 1u, numbers, 2));
+    const noh_skeleton source = skeleton_of(&theirs.pack, 0), target = skeleton_of(&ours.pack, 0);
+    noh_skeleton fewer = target;
+    fewer.joint_count = JOINTS - 1u;
+    const noh_clip_map good = { &source, &target, 1.0f, leave_out_last, 0 };
+    const noh_clip_map bad[] = { { NULL, NULL, 0.0f, NULL, 0 },
+                                 { NULL, &target, 1.0f, leave_out_last, 0 },
+                                 { &source, NULL, 1.0f, leave_out_last, 0 },
+                                 { &source, &target, 1.0f, NULL, 0 },
+                                 { &source, &source, 1.0f, leave_out_last, 0 },
+                                 { &source, &fewer, 1.0f, leave_out_last, 0 },
+                                 { &source, &target, 1.0f, leave_out_last, JOINTS + 1u } };
+    const noh_pack *packs[] = { &ours.pack, &theirs.pack };
+    noh_clip_bank_desc desc = desc_of(packs, 2);
+    (void)state;
+    desc.map = &good;
+    free(test_clip_bank(&desc));
+    for (uint32_t i = 0; i < TEST_COUNT(bad); i++) {
+        desc.map = &bad[i];
+        assert_int_equal(noh_clip_bank_size(&desc, NULL), 0);
+        expect_error(&desc, NOH_ERR_ARG, "map", JOINTS);
+    }
+    free(ours.bytes);
+    free(theirs.bytes);
+}
+
 static void lists_of_packs_are_checked(void **state)
 {
     const uint32_t number = 0;
@@ -561,6 +590,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(another_unit_in_a_later_pack_is_refused),
     cmocka_unit_test(in_one_pack_own_clips_hide_mapped_ones),
     cmocka_unit_test(of_two_packs_the_last_gives_own_and_mapped_clips),
+    cmocka_unit_test(maps_are_checked),
     cmocka_unit_test(lists_of_packs_are_checked),
     cmocka_unit_test(packs_without_clips_are_passed_over_or_not_found),
     cmocka_unit_test(more_clips_than_a_bank_holds_are_refused),
