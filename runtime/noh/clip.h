@@ -78,7 +78,8 @@ typedef struct noh_marker {
 #define NOH_CLIP_ADDITIVE 1u    /* its poses are differences: see noh_pose_difference */
 #define NOH_CLIP_FLOATS_ONLY 2u /* animates floats only; other tracks move the joints */
 #define NOH_CLIP_JOINTS_ONLY 4u /* animates joints only, such as a walk that leaves the face to another track */
-#define NOH_CLIP_FLAGS (NOH_CLIP_ADDITIVE | NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY)
+#define NOH_CLIP_MAPPED 8u      /* private: of another skeleton; `sample` at NOH_NONE gives that one's bind pose */
+#define NOH_CLIP_FLAGS (NOH_CLIP_ADDITIVE | NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY | NOH_CLIP_MAPPED)
 
 typedef struct noh_clip_entry {
     uint32_t name_hash;

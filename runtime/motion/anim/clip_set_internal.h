@@ -35,11 +35,12 @@ noh_mask_view noh_clip_set_mask(const noh_clip_set *set, uint32_t index);
  * bits. */
 const char *noh_clip_set_excess(const noh_clip_set *set);
 
-/* Get the reference pose of additive clips (controller_pose.c).
+/* Get the reference pose that a clip is added from (controller_pose.c).
+ * clip       index in the set: one of another skeleton has that skeleton's bind pose
  * reference  0: the bind pose and the floats' defaults; else 1 + index of the clip whose first frame it is; joints and
- *            floats that the clip does not animate are as for 0
+ *            floats that this one does not animate are as for 0
  * shapes     pose[joint_count], floats[the set's float_count] */
-void noh_reference_pose(const noh_clip_set *set, uint32_t reference, uint32_t joint_count, noh_transform *pose,
-                        float *floats);
+void noh_reference_pose(const noh_clip_set *set, uint32_t clip, uint32_t reference, uint32_t joint_count,
+                        noh_transform *pose, float *floats);
 
 #endif

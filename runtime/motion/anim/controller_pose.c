@@ -217,12 +217,21 @@ static const noh_track *only_track(const view *v)
     return only;
 }
 
-void noh_reference_pose(const noh_clip_set *set, uint32_t reference, uint32_t joint_count, noh_transform *pose,
-                        float *floats)
+static void bind_pose_for(const noh_clip_set *set, uint32_t clip, uint32_t joint_count, noh_transform *pose)
+{
+    if (!NOH_PAGE && (set->clips[clip].flags & NOH_CLIP_MAPPED)) {
+        set->sample(set->user, clip, NOH_NONE, joint_count, pose, 0, NULL);
+    } else {
+        memcpy(pose, set->bind_pose, joint_count * sizeof *pose);
+    }
+}
+
+void noh_reference_pose(const noh_clip_set *set, uint32_t clip, uint32_t reference, uint32_t joint_count,
+                        noh_transform *pose, float *floats)
 {
     const uint32_t flags = reference ? set->clips[reference - 1u].flags : NOH_CLIP_FLOATS_ONLY | NOH_CLIP_JOINTS_ONLY;
     if (reference) noh_root_sample_rest(set, reference - 1u, 0, joint_count, pose, floats);
-    if ((flags & NOH_CLIP_FLOATS_ONLY) && joint_count) memcpy(pose, set->bind_pose, joint_count * sizeof *pose);
+    if ((flags & NOH_CLIP_FLOATS_ONLY) && joint_count) bind_pose_for(set, clip, joint_count, pose);
     for (uint32_t i = 0; i < set->float_count && (flags & NOH_CLIP_JOINTS_ONLY); i++) {
         floats[i] = set->float_defaults ? set->float_defaults[i] : 0.0f;
     }
@@ -242,7 +251,7 @@ static void add_track(const view *v, const noh_track *t, noh_transform *pose, fl
     sample_at(v, t->clip, clip_tick(v, t), s->sample, s->float_sample);
     if (!(flags & NOH_CLIP_ADDITIVE)) {
         /* into the blend's sums, which are unused by now */
-        noh_reference_pose(v->set, reference_of(t), joints, s->blend.sum, s->blend.float_sum);
+        noh_reference_pose(v->set, t->clip, reference_of(t), joints, s->blend.sum, s->blend.float_sum);
         noh_pose_difference(joints, s->blend.sum, s->sample, s->sample);
         for (uint32_t i = 0; i < count; i++) {
             s->float_sample[i] -= s->blend.float_sum[i];

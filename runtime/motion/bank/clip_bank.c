@@ -402,7 +402,8 @@ static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, par
     fill_keys(&from->packed, p, to);
     fill_runs(b, clip, p, &p->bound[m]);
     to->flags = (p->bound[m].joint_count ? 0u : NOH_CLIP_FLOATS_ONLY) |
-                (p->bound[m].float_runs ? 0u : NOH_CLIP_JOINTS_ONLY);
+                (p->bound[m].float_runs ? 0u : NOH_CLIP_JOINTS_ONLY) |
+                (!NOH_PAGE && from->is_mapped ? NOH_CLIP_MAPPED : 0u);
 }
 
 static void fill(const noh_bank_binding *b, parts *p)

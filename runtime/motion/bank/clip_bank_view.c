@@ -54,15 +54,22 @@ static noh_transform *pose_of(const struct noh_bank_clip *clip, noh_transform *m
     return !NOH_PAGE && clip->is_mapped ? mapped : pose;
 }
 
+/* Whether the bind pose is asked for that a mapped clip's poses are relative to: NOH_CLIP_MAPPED. */
+static int is_bind(uint32_t clip_tick)
+{
+    return !NOH_PAGE && clip_tick == NOH_NONE;
+}
+
 /* The first joints of a pose may depend on later ones: root motion takes one joint, which has to be as in the whole
  * pose. */
-static void take_mapped(const noh_clip_bank *bank, const struct noh_bank_clip *clip, noh_transform *mapped,
-                        uint32_t joint_count, noh_transform *pose)
+static void take_mapped(const noh_clip_bank *bank, const struct noh_bank_clip *clip, uint32_t clip_tick,
+                        noh_transform *mapped, uint32_t joint_count, noh_transform *pose)
 {
     if (NOH_PAGE || !clip->is_mapped || !joint_count) return;
     const noh_clip_map *map = bank->map;
     noh_transform *whole = joint_count < map->least ? mapped + map->source->joint_count : pose;
-    map->pose(map, mapped, joint_count < map->least ? map->least : joint_count, whole);
+    map->pose(map, is_bind(clip_tick) ? map->source->bind_pose : mapped,
+              joint_count < map->least ? map->least : joint_count, whole);
     if (whole != pose) memcpy(pose, whole, joint_count * sizeof *pose);
 }
 
@@ -73,11 +80,11 @@ static void sample_cache(void *user, uint32_t index, uint32_t clip_tick, uint32_
     const struct noh_bank_clip *clip = bound_clip(bank, index);
     const int moves_floats = float_count && clip->float_runs;
     check_request(bank, index, joint_count, float_count);
-    if (clip->joint_count || moves_floats) {
+    if ((clip->joint_count || moves_floats) && !is_bind(clip_tick)) {
         noh_clip_sample(bank->cache, index, clip_tick, joints_of(bank, clip, joint_count),
                         pose_of(clip, bank->mapped, pose), moves_floats ? bank->sampled : NULL);
     }
-    take_mapped(bank, clip, bank->mapped, joint_count, pose);
+    take_mapped(bank, clip, clip_tick, bank->mapped, joint_count, pose);
     complete(bank, clip, bank->sampled, joint_count, pose, float_count, floats);
 }
 
@@ -88,11 +95,11 @@ static void sample_view(void *user, uint32_t index, uint32_t clip_tick, uint32_t
     const struct noh_bank_clip *clip = bound_clip(view->bank, index);
     const int moves_floats = float_count && clip->float_runs;
     check_request(view->bank, index, joint_count, float_count);
-    if (clip->joint_count || moves_floats) {
+    if ((clip->joint_count || moves_floats) && !is_bind(clip_tick)) {
         noh_clip_view_sample(view->samples, index, clip_tick, joints_of(view->bank, clip, joint_count),
                              pose_of(clip, view->mapped, pose), moves_floats ? view->sampled : NULL);
     }
-    take_mapped(view->bank, clip, view->mapped, joint_count, pose);
+    take_mapped(view->bank, clip, clip_tick, view->mapped, joint_count, pose);
     complete(view->bank, clip, view->sampled, joint_count, pose, float_count, floats);
 }
 

@@ -151,12 +151,11 @@ static void sum_parts(evaluation *e, const parts *p)
                      e->scratch->float_poses[p->buffers[0]]);
 }
 
-/* Whether a subtree's clips are differences already; its first clip decides for all. */
-static int is_difference(const evaluation *e, uint32_t node)
+/* The first clip of a subtree. It decides for all of them: whether they are differences, and from which bind pose. */
+static uint32_t first_clip(const evaluation *e, uint32_t node)
 {
     const noh_graph *g = e->view.graph;
-    const noh_graph_node *clip = &g->nodes[noh_graph_first_of(g, node)];
-    return (e->set->clips[noh_controller_track(e->c, clip->index)->clip].flags & NOH_CLIP_ADDITIVE) != 0;
+    return noh_controller_track(e->c, g->nodes[noh_graph_first_of(g, node)].index)->clip;
 }
 
 /* Add the second child as a difference: directly, or relative to the reference pose. */
@@ -165,10 +164,11 @@ static void add_part(evaluation *e, const noh_graph_node *node, const parts *p)
     uint32_t joints = e->c->lod_joint_count, floats = e->set->float_count;
     noh_transform *over = e->scratch->poses[p->buffers[1]];
     float *float_over = e->scratch->float_poses[p->buffers[1]];
-    if (!is_difference(e, e->view.graph->children[node->first_child + 1u])) {
+    const uint32_t clip = first_clip(e, e->view.graph->children[node->first_child + 1u]);
+    if (!(e->set->clips[clip].flags & NOH_CLIP_ADDITIVE)) {
         noh_transform *pose = e->scratch->pose.sample;
         float *values = e->scratch->pose.float_sample;
-        noh_reference_pose(e->set, node->item_count ? node->first_item + 1u : 0u, joints, pose, values);
+        noh_reference_pose(e->set, clip, node->item_count ? node->first_item + 1u : 0u, joints, pose, values);
         noh_pose_difference(joints, pose, over, over);
         for (uint32_t i = 0; i < floats; i++) float_over[i] -= values[i];
     }

@@ -103,7 +103,7 @@ static void set_fields_broken_in_turn(void **state)
     bad_set(&s, NOH_ERR_DATA, "loop");
     s.clips[1].duration_ticks = 0x80000000u;
     bad_set(&s, NOH_ERR_DATA, "duration_ticks");
-    s.clips[1].flags = 8;
+    s.clips[1].flags = 16;
     bad_set(&s, NOH_ERR_DATA, "flags of a clip");
     s.clips[1].first_event = 9;
     bad_set(&s, NOH_ERR_DATA, "events of a clip lie outside");

@@ -226,6 +226,37 @@ static void root_motion_is_of_the_pose_that_is_shown(void **state)
     close_show(&w);
 }
 
+/* The bind pose of a clip's own skeleton is what its difference is taken from. */
+static void bind_poses_are_those_of_the_source(void **state)
+{
+    const noh_play how = { .fade_ticks = 1, .flags = NOH_PLAY_FROM_BIND };
+    const float nothing[3] = { 0.0f, 0.0f, 0.0f };
+    noh_transform from[JOINTS], bind[JOINTS], to[JOINTS], pose[JOINTS];
+    show w;
+    (void)state;
+    open_show(&w, "Knight__Walking_A", 1);
+    make_map(&w);
+    w.c.desc.full_detail = 1;
+    cast_make(&w.c, NULL);
+    enter(&w);
+    if (noh_actor_play(w.c.stage, w.actors[0], 2, w.clip, &how, &said)) fail_msg("%s", said.what);
+    const lender l = open_lender(&w);
+    const uint32_t count = w.skeletons[1].joint_count;
+    noh_retarget_pose(&w.map, w.skeletons[0].bind_pose, NULL, count, bind);
+    for (uint32_t f = 0; f < 5; f++) {
+        frame(&w, 3000);
+        const uint32_t tick = (uint32_t)(noh_actor_track(w.c.stage, w.actors[0], 2)->position / 65536);
+        l.bank->clips.sample(l.bank->clips.user, 0, tick, w.skeletons[0].joint_count, from, 0, NULL);
+        noh_retarget_pose(&w.map, from, NULL, count, to);
+        noh_pose_difference(count, bind, to, to);
+        memcpy(pose, w.skeletons[1].bind_pose, count * sizeof *pose);
+        noh_pose_add(count, to, 1.0f, NULL, pose);
+        expect_shown(&w, pose, nothing, 1e-4f);
+    }
+    free(l.memory);
+    close_show(&w);
+}
+
 /* ---- what the converter makes ---- */
 
 static uint32_t joint_named(const noh_pack *pack, const char *name, uint32_t count)
@@ -492,6 +523,7 @@ static void maps_of_other_skeletons_are_refused(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_pose_is_the_maps),
     cmocka_unit_test(root_motion_is_of_the_pose_that_is_shown),
+    cmocka_unit_test(bind_poses_are_those_of_the_source),
     cmocka_unit_test(it_is_near_what_the_converter_makes),
     cmocka_unit_test(the_plan_has_its_bytes),
     cmocka_unit_test(it_is_saved_and_forked),
