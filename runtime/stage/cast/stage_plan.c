@@ -528,6 +528,14 @@ uint32_t noh_stage_mix(uint32_t hash, uint64_t value)
     return hash;
 }
 
+/* Of what places and root motion that a map gives depend on. */
+static uint32_t mix_map(uint32_t hash, const noh_clip_map *map)
+{
+    uint32_t ratio;
+    memcpy(&ratio, &map->ratio, sizeof ratio);
+    return noh_stage_mix(noh_stage_mix(hash, ratio), (uint64_t)map->source->joint_count << 32 | 3u);
+}
+
 uint32_t noh_stage_hash_kind(uint32_t hash, const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind)
 {
     const noh_kind_plan *k = &plan->kinds[kind];
@@ -551,6 +559,7 @@ uint32_t noh_stage_hash_kind(uint32_t hash, const noh_stage_desc *desc, const no
     if (d.springs.type) hash = noh_stage_mix(hash, noh_stage_hash_module(&d, NOH_SLOT_SPRINGS));
     if (d.match.type) hash = noh_stage_mix(hash, noh_stage_hash_module(&d, NOH_SLOT_MATCH));
     if (d.weight_rules) hash = noh_stage_mix(hash, 2);
+    if (!NOH_PAGE && d.map) hash = mix_map(hash, d.map);
     if (d.worn_by) hash = noh_stage_mix(hash, (uint64_t)d.worn_by << 32);
     for (uint32_t p = 0; p < d.modifier_count; p++) hash = noh_stage_mix(hash, d.modifiers[p].state_bytes);
     for (uint32_t l = 0; l < k->level_count; l++) hash = noh_stage_mix(hash, k->levels[l].slot_count);

@@ -459,6 +459,27 @@ static void it_is_saved_and_forked(void **state)
     close_show(&b);
 }
 
+static void a_state_of_other_proportions_is_refused(void **state)
+{
+    const void *kept = NULL;
+    size_t bytes = 0;
+    show shows[3];
+    (void)state;
+    for (uint32_t i = 0; i < 3; i++) {
+        show *w = &shows[i];
+        open_show(w, "Knight__Walking_A", 1);
+        make_map(w);
+        if (i == 2) w->map.clips.ratio *= 1.25f;
+        cast_make(&w->c, NULL);
+        enter(w);
+        play(w, 0, w->clip, 1);
+        frame(w, CAST_STEP);
+        if (!i) kept = noh_stage_state(w->c.stage, &bytes);
+        assert_int_equal(noh_stage_set_state(w->c.stage, kept, bytes, NULL) == NOH_OK, i < 2);
+    }
+    for (uint32_t i = 0; i < 3; i++) close_show(&shows[i]);
+}
+
 /* ---- slots and reserves ---- */
 
 static void bring_all(show *w)
@@ -527,6 +548,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(it_is_near_what_the_converter_makes),
     cmocka_unit_test(the_plan_has_its_bytes),
     cmocka_unit_test(it_is_saved_and_forked),
+    cmocka_unit_test(a_state_of_other_proportions_is_refused),
     cmocka_unit_test(it_comes_by_need_and_into_slots),
     cmocka_unit_test(maps_of_other_skeletons_are_refused),
 };
