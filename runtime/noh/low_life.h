@@ -655,9 +655,10 @@ typedef struct noh_retarget {
     noh_clip_map clips; /* for noh_kind_desc.map and noh_clip_bank_desc.map: they then play clips of the source */
     const noh_transform *rest;           /* [target->joint_count] borrowed: the target's reference pose */
     const noh_retarget_joint *joints;    /* [target->joint_count] borrowed */
-    uint32_t flags;                      /* NOH_RETARGET_*; may be changed at any time */
+    uint32_t flags;                      /* NOH_RETARGET_*; may be changed, but not while a bank plays the map */
     uint32_t bone_count;                 /* bones that both have */
-    /* how much higher than the source's reference pose its clips' ground is, in its unit; 0 unless changed */
+    /* how much higher than the source's reference pose its clips' ground is, in its unit; 0 unless changed. A bank
+     * and a stage measure root motion and bounds when they are made: set it before that, and leave it */
     float ground;
     float facing[4];            /* turns the source's reference pose to face as the target's does */
     uint16_t moved[2][2];       /* root and hips: joint of source and target, or NOH_JOINT_ROOT */

@@ -163,9 +163,13 @@ typedef struct noh_kind_desc {
      * packs must outlive the stage. Default (0): clips are read in place */
     uint32_t clip_reserve;
     /* Clips of another skeleton in its packs play, too, as poses of its own: &retarget.clips of a noh_retarget
-     * (low_life.h), which must outlive the stage. They play like the kind's own, on any layer, with their keys, floats
-     * and root motion. While one plays, its actor is posed every frame, and with a map joints are never left out by
-     * LOD. Bytes: 40 for each joint of that skeleton, and as many for each job. Default (NULL): they are ignored */
+     * (low_life.h), which must outlive the stage, unchanged. They play like the kind's own, on any layer, with their
+     * keys, floats and root motion of joint 0: where only this skeleton has a root above the hips, they move the hips.
+     * In one pack, a clip of this skeleton hides mapped ones of its name; clips of a later pack replace both kinds.
+     * Distance does not make poses less frequent, and with a map no level of detail leaves out joints; actors out of
+     * view, or over update_budget_ns, still keep older poses. Bytes: 40 for each joint of that skeleton, and where the
+     * hips are joint 0 of this one, 40 for each joint up to the feet; as many for each job. Default (NULL): they are
+     * ignored */
     const noh_clip_map *map;
     const uint32_t *nodes; /* [node_count] draws only these nodes of `mesh`; in a pack without nodes, these meshes.
                             * Default (NULL) all. Read by plans and init */
