@@ -66,6 +66,33 @@ model_material model_material_default(void)
     return plain;
 }
 
+static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count && &m->meshes[i] != mesh; s++) {
+            if (m->meshes[i].submeshes[s].material == material) return 1;
+        }
+    }
+    return 0;
+}
+
+int model_own_material(model *m, model_mesh *mesh, uint32_t *material)
+{
+    const uint32_t from = *material;
+    if (!is_shared(m, mesh, from)) return 0;
+    model_material *grown = realloc(m->materials, (m->material_count + 1u) * sizeof *grown);
+    char *name = grown ? model_string(grown[from].name ? grown[from].name : "") : NULL;
+    if (grown) m->materials = grown;
+    if (!name) return 1;
+    *material = m->material_count++;
+    grown[*material] = grown[from];
+    grown[*material].name = name;
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        if (mesh->submeshes[s].material == from) mesh->submeshes[s].material = *material;
+    }
+    return 0;
+}
+
 static void target_free(model_target *target)
 {
     free(target->name);

@@ -269,6 +269,10 @@ int model_complete(model *m, model_error *error);
 /* glTF's default material, without a name. */
 model_material model_material_default(void);
 
+/* Give a mesh a copy of a material that other meshes use, too. *material: in, and out the mesh's own, the same if no
+ * other mesh uses it. Returns 1: out of memory */
+int model_own_material(model *m, model_mesh *mesh, uint32_t *material);
+
 void model_free(model *m);
 
 #ifdef __cplusplus

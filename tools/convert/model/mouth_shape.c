@@ -1,5 +1,7 @@
 #include "mouth_shape.h"
 
+#include <math.h>
+
 #include "convert/model/lip_rim.h"
 #include "noh/format.h"
 
@@ -26,6 +28,45 @@ static int mouth_bounds(const model *m, float low[3], float high[3])
     return found && high[0] > low[0] && high[1] > low[1] && high[2] > low[2];
 }
 
+/* The most that a target of a mesh opens the lips. */
+static float opens_by(const model_mesh *mesh)
+{
+    float most = 0.0f;
+    for (uint32_t t = 0; t < mesh->target_count; t++) most = fmaxf(most, mesh->targets[t].lips);
+    return most;
+}
+
+static int is_of_opening(const model *m, uint32_t material, float least)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
+            if (m->meshes[i].submeshes[s].material == material && opens_by(&m->meshes[i]) >= least) return 1;
+        }
+    }
+    return 0;
+}
+
+/* The light of a mesh follows its own targets: a mesh that has none that open the lips is lit as if they were apart. */
+static int part_others(model *m)
+{
+    float least = 1e-6f;
+    for (uint32_t i = 0; i < m->mesh_count; i++) least = fmaxf(least, 0.5f * opens_by(&m->meshes[i]));
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        model_mesh *mesh = &m->meshes[i];
+        for (uint32_t s = 0; s < mesh->submesh_count && opens_by(mesh) < least; s++) {
+            uint32_t own = mesh->submeshes[s].material;
+            const uint32_t surface = own == MODEL_NONE ? NOH_SURFACE_PLAIN : m->materials[own].surface;
+            if (surface != NOH_SURFACE_TEETH && surface != NOH_SURFACE_SKIN) continue;
+            if (is_of_opening(m, own, least)) {
+                if (surface == NOH_SURFACE_SKIN) continue; /* as of a body: outside of the mouth it has no use */
+                if (model_own_material(m, mesh, &own)) return 1;
+            }
+            m->materials[own].surface_more[3] = LIPS_APART;
+        }
+    }
+    return 0;
+}
+
 int mouth_shape_find(model *m)
 {
     float low[3], high[3], gap = LIPS_APART;
@@ -49,5 +90,5 @@ int mouth_shape_find(model *m)
             more[3] = gap;
         }
     }
-    return 0;
+    return part_others(m);
 }

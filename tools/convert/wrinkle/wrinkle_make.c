@@ -296,32 +296,6 @@ int wrinkle_add_texture(model *m, const char *mesh, const char *what, uint8_t **
     return 0;
 }
 
-/* Other meshes may use the material: this one gets a copy of its own. */
-static int own_material(model *m, model_mesh *mesh, uint32_t material, uint32_t *own)
-{
-    model_material *grown = realloc(m->materials, (m->material_count + 1u) * sizeof *grown);
-    char *name = grown ? model_string(grown[material].name ? grown[material].name : "") : NULL;
-    if (grown) m->materials = grown;
-    if (!name) return 1;
-    *own = m->material_count++;
-    grown[*own] = grown[material];
-    grown[*own].name = name;
-    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
-        if (mesh->submeshes[s].material == material) mesh->submeshes[s].material = *own;
-    }
-    return 0;
-}
-
-static int is_shared(const model *m, const model_mesh *mesh, uint32_t material)
-{
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t s = 0; s < m->meshes[i].submesh_count && &m->meshes[i] != mesh; s++) {
-            if (m->meshes[i].submeshes[s].material == material) return 1;
-        }
-    }
-    return 0;
-}
-
 /* Whether a pixel may read the wrinkle map and a mask as well. */
 static int has_room(const model_material *of)
 {
@@ -363,7 +337,7 @@ static int add_to_model(model *m, model_mesh *mesh, const wrinkle_field *f, cons
     const char *name = mesh->name ? mesh->name : "";
     uint32_t own = f->material;
     int by_pixel = settings->by_pixel;
-    if (is_shared(m, mesh, own) && own_material(m, mesh, own, &own)) return 1;
+    if (model_own_material(m, mesh, &own)) return 1;
     if (wrinkle_add_texture(m, name, "wrinkle normals", &w->map, w->map_width, w->map_height, f->clamped,
                             MODEL_TEXTURE_NORMAL))
         return 1;
