@@ -145,7 +145,7 @@ static int is_at(const look_key *looks, uint32_t count, uint32_t at, const look_
     return at < count && !compare_looks(&looks[at], key);
 }
 
-/* Sort the looks of seen actors into what is there. Returns 0: more than fit, of which the first are there. */
+/* Sort the looks of seen actors into what is there. Returns 0: more than fit; the first are there. */
 static int sort_looks(const noh_stage *s, const noh_stage_kind *k, int whole, look_key *looks, uint32_t *count)
 {
     uint32_t last = 0;
