@@ -122,10 +122,14 @@ static void strands_run_along_stripes(void **state)
 /* Each word has to belong to a bare part of the body. */
 static void parts_of_a_body_are_bare(void **state)
 {
-    static const char *const bare[] = { "Head", "head.001", "Wolf3D_Head", "M_Face_L",   "HeadLeft",       "Std_Neck 2",
-                                        "顔",   "顔_01",    "Gesicht",     "FemaleHead", "face (Instance)" };
-    static const char *const others[] = { "",          "M",         "head_scarf", "HeadLight", "Neck.Ring",
-                                          "headlight", "face_mask", "head hair",  "頭巾",      "lid_face" };
+    static const char *const bare[] = {
+        "Head",  "head.001", "Wolf3D_Head", "M_Face_L",        "HeadLeft",     "Std_Neck 2", "顔",
+        "顔_01", "Gesicht",  "FemaleHead",  "face (Instance)", "Std_Skin_Leg", "Haut",       "肌"
+    };
+    static const char *const others[] = { "",          "M",         "head_scarf",  "HeadLight",
+                                          "Neck.Ring", "headlight", "face_mask",   "head hair",
+                                          "頭巾",      "lid_face",  "Zombie_Skin", "snake skin",
+                                          "hands" };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(bare); i++) {
         if (!surface_is_bare(bare[i])) fail_msg("'%s' is not bare", bare[i]);

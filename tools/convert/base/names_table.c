@@ -92,7 +92,7 @@ const char *const names_table[] = {
     "material bare face head neck gesicht kopf hals visage tête cou cara cabeza cuello rosto cabeça pescoço viso testa",
     "material bare collo gezicht hoofd nek twarz głowa szyja лицо голова шея *顔 *頭 *首 *脸 *头 *얼굴 *머리",
     "material neutral m mi mat material mtl std cc base shader sg geo mesh lambert blinn phong instance default wolf",
-    "material neutral d l r left right upper lower front back man woman male female human body skin links rechts",
+    "material neutral d l r left right upper lower front back man woman male female human body arm leg links rechts",
     "material lashes lash lashes eyelash eyelashes wimper wimpern cil cils pestaña pestañas ciglia ресницы *睫",
     "material occlusion-shell occlusion eyeocclusion shell eyeshell",
     "material tear-shell tear tears tearline lacrimal eyemoisture eyeedge eyeblend saliva",

@@ -330,9 +330,9 @@ static int finish(model *m, const balls *b)
 static int is_grey(const model_material *m)
 {
     const float *c = m->base_color, least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
-    const int is_bare = m->surface == NOH_SURFACE_SKIN || (m->surface == NOH_SURFACE_PLAIN && surface_is_bare(m->name));
-    return is_bare && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE && m->metallic < 0.5f &&
-           most - least < GREY_HUE && least > PALE_MIN;
+    const int is_bare = m->surface == NOH_SURFACE_SKIN || m->surface == NOH_SURFACE_PLAIN;
+    return is_bare && surface_is_bare(m->name) && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE &&
+           m->metallic < 0.5f && most - least < GREY_HUE && least > PALE_MIN;
 }
 
 static int has_white_parts(const model *m, uint32_t material)

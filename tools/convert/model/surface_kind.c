@@ -120,12 +120,12 @@ int surface_is_lashes(const char *name)
 }
 
 /* A word, or all of one that languages without spaces have as a part. */
-static int is_bare(const char *word, size_t length)
+static int is_all_of(const char *material, const char *word, size_t length)
 {
     char part[WORD_BYTES_MAX + 1u] = "*";
     if (length > WORD_BYTES_MAX) return 0;
     memcpy(part + 1, word, length);
-    return is_in("bare", word, length) || names_has_word("bare", part, length + 1u);
+    return is_in(material, word, length) || names_has_word(material, part, length + 1u);
 }
 
 int surface_is_bare(const char *name)
@@ -133,10 +133,10 @@ int surface_is_bare(const char *name)
     int found = 0;
     for (const char *at = name; *at;) {
         const size_t length = word_length(at);
-        if (length && is_bare(at, length)) {
+        if (length && (is_all_of("bare", at, length) || is_all_of("skin", at, length))) {
             found = 1;
         } else if (length && !is_in("neutral", at, length)) {
-            return 0; /* HeadLight, head_scarf */
+            return 0; /* HeadLight, Zombie_Skin */
         }
         at += length ? length : 1u;
     }

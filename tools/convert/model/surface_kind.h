@@ -23,7 +23,7 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 int surface_is_white(const model_mesh *mesh, const model_submesh *part);
 
 /* Whether a material's name means lashes, or, with all of its words, a part of the body that is skin unless it has a
- * colour: "M_Face_L", and not "head_scarf". */
+ * colour, or skin: "M_Face_L", and not "head_scarf" or "Zombie_Skin". */
 int surface_is_lashes(const char *name);
 int surface_is_bare(const char *name);
 
