@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "convert/convert.h"
+#include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "support/support.h"
 #include "noh/face.h"
@@ -271,6 +272,24 @@ static void eyes_of_a_head_are_found(void **state)
     }
 }
 
+/* Islands whose vertices alternate are listed in order, up to the end of a part. */
+static void islands_are_listed(void **state)
+{
+    static const uint32_t island[9] = { 0, 1, 0, 3, 1, 1, 0, 7, 1 };
+    static const struct {
+        uint32_t first, end, count, vertices[4];
+    } cases[] = { { 0, 9, 3, { 0, 2, 6 } }, { 1, 9, 4, { 1, 4, 5, 8 } }, { 3, 9, 1, { 3 } },   { 7, 8, 1, { 7 } },
+                  { 1, 5, 2, { 1, 4 } },    { 0, 6, 2, { 0, 2 } },       { 5, 9, 2, { 5, 8 } } };
+    uint32_t next[9], out[9];
+    (void)state;
+    islands_chain(island, 9, next);
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        assert_int_equal(islands_list(next, cases[i].first, cases[i].end, out), cases[i].count);
+        assert_memory_equal(out, cases[i].vertices, cases[i].count * sizeof *out);
+    }
+    islands_chain(island, 0, next);
+}
+
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = {
@@ -279,6 +298,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(what_has_no_two_eyes_is_refused),
         cmocka_unit_test(eyes_aim_at_what_they_look_at),
         cmocka_unit_test(eyes_of_a_head_are_found),
+        cmocka_unit_test(islands_are_listed),
     };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -13,6 +13,7 @@
 #include "noh/format.h"
 
 #define BALLS_MAX MESH_PLACES_MAX
+#define TRIED_MAX 64u /* each is compared with all other eyes of the file */
 #define PALE_MIN 0.3f /* the darkest channel of eyes that are painted, linear */
 #define HUES 0.05f
 #define SIDE 256u   /* texels */
@@ -30,7 +31,7 @@
 typedef struct balls {
     eye_sphere spheres[BALLS_MAX];
     uint32_t materials[BALLS_MAX];
-    uint32_t count;
+    uint32_t count, tried; /* tried: also what has an iris */
 } balls;
 
 /* A ball of a plain eye's material, in the mesh's space. */
@@ -96,15 +97,13 @@ static int is_ball(const model *m, ball *eye)
     return eye->front > 0.8;
 }
 
-static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, uint32_t *room,
-                       ball_visit *visit, balls *b)
+static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, const uint32_t *next,
+                       uint32_t *room, ball_visit *visit, balls *b)
 {
     for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
         ball eye = { .mesh = mesh, .material = part->material, .vertices = room };
         if (island[v] != v) continue;
-        for (uint32_t w = v; w < part->first_vertex + part->vertex_count; w++) {
-            if (island[w] == v) room[eye.count++] = w;
-        }
+        eye.count = islands_list(next, v, part->first_vertex + part->vertex_count, room);
         if (is_ball(m, &eye)) visit(m, &eye, b);
     }
 }
@@ -113,19 +112,24 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
-        uint32_t *island = NULL, *room = NULL;
+        uint32_t *island = NULL, *next = NULL, *room = NULL;
         int failed = 0;
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
             if (!is_plain(m, mesh, &mesh->submeshes[s])) continue;
             if (!island) {
                 island = model_zeros(mesh->vertex_count, sizeof *island);
+                next = model_zeros(mesh->vertex_count, sizeof *next);
                 room = model_zeros(mesh->vertex_count, sizeof *room);
-                failed = !island || !room;
-                if (!failed) islands_find(mesh, island, room);
+                failed = !island || !next || !room;
+                if (!failed) {
+                    islands_find(mesh, island, room);
+                    islands_chain(island, mesh->vertex_count, next);
+                }
             }
-            if (!failed) visit_part(m, i, &mesh->submeshes[s], island, room, visit, b);
+            if (!failed) visit_part(m, i, &mesh->submeshes[s], island, next, room, visit, b);
         }
         free(island);
+        free(next);
         free(room);
         if (failed) return 1;
     }
@@ -169,7 +173,7 @@ static void collect(model *m, const ball *eye, balls *b)
 {
     double places[BALLS_MAX][16];
     const uint32_t count = mesh_places(m, eye->mesh, eye->vertices[0], places);
-    for (uint32_t i = 0; i < count && b->count < BALLS_MAX; i++) {
+    for (uint32_t i = 0; i < count && b->count < BALLS_MAX && b->tried++ < TRIED_MAX; i++) {
         eye_sphere at = eye->sphere;
         const double *w = places[i];
         affine_point(w, eye->sphere.centre, at.centre);

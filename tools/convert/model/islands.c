@@ -43,3 +43,20 @@ void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work)
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = islands_root(island, v);
 }
+
+void islands_chain(const uint32_t *island, uint32_t count, uint32_t *next)
+{
+    for (uint32_t v = 0; v < count; v++) next[v] = MODEL_NONE;
+    for (uint32_t v = count; v-- > 0;) { /* behind the first, before what is already there */
+        if (island[v] == v) continue;
+        next[v] = next[island[v]];
+        next[island[v]] = v;
+    }
+}
+
+uint32_t islands_list(const uint32_t *next, uint32_t first, uint32_t end, uint32_t *out)
+{
+    uint32_t count = 0;
+    for (uint32_t v = first; v < end; v = next[v]) out[count++] = v; /* MODEL_NONE is beyond any */
+    return count;
+}

@@ -8,6 +8,12 @@
  * normals and UVs. island, work: [vertex_count] */
 void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work);
 
+/* For each vertex the next one of its island, MODEL_NONE after the last. next: [count] */
+void islands_chain(const uint32_t *island, uint32_t count, uint32_t *next);
+
+/* Write the vertices of a chain from `first` on that are before `end`, in order. Returns their count. */
+uint32_t islands_list(const uint32_t *next, uint32_t first, uint32_t end, uint32_t *out);
+
 /* The root of a vertex in a union-find; what is passed on the way moves nearer to it. */
 uint32_t islands_root(uint32_t *parent, uint32_t v);
 

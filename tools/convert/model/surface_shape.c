@@ -332,15 +332,6 @@ static void add_eye(const eye_ball *b, eye_mean *mean)
     for (int c = 0; c < 6; c++) mean->lids[c] += b->lids[c];
 }
 
-static uint32_t vertices_of(const model_mesh *mesh, const uint32_t *island, uint32_t first, uint32_t *out)
-{
-    uint32_t count = 0;
-    for (uint32_t v = first; v < mesh->vertex_count; v++) {
-        if (island[v] == first) out[count++] = v;
-    }
-    return count;
-}
-
 /* Nodes may turn the mesh: the first that draws it counts. 0: it is flat. */
 static int find_ways(eye_ball *b)
 {
@@ -353,15 +344,15 @@ static int find_ways(eye_ball *b)
     return vec_normalize(b->above) && vec_normalize(b->ahead);
 }
 
-/* The islands that a part of the mesh is made of, each once. room[vertex_count] */
+/* The islands that a part of the mesh is made of, each once. next: of islands_chain; room[vertex_count] */
 static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const uint32_t *island,
-                     uint32_t *room, eye_mean *mean)
+                     const uint32_t *next, uint32_t *room, eye_mean *mean)
 {
     for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
         eye_ball b = { .m = m, .mesh = mesh, .island = island, .material = part->material, .first = island[v] };
         uint32_t count;
         if (island[v] != v) continue;
-        count = vertices_of(mesh, island, v, room);
+        count = islands_list(next, v, mesh->vertex_count, room);
         if (eye_ball_fit(mesh->position, room, count, &b.sphere) || !find_ways(&b) || !find_iris(&b)) continue;
         /* for shaders y is up, and the sign of a vertex's x is its side of the nose */
         if (b.above[1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
@@ -396,15 +387,20 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
         const model_mesh *mesh = &m->meshes[i];
         uint32_t *island = model_zeros(mesh->vertex_count, sizeof *island);
         uint32_t *room = model_zeros(mesh->vertex_count, sizeof *room);
-        const int failed = !island || !room;
-        if (!failed) islands_find(mesh, island, room);
+        uint32_t *next = model_zeros(mesh->vertex_count, sizeof *next);
+        const int failed = !island || !room || !next;
+        if (!failed) {
+            islands_find(mesh, island, room);
+            islands_chain(island, mesh->vertex_count, next);
+        }
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
             if (mesh->submeshes[s].material == material) {
-                add_eyes(m, mesh, &mesh->submeshes[s], island, room, &mean);
+                add_eyes(m, mesh, &mesh->submeshes[s], island, next, room, &mean);
             }
         }
         free(island);
         free(room);
+        free(next);
         if (failed) return 1;
     }
     set_eye(&m->materials[material], &mean, report);

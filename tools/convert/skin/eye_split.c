@@ -20,6 +20,7 @@ typedef struct candidate {
 typedef struct split {
     const model_mesh *mesh;
     uint32_t *island;   /* [vertex_count] the first vertex of each vertex's island */
+    uint32_t *next;     /* [vertex_count] of islands_chain */
     uint32_t *vertices; /* [vertex_count] room for one eye's */
     double size;        /* the diagonal of the mesh's bounds */
     candidate found[CANDIDATES_MAX];
@@ -121,17 +122,6 @@ int eye_ball_fit(const float *positions, uint32_t *vertices, uint32_t count, eye
     return 1;
 }
 
-/* ---- islands ---- */
-
-static uint32_t vertices_of(split *s, uint32_t island)
-{
-    uint32_t count = 0;
-    for (uint32_t v = island; v < s->mesh->vertex_count; v++) {
-        if (s->island[v] == island) s->vertices[count++] = v;
-    }
-    return count;
-}
-
 /* ---- eyes ---- */
 
 /* A ball, or its front: as wide and high as a sphere, and deep enough that it is no dish. */
@@ -169,7 +159,7 @@ static void find_balls(split *s)
         candidate *found = &s->found[s->count];
         uint32_t count;
         if (s->island[v] != v) continue;
-        count = vertices_of(s, v);
+        count = islands_list(s->next, v, s->mesh->vertex_count, s->vertices);
         if (count < VERTICES_MIN || eye_sphere_fit(s->mesh->position, s->vertices, count, &found->sphere)) continue;
         found->island = v;
         s->count += is_ball(s, count, &found->sphere) != 0;
@@ -417,6 +407,7 @@ static int try_mesh(model *m, uint32_t index, split *s, FILE *report, model_erro
     int failed;
     s->mesh = &m->meshes[index];
     islands_find(s->mesh, s->island, s->vertices);
+    islands_chain(s->island, s->mesh->vertex_count, s->next);
     find_balls(s);
     pairs = find_pair(s, pair);
     if (!pairs) return 0;
@@ -439,10 +430,12 @@ int eyes_split(model *m, FILE *report, model_error *error)
     int done = 0;
     for (uint32_t i = 0; s && i < m->mesh_count && !done; i++) {
         s->island = model_zeros(m->meshes[i].vertex_count, sizeof *s->island);
+        s->next = model_zeros(m->meshes[i].vertex_count, sizeof *s->next);
         s->vertices = model_zeros(m->meshes[i].vertex_count, sizeof *s->vertices);
-        done = s->island && s->vertices ? try_mesh(m, i, s, report, error)
-                                        : (model_fail(error, "", "out of memory"), -1);
+        done = s->island && s->next && s->vertices ? try_mesh(m, i, s, report, error)
+                                                   : (model_fail(error, "", "out of memory"), -1);
         free(s->island);
+        free(s->next);
         free(s->vertices);
     }
     if (!s) return model_fail(error, "", "out of memory");
