@@ -119,7 +119,7 @@ static void limbs_turn_no_mesh(void **state)
     }
 }
 
-/* A root that lies between the axes says nothing of them. */
+/* A root that lies between the axes does not tell them. */
 static void a_leaning_root_turns_no_mesh(void **state)
 {
     static const double turns[2] = { 0, 0 };
