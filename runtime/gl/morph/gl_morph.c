@@ -292,11 +292,11 @@ uint32_t noh_gl_morph_instance(const noh_gl_morph *morph, uint32_t mesh, uint32_
  * not rounded to 1 there (gl_skin.c). */
 static float lips_of(const noh_gl_morph *m, uint32_t instance)
 {
-    const noh_mesh *mesh = &m->meshes[m->instance_mesh[instance]].mesh;
+    const noh_mesh mesh = noh_gl_morph_view(m, instance); /* a level that is there: finer ones may come later */
     const float *weights = m->weights + noh_gl_morph_first_weight(m, instance);
     float sum = 0.0f;
-    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
-        if (weights[t] != 0.0f) sum += weights[t] * (float)mesh->targets[t].lips;
+    for (uint32_t t = 0; t < mesh.header->target_count; t++) {
+        if (weights[t] != 0.0f) sum += weights[t] * (float)mesh.targets[t].lips;
     }
     sum /= 4096.0f;
     return sum > 0.0f ? (float)(int)((sum < 1.49f ? sum : 1.49f) * 128.0f) / 128.0f : 0.0f;
