@@ -144,10 +144,11 @@ char noh_name_key(const char *name, char key[NOH_NAME_BYTES_MAX])
     return side;
 }
 
-static size_t length_of(const char *text)
+/* The bound also keeps compilers from calling strlen, which a game may not have. */
+static size_t length_of(const char *key)
 {
     size_t n = 0;
-    while (text[n]) n++;
+    while (n < NOH_NAME_BYTES_MAX && key[n]) n++;
     return n;
 }
 
