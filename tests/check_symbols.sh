@@ -26,7 +26,7 @@ else
     nm --defined-only "$archive" | awk '$2 ~ /^[bBdDCsSgG]$/ { print $3 }' | sort -u >"$work/writable"
     : >"$work/mutable"
     while read -r symbol; do
-        objdump -t "$archive" | awk -v s="$symbol" '$NF == s && $0 !~ /\.data\.rel\.ro|\*UND\*/ { print s, $0 }' >>"$work/mutable"
+        objdump -t "$archive" | awk -v s="$symbol" '$NF == s && $0 !~ /\.data\.rel\.ro|\.rodata|\*UND\*/ { print s, $0 }' >>"$work/mutable"
     done <"$work/writable"
     check 'nothing mutable is global' sh -c '! grep . "$1"' - "$work/mutable"
     check 'no section can be written' sh -c '
