@@ -130,7 +130,8 @@ static uint32_t nearest_of(const lip_rim *h, uint32_t v, double side)
     double nearest = side, middle[3];
     cell_of(h, v, side, middle);
     for (int i = 0; i < 27; i++) {
-        const double cell[3] = { middle[0] + i % 3 - 1, middle[1] + i / 3 % 3 - 1, middle[2] + i / 9 - 1 };
+        const int x = i % 3 - 1, y = i / 3 % 3 - 1, z = i / 9 - 1;
+        const double cell[3] = { middle[0] + x, middle[1] + y, middle[2] + z };
         for (uint32_t u = h->work[place_of_cell(h, cell)]; u != MODEL_NONE; u = h->next[u]) {
             const double apart = lip_between(h, v, u);
             if (!(apart < nearest || (apart <= nearest && (found == MODEL_NONE || u > found)))) continue;
