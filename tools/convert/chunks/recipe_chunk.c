@@ -12,9 +12,7 @@
 static int has_target(const model *m, const char *name)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
-            if (strcmp(m->meshes[i].targets[t].name, name) == 0) return 1;
-        }
+        if (model_find_target(&m->meshes[i], name) != MODEL_NONE) return 1;
     }
     return 0;
 }

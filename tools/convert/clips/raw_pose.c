@@ -50,18 +50,12 @@ void raw_pose_object(const raw_skeleton *skeleton, const raw_clip *clip, uint32_
     }
 }
 
-static double distance(const double *a, const double *b)
-{
-    double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
-    return sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
-}
-
 /* Raise the radii of a joint and of all above it to include `point`. */
 static void raise_radius(const raw_skeleton *skeleton, const double *pose, uint32_t joint, const double *point,
                          double *out)
 {
     for (uint32_t j = joint; j != MODEL_NONE; j = skeleton->joints[j].parent)
-        out[j] = fmax(out[j], distance(pose + (size_t)j * 12 + 9, point) * skeleton->unit_cm);
+        out[j] = fmax(out[j], vec_distance(pose + (size_t)j * 12 + 9, point) * skeleton->unit_cm);
 }
 
 static void end_point(const raw_joint *joint, const double *matrix, double *out)

@@ -14,24 +14,12 @@
 #define WIDENED_MAX 6 /* times one and a half: lips of a mouth that is modelled open are no further apart */
 #define CLOSED 0.012f /* half the least gap, in depths of the mouth: seen between closed lips, teeth are dark red */
 
-double lip_distance(const double a[3], const double b[3])
-{
-    double square = 0.0;
-    for (int i = 0; i < 3; i++) square += (a[i] - b[i]) * (a[i] - b[i]);
-    return sqrt(square);
-}
-
-void lip_point(const float *positions, uint32_t vertex, double out[3])
-{
-    for (int i = 0; i < 3; i++) out[i] = (double)positions[3 * (size_t)vertex + (size_t)i];
-}
-
 double lip_between(const lip_rim *h, uint32_t a, uint32_t b)
 {
     double x[3], y[3];
-    lip_point(h->mesh->position, a, x);
-    lip_point(h->mesh->position, b, y);
-    return lip_distance(x, y);
+    vec_posed(h->mesh->position, NULL, a, x);
+    vec_posed(h->mesh->position, NULL, b, y);
+    return vec_distance(x, y);
 }
 
 /* ---- poses ---- */
@@ -71,9 +59,9 @@ static int pose(lip_rim *h)
     h->most = 0.0;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) {
         double rest[3], open[3];
-        lip_point(mesh->position, v, rest);
-        lip_point(h->bite, v, open);
-        h->moved[v] = (float)lip_distance(rest, open);
+        vec_posed(mesh->position, NULL, v, rest);
+        vec_posed(h->bite, NULL, v, open);
+        h->moved[v] = (float)vec_distance(rest, open);
         if ((double)h->moved[v] > h->most) h->most = (double)h->moved[v], h->skin = v;
     }
     islands_find(mesh, h->island, h->work);
@@ -105,7 +93,7 @@ static uint32_t place_of_cell(const lip_rim *h, const double cell[3])
 
 static void cell_of(const lip_rim *h, uint32_t v, double side, double out[3])
 {
-    lip_point(h->mesh->position, v, out);
+    vec_posed(h->mesh->position, NULL, v, out);
     for (int i = 0; i < 3; i++) out[i] = fmin(fmax(floor(out[i] / side), -1e15), 1e15);
 }
 
@@ -198,7 +186,7 @@ static int find_lips(lip_rim *h)
         if (1.4 * h->half > h->size) h->size = 1.4 * h->half;
         for (uint32_t r = 0; r < h->rim_count && h->half > LIP_TOUCH * h->size; r++) {
             double at[3];
-            lip_point(h->mesh->position, h->rim[r], at);
+            vec_posed(h->mesh->position, NULL, h->rim[r], at);
             if (lip_aside(h, at) < 0.2) return 1;
         }
     }
@@ -248,10 +236,10 @@ static double opens_by(const lip_rim *h, const model_target *t, const double up[
     uint32_t count = 0;
     for (uint32_t r = 0; r < h->rim_count && t->position; r++) {
         double upper[3], lower[3];
-        lip_point(h->mesh->position, h->rim[r], at);
+        vec_posed(h->mesh->position, NULL, h->rim[r], at);
         if (lip_aside(h, at) > MIDDLE) continue;
-        lip_point(t->position, h->upper[r], upper);
-        lip_point(t->position, h->rim[r], lower);
+        vec_posed(t->position, NULL, h->upper[r], upper);
+        vec_posed(t->position, NULL, h->rim[r], lower);
         for (int i = 0; i < 3; i++) sum += (upper[i] - lower[i]) * up[i];
         count++;
     }
@@ -269,22 +257,14 @@ static int find_up(lip_rim *h, const noh_face_link *links, uint32_t count, doubl
     for (uint32_t r = 0; r < h->rim_count; r++) {
         double upper[3], lower[3];
         const double gap = lip_between(h, h->rim[r], h->upper[r]);
-        lip_point(h->mesh->position, h->rim[r], at);
+        vec_posed(h->mesh->position, NULL, h->rim[r], at);
         if (lip_aside(h, at) > MIDDLE) continue;
         if (gap < *apart) *apart = gap;
-        lip_point(h->bite, h->upper[r], upper);
-        lip_point(h->bite, h->rim[r], lower);
+        vec_posed(h->bite, NULL, h->upper[r], upper);
+        vec_posed(h->bite, NULL, h->rim[r], lower);
         for (int i = 0; i < 3; i++) up[i] += upper[i] - lower[i];
     }
     return vec_normalize(up);
-}
-
-static model_target *target_named(model_mesh *mesh, const char *name)
-{
-    for (uint32_t t = 0; t < mesh->target_count; t++) {
-        if (strcmp(mesh->targets[t].name, name) == 0) return &mesh->targets[t];
-    }
-    return NULL;
 }
 
 static void measure_gaps(model *m, lip_rim *h, float slope, float *rest)
@@ -297,8 +277,8 @@ static void measure_gaps(model *m, lip_rim *h, float slope, float *rest)
     for (uint32_t t = 0; t < h->mesh->target_count; t++) {
         const float by = (float)(0.5 * opens_by(h, &h->mesh->targets[t], up)) * slope;
         for (uint32_t i = 0; i < m->mesh_count; i++) {
-            model_target *same = target_named(&m->meshes[i], h->mesh->targets[t].name);
-            if (same) same->lips = fminf(fmaxf(by, -7.9f), 7.9f);
+            const uint32_t same = model_find_target(&m->meshes[i], h->mesh->targets[t].name);
+            if (same != MODEL_NONE) m->meshes[i].targets[same].lips = fminf(fmaxf(by, -7.9f), 7.9f);
         }
     }
 }

@@ -16,12 +16,12 @@ typedef struct lip_rim {
     const model_mesh *mesh;
     uint32_t *island; /* [vertex_count] */
     uint32_t *work;   /* [vertex_count] */
-    uint32_t *next;   /* [vertex_count] of what stays, the next of its cell; of what goes along, what is nearest to it */
-    float *moved;     /* [vertex_count] how far the open mouth moves it */
-    float *bite;      /* [vertex_count][3] rest, and the deltas of the recipe's FF */
-    double most;      /* the farthest of `moved` */
-    double size;      /* of the mouth: `most`, or half its width and two fifths, whichever is more */
-    uint32_t skin;    /* island */
+    uint32_t *next; /* [vertex_count] of what stays, the next of its cell; of what goes along, what is nearest to it */
+    float *moved;   /* [vertex_count] how far the open mouth moves it */
+    float *bite;    /* [vertex_count][3] rest, and the deltas of the recipe's FF */
+    double most;    /* the farthest of `moved` */
+    double size;    /* of the mouth: `most`, or half its width and two fifths, whichever is more */
+    uint32_t skin;  /* island */
     uint32_t rim[LIP_RIM_MAX], rim_count;
     uint32_t upper[LIP_RIM_MAX]; /* the nearest vertex of the upper lip */
     double centre[3], along[3], half;
@@ -32,8 +32,6 @@ typedef struct lip_rim {
 int lip_rim_find(const model_mesh *mesh, lip_rim *h, const char **why);
 void lip_rim_free(lip_rim *h);
 
-double lip_distance(const double a[3], const double b[3]);
-void lip_point(const float *positions, uint32_t vertex, double out[3]);
 double lip_between(const lip_rim *h, uint32_t a, uint32_t b);
 
 /* 0 at the middle of the mouth, 1 at a corner. */

@@ -39,8 +39,8 @@ static int is_tooth(const mouth *h, uint32_t v)
 {
     double at[3];
     if (h->lips.island[v] == h->lips.skin || (double)h->lips.moved[v] > STILL * h->lips.most) return 0;
-    lip_point(h->lips.mesh->position, v, at);
-    return lip_distance(at, h->lips.centre) < h->lips.half + REACH * h->lips.size;
+    vec_posed(h->lips.mesh->position, NULL, v, at);
+    return vec_distance(at, h->lips.centre) < h->lips.half + REACH * h->lips.size;
 }
 
 static int find_teeth(mouth *h)
@@ -52,7 +52,7 @@ static int find_teeth(mouth *h)
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
         const uint32_t *corner = &mesh->indices[i];
         if (!is_tooth(h, corner[0]) || !is_tooth(h, corner[1]) || !is_tooth(h, corner[2])) continue;
-        for (int k = 0; k < 3; k++) lip_point(mesh->position, corner[k], h->teeth[h->tooth_count].at[k]);
+        for (int k = 0; k < 3; k++) vec_posed(mesh->position, NULL, corner[k], h->teeth[h->tooth_count].at[k]);
         h->tooth_count++;
     }
     return 0;
@@ -106,7 +106,7 @@ static double nearest_tooth(const mouth *h, const double p[3], double out[3])
         const int inside = on_face(&h->teeth[t], p, at[3]);
         for (int e = 0; e < 3; e++) on_edge(h->teeth[t].at[e], h->teeth[t].at[(e + 1) % 3], p, at[e]);
         for (int k = 0; k < 3 + inside; k++) {
-            const double d = lip_distance(at[k], p);
+            const double d = vec_distance(at[k], p);
             if (d < best) best = d, memcpy(out, at[k], 3 * sizeof *out);
         }
     }
@@ -124,8 +124,8 @@ static void lead(mouth *h)
     h->before = HUGE_VAL;
     for (uint32_t r = 0; r < h->lips.rim_count; r++) {
         double q[3], rest[3];
-        lip_point(h->lips.mesh->position, h->lips.rim[r], rest);
-        lip_point(h->lips.bite, h->lips.rim[r], at[r]);
+        vec_posed(h->lips.mesh->position, NULL, h->lips.rim[r], rest);
+        vec_posed(h->lips.bite, NULL, h->lips.rim[r], at[r]);
         far[r] = nearest_tooth(h, at[r], q);
         for (int i = 0; i < 3; i++) h->ways[r][i] = q[i] - at[r][i];
         if (lip_aside(&h->lips, rest) < 0.3 && far[r] < h->before) h->before = far[r];
@@ -138,7 +138,7 @@ static void lead(mouth *h)
                       far[o] < far[r] - 0.01 * h->lips.size);
         }
         if (!leads) continue;
-        lip_point(h->lips.mesh->position, h->lips.rim[r], rest);
+        vec_posed(h->lips.mesh->position, NULL, h->lips.rim[r], rest);
         clear = CLEARANCE * h->lips.size;
         by = far[r] > clear ? (1.0 - clear / far[r]) * (1.0 - smooth(0.3, 0.9, lip_aside(&h->lips, rest))) : 0.0;
         h->lips.rim[count] = h->lips.rim[r];
@@ -192,9 +192,7 @@ static int append(model *m, uint32_t index, const mouth *h, model_error *error)
 /* The reason why a mesh gets no such target; NULL: it has lips and teeth. */
 static const char *has_no_room(const model_mesh *mesh)
 {
-    for (uint32_t t = 0; t < mesh->target_count; t++) {
-        if (strcmp(mesh->targets[t].name, LIP_TARGET) == 0) return "it already has this target";
-    }
+    if (model_find_target(mesh, LIP_TARGET) != MODEL_NONE) return "it already has this target";
     return mesh->target_count < NOH_TARGETS_MAX ? NULL : "it already has the largest number of targets";
 }
 

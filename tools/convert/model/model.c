@@ -215,6 +215,14 @@ static double skin_scale_square(const model *m, const model_mesh *mesh, const mo
     return largest;
 }
 
+uint32_t model_find_target(const model_mesh *mesh, const char *name)
+{
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        if (strcmp(mesh->targets[t].name, name) == 0) return t;
+    }
+    return MODEL_NONE;
+}
+
 float model_mesh_scale(const model *m, uint32_t mesh)
 {
     double largest = 0.0;

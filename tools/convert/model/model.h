@@ -261,6 +261,9 @@ int model_read_glb(const uint8_t *bytes, size_t size, const char *path, const ex
  * move it; 1 if nothing draws it. */
 float model_mesh_scale(const model *m, uint32_t mesh);
 
+/* The mesh's target of this name; MODEL_NONE: there is none. */
+uint32_t model_find_target(const model_mesh *mesh, const char *name);
+
 /* Fill in missing attributes (NULL arrays and MODEL_MISSING_* bits): normals
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of
  * targets that lack them (from the morphed mesh). Returns 0, or 1 and *error. */

@@ -91,6 +91,7 @@ double model_uv_length(const model_mesh *mesh);
 
 /* Small vector helpers in double precision; a, b and out are [3]. */
 double vec_dot(const double *a, const double *b);
+double vec_distance(const double *a, const double *b);
 void vec_cross(const double *a, const double *b, double *out);
 /* Scale to length 1. Returns 0 and leaves v alone when it has no length. */
 int vec_normalize(double *v);

@@ -10,6 +10,12 @@ double vec_dot(const double *a, const double *b)
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+double vec_distance(const double *a, const double *b)
+{
+    const double d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
+    return sqrt(vec_dot(d, d));
+}
+
 void vec_cross(const double *a, const double *b, double *out)
 {
     double x = a[1] * b[2] - a[2] * b[1];

@@ -14,10 +14,7 @@
 
 static int has_target(const model_mesh *mesh, const char *name)
 {
-    for (uint32_t t = 0; t < mesh->target_count; t++) {
-        if (strcmp(mesh->targets[t].name, name) == 0) return 1;
-    }
-    return 0;
+    return model_find_target(mesh, name) != MODEL_NONE;
 }
 
 static int is_corrective(const recipe_row *row)

@@ -60,14 +60,6 @@ void seam_delta(const model *m, const border *b, uint32_t vertex, const float *d
     }
 }
 
-uint32_t seam_namesake(const model_mesh *of, const char *name)
-{
-    for (uint32_t t = 0; t < of->target_count; t++) {
-        if (strcmp(of->targets[t].name, name) == 0) return t;
-    }
-    return MODEL_NONE;
-}
-
 /* ---- measuring ---- */
 
 static double length_of(const double v[3])
@@ -133,7 +125,7 @@ static void measure_targets(const model *m, const border *const side[2], const u
 {
     const model_mesh *mesh = &m->meshes[side[k]->mesh], *across = &m->meshes[side[1 - k]->mesh];
     for (uint32_t t = 0; t < mesh->target_count; t++) {
-        const uint32_t same = seam_namesake(across, mesh->targets[t].name);
+        const uint32_t same = model_find_target(across, mesh->targets[t].name);
         double own[3], other[3] = { 0.0, 0.0, 0.0 };
         if (same != MODEL_NONE && k) continue; /* measured from the other side */
         seam_delta(m, side[k], vertex[k], mesh->targets[t].position, own);

@@ -18,9 +18,6 @@ uint32_t node_weights_of(const model *m, const border *b, uint32_t vertex, node_
 void seam_matrix(const model *m, const border *b, uint32_t vertex, double out[16]);
 void seam_normal(const model *m, const border *b, uint32_t vertex, const float *delta, double out[3]);
 
-/* The target of another mesh that has the same name; MODEL_NONE: there is none. */
-uint32_t seam_namesake(const model_mesh *of, const char *name);
-
 /* A delta of a vertex, in the world. */
 void seam_delta(const model *m, const border *b, uint32_t vertex, const float *delta, double out[3]);
 

@@ -305,7 +305,7 @@ static int share_targets(mender *me)
     if (!me->shared[0] || !me->shared[1]) return 1;
     for (uint32_t t = 0; t < b->target_count; t++) me->shared[1][t] = MODEL_NONE;
     for (uint32_t t = 0; t < a->target_count; t++) {
-        const uint32_t same = seam_namesake(b, a->targets[t].name);
+        const uint32_t same = model_find_target(b, a->targets[t].name);
         me->shared[0][t] = MODEL_NONE;
         if (same == MODEL_NONE || me->shared[1][same] != MODEL_NONE) continue;
         me->shared[0][t] = me->shared[1][same] = me->shared_count++;
