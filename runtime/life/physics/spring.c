@@ -25,8 +25,8 @@ static int is_good(const noh_spring_joint *j)
 {
     const float square = noh_dot3(j->bone, j->bone), unit = noh_quat_dot(j->rest, j->rest);
     return square > 1e-16f && noh_is_finite(16.0f * square * square) && unit > 0.99f && unit < 1.01f &&
-           j->stiffness >= 0.0f && noh_is_number(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f && j->radius >= 0.0f &&
-           noh_is_number(j->radius) && noh_is_number3(j->gravity);
+           j->stiffness >= 0.0f && noh_is_number(j->stiffness) && j->drag >= 0.0f && j->drag <= 1.0f &&
+           j->radius >= 0.0f && noh_is_number(j->radius) && noh_is_number3(j->gravity);
 }
 
 noh_result noh_spring_check_desc(const noh_spring_desc *desc, noh_error *error)

@@ -43,12 +43,15 @@ static noh_result check_units(const noh_bank_binding *b, uint32_t pack, noh_erro
     return NOH_OK;
 }
 
+static int has_same_joints(const noh_skeleton *a, const noh_skeleton *b)
+{
+    return a->joint_count == b->joint_count && !memcmp(a->parents, b->parents, a->joint_count * sizeof *a->parents);
+}
+
 int noh_bank_map_fits(const noh_clip_map *map, const noh_skeleton *skeleton)
 {
-    const noh_skeleton *to = map->target;
-    return map->source && to && map->pose && to->joint_count == skeleton->joint_count &&
-           map->least <= to->joint_count &&
-           !memcmp(to->parents, skeleton->parents, to->joint_count * sizeof *to->parents);
+    return map->source && map->target && map->pose && map->least <= map->target->joint_count &&
+           has_same_joints(map->target, skeleton);
 }
 
 noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, noh_error *error)
@@ -74,8 +77,7 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
 
 static int is_same(const noh_skeleton *a, const noh_skeleton *b)
 {
-    return a->joint_count == b->joint_count && !memcmp(a->parents, b->parents, a->joint_count * sizeof *a->parents) &&
-           !memcmp(a->bind_pose, b->bind_pose, a->joint_count * sizeof *a->bind_pose);
+    return has_same_joints(a, b) && !memcmp(a->bind_pose, b->bind_pose, a->joint_count * sizeof *a->bind_pose);
 }
 
 /* Whether the clip at found->at fits, and the desc to open it with. A clip without joints always fits. A clip with
