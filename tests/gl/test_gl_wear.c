@@ -19,26 +19,30 @@ typedef struct wardrobe {
     noh_stage_view view;
 } wardrobe;
 
-static void wardrobe_open(wardrobe *w, gpu *g, uint32_t cover_count)
+/* Puppets and coats for them, as many as their kinds say; the GPU has what the plan says. */
+static void open_cast(cast *c, gpu *g, uint32_t cover_count)
 {
-    static const float middle[3] = { 0.0f, 1.0f, 0.0f };
     static char log[4096];
     const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, log, sizeof log };
     const uint64_t before = noh_gl_ledger_bytes(&g->ledger);
+    cast_map(c, BODIES, "demo/puppet_levels.noh");
+    cast_map(c, COATS, "demo/coat.noh");
+    for (uint32_t i = 0; i < KINDS; i++) c->kinds[i].mesh = &c->packs[i];
+    c->kinds[BODIES].cover_count = cover_count;
+    c->kinds[COATS].worn_by = 1u << BODIES;
+    c->desc.kinds = c->kinds;
+    c->desc.kind_count = KINDS;
+    c->desc.gpu = &noh_stage_on_gl;
+    cast_make(c, &device);
+    assert_true(noh_gl_ledger_bytes(&g->ledger) - before == c->plan.gpu_bytes);
+}
+
+static void wardrobe_open(wardrobe *w, gpu *g, uint32_t cover_count)
+{
+    static const float middle[3] = { 0.0f, 1.0f, 0.0f };
     memset(w, 0, sizeof *w);
-    cast_map(&w->c, BODIES, "demo/puppet_levels.noh");
-    cast_map(&w->c, COATS, "demo/coat.noh");
-    for (uint32_t i = 0; i < KINDS; i++) {
-        w->c.kinds[i].mesh = &w->c.packs[i];
-        w->c.kinds[i].actor_count = w->c.kinds[i].near_count = 2;
-    }
-    w->c.kinds[BODIES].cover_count = cover_count;
-    w->c.kinds[COATS].worn_by = 1u << BODIES;
-    w->c.desc.kinds = w->c.kinds;
-    w->c.desc.kind_count = KINDS;
-    w->c.desc.gpu = &noh_stage_on_gl;
-    cast_make(&w->c, &device);
-    assert_true(noh_gl_ledger_bytes(&g->ledger) - before == w->c.plan.gpu_bytes);
+    for (uint32_t i = 0; i < KINDS; i++) w->c.kinds[i].actor_count = w->c.kinds[i].near_count = 2;
+    open_cast(&w->c, g, cover_count);
     for (uint32_t i = 0; i < 2; i++) {
         const noh_place place = { .position = { i ? 0.35f : -0.35f, 0.0f, 0.0f } };
         assert_int_equal(noh_stage_spawn(w->c.stage, BODIES, &place, &w->bodies[i], NULL), NOH_OK);
@@ -152,23 +156,11 @@ typedef struct crowd {
 static void crowd_open(crowd *w, gpu *g, uint32_t cover_count)
 {
     static const float middle[3] = { 0.0f, 0.9f, -0.8f };
-    static char log[4096];
-    const noh_gl_device device = { &g->gl, &g->caps, &g->ledger, log, sizeof log };
-    const uint64_t before = noh_gl_ledger_bytes(&g->ledger);
     memset(w, 0, sizeof *w);
-    cast_map(&w->c, BODIES, "demo/puppet_levels.noh");
-    cast_map(&w->c, COATS, "demo/coat.noh");
-    for (uint32_t i = 0; i < KINDS; i++) w->c.kinds[i].mesh = &w->c.packs[i];
     w->c.kinds[BODIES].actor_count = PEOPLE;
     w->c.kinds[COATS].actor_count = CROWD_COATS;
-    w->c.kinds[BODIES].cover_count = cover_count;
-    w->c.kinds[COATS].worn_by = 1u << BODIES;
-    w->c.desc.kinds = w->c.kinds;
-    w->c.desc.kind_count = KINDS;
-    w->c.desc.gpu = &noh_stage_on_gl;
     w->c.desc.full_detail = 1;
-    cast_make(&w->c, &device);
-    assert_true(noh_gl_ledger_bytes(&g->ledger) - before == w->c.plan.gpu_bytes);
+    open_cast(&w->c, g, cover_count);
     for (uint32_t i = 0; i < PEOPLE; i++) {
         const noh_place place = { .position = { 0.6f * (float)(i % 4u) - 0.9f, 0.0f, -0.8f * (float)(i / 4u) } };
         const noh_play play = { .start_ticks = 4000 * (int64_t)i };
