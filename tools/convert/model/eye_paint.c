@@ -97,13 +97,13 @@ static int is_ball(const model *m, ball *eye)
     return eye->front > 0.8;
 }
 
-static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const uint32_t *island, const uint32_t *next,
-                       uint32_t *room, ball_visit *visit, balls *b)
+static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const mesh_islands *islands,
+                       ball_visit *visit, balls *b)
 {
     for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
-        ball eye = { .mesh = mesh, .material = part->material, .vertices = room };
-        if (island[v] != v) continue;
-        eye.count = islands_list(next, v, part->first_vertex + part->vertex_count, room);
+        ball eye = { .mesh = mesh, .material = part->material, .vertices = islands->room };
+        if (islands->first[v] != v) continue;
+        eye.count = islands_list(islands->next, v, part->first_vertex + part->vertex_count, islands->room);
         if (is_ball(m, &eye)) visit(m, &eye, b);
     }
 }
@@ -112,25 +112,14 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
-        uint32_t *island = NULL, *next = NULL, *room = NULL;
+        mesh_islands islands = { NULL, NULL, NULL };
         int failed = 0;
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
             if (!is_plain(m, mesh, &mesh->submeshes[s])) continue;
-            if (!island) {
-                island = model_zeros(mesh->vertex_count, sizeof *island);
-                next = model_zeros(mesh->vertex_count, sizeof *next);
-                room = model_zeros(mesh->vertex_count, sizeof *room);
-                failed = !island || !next || !room;
-                if (!failed) {
-                    islands_find(mesh, island, room);
-                    islands_chain(island, mesh->vertex_count, next);
-                }
-            }
-            if (!failed) visit_part(m, i, &mesh->submeshes[s], island, next, room, visit, b);
+            failed = !islands.first && islands_open(mesh, &islands);
+            if (!failed) visit_part(m, i, &mesh->submeshes[s], &islands, visit, b);
         }
-        free(island);
-        free(next);
-        free(room);
+        islands_close(&islands);
         if (failed) return 1;
     }
     return 0;

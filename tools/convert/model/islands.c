@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/model_build.h"
+
 uint32_t islands_root(uint32_t *parent, uint32_t v)
 {
     while (parent[v] != v) {
@@ -59,4 +61,22 @@ uint32_t islands_list(const uint32_t *next, uint32_t first, uint32_t end, uint32
     uint32_t count = 0;
     for (uint32_t v = first; v < end; v = next[v]) out[count++] = v; /* MODEL_NONE is beyond any */
     return count;
+}
+
+int islands_open(const model_mesh *mesh, mesh_islands *out)
+{
+    out->first = model_zeros(mesh->vertex_count, sizeof *out->first);
+    out->next = model_zeros(mesh->vertex_count, sizeof *out->next);
+    out->room = model_zeros(mesh->vertex_count, sizeof *out->room);
+    if (!out->first || !out->next || !out->room) return 1;
+    islands_find(mesh, out->first, out->room);
+    islands_chain(out->first, mesh->vertex_count, out->next);
+    return 0;
+}
+
+void islands_close(mesh_islands *islands)
+{
+    free(islands->first);
+    free(islands->next);
+    free(islands->room);
 }

@@ -14,6 +14,17 @@ void islands_chain(const uint32_t *island, uint32_t count, uint32_t *next);
 /* Write the vertices of a chain from `first` on that are before `end`, in order. Returns their count. */
 uint32_t islands_list(const uint32_t *next, uint32_t first, uint32_t end, uint32_t *out);
 
+/* All of it for a mesh. */
+typedef struct mesh_islands {
+    uint32_t *first; /* [vertex_count] of islands_find */
+    uint32_t *next;  /* [vertex_count] of islands_chain */
+    uint32_t *room;  /* [vertex_count] for one list */
+} mesh_islands;
+
+/* Returns 1: out of memory. islands_close, also then. */
+int islands_open(const model_mesh *mesh, mesh_islands *out);
+void islands_close(mesh_islands *islands);
+
 /* The root of a vertex in a union-find; what is passed on the way moves nearer to it. */
 uint32_t islands_root(uint32_t *parent, uint32_t v);
 

@@ -19,10 +19,8 @@ typedef struct candidate {
 
 typedef struct split {
     const model_mesh *mesh;
-    uint32_t *island;   /* [vertex_count] the first vertex of each vertex's island */
-    uint32_t *next;     /* [vertex_count] of islands_chain */
-    uint32_t *vertices; /* [vertex_count] room for one eye's */
-    double size;        /* the diagonal of the mesh's bounds */
+    mesh_islands islands; /* room: the vertices of one eye */
+    double size;          /* the diagonal of the mesh's bounds */
     candidate found[CANDIDATES_MAX];
     uint32_t count;
 } split;
@@ -131,7 +129,7 @@ static int is_ball(const split *s, uint32_t count, const eye_sphere *sphere)
     uint32_t wide = 0;
     for (uint32_t i = 0; i < count; i++) {
         for (int c = 0; c < 3; c++) {
-            const double x = coordinate(s->mesh->position, s->vertices[i], c);
+            const double x = coordinate(s->mesh->position, s->islands.room[i], c);
             low[c] = !i || x < low[c] ? x : low[c];
             high[c] = !i || x > high[c] ? x : high[c];
         }
@@ -158,9 +156,9 @@ static void find_balls(split *s)
     for (uint32_t v = 0; v < s->mesh->vertex_count && s->count < CANDIDATES_MAX; v++) {
         candidate *found = &s->found[s->count];
         uint32_t count;
-        if (s->island[v] != v) continue;
-        count = islands_list(s->next, v, s->mesh->vertex_count, s->vertices);
-        if (count < VERTICES_MIN || eye_sphere_fit(s->mesh->position, s->vertices, count, &found->sphere)) continue;
+        if (s->islands.first[v] != v) continue;
+        count = islands_list(s->islands.next, v, s->mesh->vertex_count, s->islands.room);
+        if (count < VERTICES_MIN || eye_sphere_fit(s->mesh->position, s->islands.room, count, &found->sphere)) continue;
         found->island = v;
         s->count += is_ball(s, count, &found->sphere) != 0;
     }
@@ -212,7 +210,7 @@ static void mark_eyes(split *s, const candidate *const pair[2], uint8_t *eye)
             for (uint32_t i = 0; i < s->count; i++) {
                 const int concentric = apart(&s->found[i].sphere, ball) < 0.5 * ball->radius &&
                                        s->found[i].sphere.radius < 1.5 * ball->radius;
-                if (s->island[v] == s->found[i].island && concentric) eye[v] = (uint8_t)(e + 1);
+                if (s->islands.first[v] == s->found[i].island && concentric) eye[v] = (uint8_t)(e + 1);
             }
         }
     }
@@ -406,8 +404,6 @@ static int try_mesh(model *m, uint32_t index, split *s, FILE *report, model_erro
     uint32_t pairs;
     int failed;
     s->mesh = &m->meshes[index];
-    islands_find(s->mesh, s->island, s->vertices);
-    islands_chain(s->island, s->mesh->vertex_count, s->next);
     find_balls(s);
     pairs = find_pair(s, pair);
     if (!pairs) return 0;
@@ -429,14 +425,9 @@ int eyes_split(model *m, FILE *report, model_error *error)
     split *s = calloc(1, sizeof *s);
     int done = 0;
     for (uint32_t i = 0; s && i < m->mesh_count && !done; i++) {
-        s->island = model_zeros(m->meshes[i].vertex_count, sizeof *s->island);
-        s->next = model_zeros(m->meshes[i].vertex_count, sizeof *s->next);
-        s->vertices = model_zeros(m->meshes[i].vertex_count, sizeof *s->vertices);
-        done = s->island && s->next && s->vertices ? try_mesh(m, i, s, report, error)
-                                                   : (model_fail(error, "", "out of memory"), -1);
-        free(s->island);
-        free(s->next);
-        free(s->vertices);
+        done = islands_open(&m->meshes[i], &s->islands) ? (model_fail(error, "", "out of memory"), -1)
+                                                        : try_mesh(m, i, s, report, error);
+        islands_close(&s->islands);
     }
     if (!s) return model_fail(error, "", "out of memory");
     free(s);
