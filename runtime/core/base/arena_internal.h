@@ -16,6 +16,12 @@ extern "C" {
  * errors  ARG memory is NULL or not aligned to NOH_MEMORY_ALIGN (where: the misalignment in bytes); need: as given */
 noh_result noh_arena_check(const void *memory, size_t need, noh_error *error);
 
+/* Up to where the next object of a block begins. */
+static inline size_t noh_aligned(size_t bytes)
+{
+    return (bytes + 15u) & ~(size_t)15u;
+}
+
 #ifdef __cplusplus
 }
 #endif

@@ -13,6 +13,7 @@ extern "C" {
  *
  *   noh_half_from_float   one float to half, in a named rounding mode
  *   noh_half_to_float     one half to float, always exact
+ *   noh_half_round        to half and back
  *
  * Drivers round colours into RGBA16F targets in different ways. A CPU reference can reproduce a driver's bits with
  * these modes. Only integers are used, so results do not depend on the processor.
@@ -27,6 +28,12 @@ uint16_t noh_half_from_float(float value, noh_half_mode mode);
 
 /* Convert a half to float; exact. NaN stays NaN with its payload. */
 float noh_half_to_float(uint16_t half);
+
+/* Round a float to one that a half can hold. */
+static inline float noh_half_round(float value, noh_half_mode mode)
+{
+    return noh_half_to_float(noh_half_from_float(value, mode));
+}
 
 #ifdef __cplusplus
 }

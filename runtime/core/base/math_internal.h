@@ -1,7 +1,7 @@
 /* math_internal.h: the little arithmetic that the library needs, without libm.
  *
  *   noh_sqrt          correctly rounded
- *   noh_is_finite, noh_is_number
+ *   noh_is_finite, noh_is_number, noh_is_within, noh_larger, noh_clamped
  *   noh_dot3
  *   noh_stretch       of a matrix
  *   noh_normalize3
@@ -43,6 +43,22 @@ static inline int noh_is_finite3(const float v[3])
 static inline float noh_abs(float x)
 {
     return x < 0.0f ? -x : x;
+}
+
+static inline float noh_larger(float a, float b)
+{
+    return a > b ? a : b;
+}
+
+static inline int noh_is_within(float x, float low, float high)
+{
+    return x >= low && x <= high;
+}
+
+/* NaN: low. */
+static inline float noh_clamped(float x, float low, float high)
+{
+    return x >= low ? x <= high ? x : high : low;
 }
 
 /* Small enough that what a frame computes of it stays finite. */

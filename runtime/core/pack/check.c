@@ -1,4 +1,5 @@
 /* check.c: what all chunk checkers share. */
+#include "core/base/math_internal.h"
 #include "core/base/compiler_internal.h"
 #include "core/pack/check_internal.h"
 
@@ -83,7 +84,7 @@ const void *noh_check_subject(const noh_check *check, noh_chunk_type type, noh_c
 noh_result noh_check_floats(const noh_check *check, const float *values, uint32_t count, const char *what)
 {
     for (uint32_t i = 0; i < count; i++) {
-        if (!noh_float_finite(values[i])) {
+        if (!noh_is_finite(values[i])) {
             return noh_check_fail(check, what, (uint64_t)((const uint8_t *)(values + i) - check->bytes));
         }
         if (!(values[i] >= -NOH_NUMBER_MAX && values[i] <= NOH_NUMBER_MAX)) {

@@ -1,5 +1,6 @@
 /* check_clip.c: the checker of clips. noh_clip_init checks the compressed clip inside the chunk when it opens it: the
  * clip's bytes alone say whether they are right. */
+#include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -20,7 +21,7 @@ static noh_result check_events(const noh_check *check, const noh_clip_header *h)
         if (i && events[i].tick < events[i - 1].tick) {
             return noh_check_fail(check, "callback keys are not in time order", at + offsetof(noh_clip_event, tick));
         }
-        if (!noh_float_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
+        if (!noh_is_finite(events[i].weight_min) || events[i].weight_min < 0.0f) {
             return noh_check_fail(check, "callback key's smallest weight is not 0 or more",
                                   at + offsetof(noh_clip_event, weight_min));
         }
@@ -79,7 +80,7 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
 static noh_result check_errors(const noh_check *check, const float *errors, uint32_t count, const char *what)
 {
     for (uint32_t i = 0; i < count; i++) {
-        if (!noh_float_finite(errors[i]) || (i ? errors[i] < errors[i - 1] : errors[i] != 0.0f)) {
+        if (!noh_is_finite(errors[i]) || (i ? errors[i] < errors[i - 1] : errors[i] != 0.0f)) {
             return noh_check_fail(check, what, (uint64_t)((const uint8_t *)(errors + i) - check->bytes));
         }
     }
@@ -94,7 +95,7 @@ static noh_result check_clip_errors(const noh_check *check, const noh_clip_heade
     if (!result)
         result = check_errors(check, h->update_rate_error, NOH_CLIP_UPDATE_RATES,
                               "update rate errors do not begin with 0, or fall, or are not finite");
-    if (!result && (!noh_float_finite(h->error_shell) || h->error_shell < 0.0f)) {
+    if (!result && (!noh_is_finite(h->error_shell) || h->error_shell < 0.0f)) {
         result = noh_check_fail(check, "the shell of a clip's errors is not a length",
                                 offsetof(noh_clip_header, error_shell));
     }

@@ -2,6 +2,7 @@
  * graphs does not carry it. What depends on the clips (that they exist, that the clip of a one-shot ends) is checked
  * when a graph is bound to them. */
 #include "core/pack/check_internal.h"
+#include "core/base/math_internal.h"
 #include "core/base/assert_internal.h"
 #include "core/pack/pack_internal.h"
 #include "noh/base.h"
@@ -113,7 +114,7 @@ static noh_result check_values(const graph_view *g, const noh_pack_graph_node *n
         NODE(mask, n->mask > g->h->mask_count || (n->kind == NOH_PACK_NODE_MASK && !n->mask)),
     };
     const noh_check_field unknown[] = {
-        NODE(value, !noh_float_finite(n->value)),
+        NODE(value, !noh_is_finite(n->value)),
         NODE(curve, n->curve > 1u),
         NODE(flags, n->flags > 3u),
         NODE(fade_ticks, (n->flags & 1u) && !n->fade_ticks),
@@ -207,7 +208,7 @@ static noh_result check_transition(const graph_view *g, const noh_pack_graph_nod
         FIELD(noh_pack_graph_transition, condition, t->condition > 3u),
         FIELD(noh_pack_graph_transition, param,
               t->condition == 3u ? t->param != NOH_PACK_GRAPH_NONE : t->param >= g->h->param_count),
-        FIELD(noh_pack_graph_transition, threshold, !noh_float_finite(t->threshold)),
+        FIELD(noh_pack_graph_transition, threshold, !noh_is_finite(t->threshold)),
         FIELD(noh_pack_graph_transition, duration_ticks, (t->flags & 1u) && !t->duration_ticks),
         FIELD(noh_pack_graph_transition, curve, t->curve > 1u),
         FIELD(noh_pack_graph_transition, flags, t->flags > 3u),
@@ -342,9 +343,9 @@ static noh_result check_param(const graph_view *g, const noh_pack_graph_param *p
     };
     const noh_check_field range[] = {
         FIELD(noh_pack_graph_param, minimum,
-              !noh_float_finite(p->minimum) || ((is_enum || is_trigger) && p->minimum != 0.0f)),
+              !noh_is_finite(p->minimum) || ((is_enum || is_trigger) && p->minimum != 0.0f)),
         FIELD(noh_pack_graph_param, maximum,
-              !noh_float_finite(p->maximum) || ((is_enum || is_trigger) && p->maximum != most)),
+              !noh_is_finite(p->maximum) || ((is_enum || is_trigger) && p->maximum != most)),
         FIELD(noh_pack_graph_param, initial,
               !(p->minimum <= p->initial && p->initial <= p->maximum) || (is_trigger && p->initial != 0.0f)),
     };

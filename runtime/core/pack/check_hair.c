@@ -8,11 +8,6 @@
 
 #define FAR 1000.0f /* metres: no head is larger */
 
-static int is_within(float value, float low, float high)
-{
-    return value >= low && value <= high;
-}
-
 static int is_count(uint32_t value, uint32_t low, uint32_t high)
 {
     return value >= low && value <= high;
@@ -27,17 +22,17 @@ static noh_result check_header(const noh_check *check, const noh_pack_hair_heade
         { offsetof(noh_pack_hair_header, sphere_count), h->sphere_count > NOH_HAIR_SPHERES_MAX },
         { offsetof(noh_pack_hair_header, strip_count), !is_count(h->strip_count, 1, NOH_HAIR_STRIPS_MAX) },
         { offsetof(noh_pack_hair_header, segment_count), !is_count(h->segment_count, 1, NOH_HAIR_SEGMENTS_MAX) },
-        { offsetof(noh_pack_hair_header, metres), !is_within(h->metres, 1e-6f, 1e6f) },
-        { offsetof(noh_pack_hair_header, pull), !is_within(h->pull, 0.0f, 1.0f) },
-        { offsetof(noh_pack_hair_header, pull_at_tip), !is_within(h->pull_at_tip, 0.0f, 1.0f) },
-        { offsetof(noh_pack_hair_header, damping), !is_within(h->damping, 0.0f, FAR) },
-        { offsetof(noh_pack_hair_header, gravity), !is_within(h->gravity, 0.0f, FAR) },
-        { offsetof(noh_pack_hair_header, width_root), !is_within(h->width_root, 1e-6f, 1.0f) },
-        { offsetof(noh_pack_hair_header, width_tip), !is_within(h->width_tip, 1e-6f, 1.0f) },
-        { offsetof(noh_pack_hair_header, curl_radius), !is_within(h->curl_radius, 0.0f, 1.0f) },
-        { offsetof(noh_pack_hair_header, curl_turns), !is_within(h->curl_turns, -100.0f, 100.0f) },
-        { offsetof(noh_pack_hair_header, scatter), !is_within(h->scatter, 0.0f, 1.0f) },
-        { offsetof(noh_pack_hair_header, gloss), !is_within(h->gloss, 0.0f, 4.0f) },
+        { offsetof(noh_pack_hair_header, metres), !noh_is_within(h->metres, 1e-6f, 1e6f) },
+        { offsetof(noh_pack_hair_header, pull), !noh_is_within(h->pull, 0.0f, 1.0f) },
+        { offsetof(noh_pack_hair_header, pull_at_tip), !noh_is_within(h->pull_at_tip, 0.0f, 1.0f) },
+        { offsetof(noh_pack_hair_header, damping), !noh_is_within(h->damping, 0.0f, FAR) },
+        { offsetof(noh_pack_hair_header, gravity), !noh_is_within(h->gravity, 0.0f, FAR) },
+        { offsetof(noh_pack_hair_header, width_root), !noh_is_within(h->width_root, 1e-6f, 1.0f) },
+        { offsetof(noh_pack_hair_header, width_tip), !noh_is_within(h->width_tip, 1e-6f, 1.0f) },
+        { offsetof(noh_pack_hair_header, curl_radius), !noh_is_within(h->curl_radius, 0.0f, 1.0f) },
+        { offsetof(noh_pack_hair_header, curl_turns), !noh_is_within(h->curl_turns, -100.0f, 100.0f) },
+        { offsetof(noh_pack_hair_header, scatter), !noh_is_within(h->scatter, 0.0f, 1.0f) },
+        { offsetof(noh_pack_hair_header, gloss), !noh_is_within(h->gloss, 0.0f, 4.0f) },
     };
     return noh_check_fields(check, fields, sizeof fields / sizeof fields[0], "number of a haircut is out of its range",
                             0);
@@ -47,7 +42,7 @@ static noh_result check_range(const noh_check *check, uint64_t at, uint32_t coun
 {
     const float *values = (const float *)(const void *)(check->bytes + at);
     for (uint32_t i = 0; i < count; i++) {
-        if (!is_within(values[i], low, high)) {
+        if (!noh_is_within(values[i], low, high)) {
             return noh_check_fail(check, "number of a haircut is out of its range", at + 4ull * i);
         }
     }
@@ -87,7 +82,7 @@ static noh_result check_spheres(const noh_check *check, const noh_pack_hair_head
 {
     const float *s = (const float *)(const void *)(check->bytes + h->spheres_offset);
     for (uint32_t i = 0; i < h->sphere_count; i++) {
-        if (!is_within(s[4u * (size_t)i + 3u], 0.0f, FAR)) {
+        if (!noh_is_within(s[4u * (size_t)i + 3u], 0.0f, FAR)) {
             return noh_check_fail(check, "radius of a haircut's sphere is out of range",
                                   h->spheres_offset + 16ull * i + 12u);
         }

@@ -107,10 +107,4 @@ uint32_t noh_check_texel_word(const noh_check *check, const noh_mesh_header *h, 
 /* The joints of the n-th skin; 0 for NOH_NONE. */
 uint32_t noh_check_skin_joints(const noh_pack *pack, uint32_t skin);
 
-/* Not NaN, not infinite. */
-static inline int noh_float_finite(float value)
-{
-    return value - value == 0.0f;
-}
-
 #endif

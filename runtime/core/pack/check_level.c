@@ -1,4 +1,5 @@
 /* check_level.c: the checker of a mesh's LOD levels, and of its texel references. */
+#include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -96,7 +97,7 @@ static noh_result check_finest_errors(const noh_check *check, const noh_mesh_hea
     const float *errors = &h->level_error_rest;
     for (unsigned i = 0; i < 3; i++) {
         if (!(h->influence_errors[i] >= (i ? h->influence_errors[i - 1] : 0.0f)) ||
-            !noh_float_finite(h->influence_errors[i])) {
+            !noh_is_finite(h->influence_errors[i])) {
             return noh_check_fail(check, "error of fewer influences is not finite, or falls",
                                   offsetof(noh_mesh_header, influence_errors) + 4u * i);
         }

@@ -1,4 +1,5 @@
 /* check_mesh.c: everything that later code trusts about a mesh chunk. */
+#include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -65,7 +66,7 @@ static noh_result check_uv_targets(const noh_check *check, const noh_mesh_header
         return noh_check_fail(check, "targets move texture coordinates that the mesh does not have",
                               offsetof(noh_mesh_header, flags));
     }
-    if (moves ? !(h->uv_per_unit > 0.0f) || !noh_float_finite(h->uv_per_unit) : h->uv_per_unit != 0.0f) {
+    if (moves ? !(h->uv_per_unit > 0.0f) || !noh_is_finite(h->uv_per_unit) : h->uv_per_unit != 0.0f) {
         return noh_check_fail(check, "texture coordinates for a unit are not above 0, or nothing moves any",
                               offsetof(noh_mesh_header, uv_per_unit));
     }

@@ -1,6 +1,7 @@
 /* check_ragdoll.c: the checker of a ragdoll's table. */
 #include <stddef.h>
 
+#include "core/base/math_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "core/pack/check_internal.h"
@@ -8,21 +9,16 @@
 #define HALF_TURN 3.1415927f
 #define FRICTION_MAX 10000.0f
 
-static int is_within(float value, float low, float high)
-{
-    return value >= low && value <= high;
-}
-
 static noh_result check_row(const noh_check *check, const noh_pack_ragdoll_row *row, uint64_t at)
 {
     const noh_check_field fields[] = {
         { offsetof(noh_pack_ragdoll_row, hinge), row->hinge > 1u },
         { offsetof(noh_pack_ragdoll_row, toward), row->toward > 2u },
-        { offsetof(noh_pack_ragdoll_row, bend_min), !is_within(row->bend_min, -HALF_TURN, 0.0f) },
-        { offsetof(noh_pack_ragdoll_row, bend_max), !is_within(row->bend_max, 0.0f, HALF_TURN) },
-        { offsetof(noh_pack_ragdoll_row, side), !is_within(row->side, 0.0f, HALF_TURN) },
-        { offsetof(noh_pack_ragdoll_row, twist), !is_within(row->twist, 0.0f, HALF_TURN) },
-        { offsetof(noh_pack_ragdoll_row, friction), !is_within(row->friction, 0.0f, FRICTION_MAX) },
+        { offsetof(noh_pack_ragdoll_row, bend_min), !noh_is_within(row->bend_min, -HALF_TURN, 0.0f) },
+        { offsetof(noh_pack_ragdoll_row, bend_max), !noh_is_within(row->bend_max, 0.0f, HALF_TURN) },
+        { offsetof(noh_pack_ragdoll_row, side), !noh_is_within(row->side, 0.0f, HALF_TURN) },
+        { offsetof(noh_pack_ragdoll_row, twist), !noh_is_within(row->twist, 0.0f, HALF_TURN) },
+        { offsetof(noh_pack_ragdoll_row, friction), !noh_is_within(row->friction, 0.0f, FRICTION_MAX) },
     };
     noh_result result = noh_check_name(check, row->joint, row->joint_hash, at + offsetof(noh_pack_ragdoll_row, joint));
     if (!result) result = noh_check_reserved(check, at + offsetof(noh_pack_ragdoll_row, reserved), 3);

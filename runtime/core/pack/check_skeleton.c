@@ -1,4 +1,5 @@
 /* check_skeleton.c: the checker of skeletons. */
+#include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -90,7 +91,7 @@ noh_result noh_check_skeleton(noh_check *check)
         return noh_check_fail(check, "joint count is zero or over the limit",
                               offsetof(noh_skeleton_header, joint_count));
     }
-    if (!(h->unit_cm > 0.0f) || !noh_float_finite(h->unit_cm)) {
+    if (!(h->unit_cm > 0.0f) || !noh_is_finite(h->unit_cm)) {
         return noh_check_fail(check, "unit of a skeleton is not a length", offsetof(noh_skeleton_header, unit_cm));
     }
     if (!h->level_count || h->level_count > NOH_LOD_LEVELS_MAX) {

@@ -1,6 +1,7 @@
 /* check_springs.c: the checker of springs. */
 #include <stddef.h>
 
+#include "core/base/math_internal.h"
 #include "core/pack/check_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -35,12 +36,12 @@ static noh_result check_header(const noh_check *check, const noh_springs_header 
 
 static NOH_NEVER_INLINE int is_not_below(float value)
 {
-    return !(value >= 0.0f) || !noh_float_finite(value);
+    return !(value >= 0.0f) || !noh_is_finite(value);
 }
 
 static NOH_NEVER_INLINE int is_not_finite3(const float v[3])
 {
-    return !noh_float_finite(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    return !noh_is_finite(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
 static NOH_NEVER_INLINE int has_no_length(const float v[3])

@@ -16,11 +16,6 @@
 
 #define ITEM_BLOCKS 16u
 
-static uint32_t half(uint32_t size)
-{
-    return size > 1u ? size / 2u : 1u;
-}
-
 /* ---- texels that are known ---- */
 
 static void texels_of(const noh_wire_unit *u, const uint8_t *at, noh_wire_texel_value texels[16])
@@ -199,8 +194,8 @@ static noh_wire_level level_of(const noh_wire_filter *f, uint32_t index)
     noh_wire_level l;
     for (uint32_t i = 0; i < index; i++) {
         at += noh_texture_bytes(f->section.params[3], width, height);
-        width = half(width);
-        height = half(height);
+        width = noh_wire_half(width);
+        height = noh_wire_half(height);
     }
     l.columns = (width + 3u) / 4u;
     l.rows = (height + 3u) / 4u;
@@ -219,8 +214,8 @@ static int blocks_fit(const noh_wire_filter *f)
     }
     for (uint32_t i = 0; i < s->params[2]; i++) {
         bytes += noh_texture_bytes(s->params[3], width, height);
-        width = half(width);
-        height = half(height);
+        width = noh_wire_half(width);
+        height = noh_wire_half(height);
     }
     return s->at + bytes <= f->image_bytes;
 }

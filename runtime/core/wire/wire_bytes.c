@@ -44,11 +44,6 @@ typedef struct place {
     uint32_t width, height, x, y;
 } place;
 
-static uint32_t half(uint32_t size)
-{
-    return size > 1u ? size / 2u : 1u;
-}
-
 /* Of three neighbours the middle one, or where left and above lie to one side of the corner, their sum less the corner:
  * an edge goes on.
  * source  Weinberger, Seroussi, Sapiro: The LOCO-I lossless image compression algorithm, 2000 */
@@ -119,8 +114,8 @@ static int texture_fits(const noh_wire_filter *f)
     }
     for (uint32_t i = 0; i < s->params[2]; i++) {
         bytes += 4u * (uint64_t)width * height;
-        width = half(width);
-        height = half(height);
+        width = noh_wire_half(width);
+        height = noh_wire_half(height);
     }
     return s->at + bytes <= f->image_bytes;
 }
@@ -140,8 +135,8 @@ int noh_wire_run_texture(noh_wire_filter *f)
         }
         finer = at;
         at += 4u * width * height;
-        width = half(width);
-        height = half(height);
+        width = noh_wire_half(width);
+        height = noh_wire_half(height);
     }
     return 1;
 }

@@ -66,6 +66,21 @@ uint32_t noh_wire_bits(noh_wire_coder *coder, uint32_t value, uint32_t bits);
 /* A number; smaller magnitudes take fewer bits. model[1] codes large numbers. */
 int32_t noh_wire_value(noh_wire_coder *coder, noh_wire_model *model, noh_wire_model *large, int32_t value);
 
+/* ---- numbers ---- */
+
+/* Half of a size: the next mip level's. */
+static inline uint32_t noh_wire_half(uint32_t size)
+{
+    return size > 1u ? size / 2u : 1u;
+}
+
+/* A fraction of `whole` as one of `steps` + 1 values. It is rounded, so that the way back gives the same value. */
+static inline int32_t noh_wire_steps(int32_t value, int32_t whole, int32_t steps)
+{
+    const int64_t scaled = (int64_t)value * steps * 2;
+    return (int32_t)((scaled + (scaled < 0 ? -whole : whole)) / (2 * (int64_t)whole));
+}
+
 /* ---- sections ---- */
 
 #define NOH_WIRE_BYTES 1u   /* bytes in rows of `stride` */

@@ -75,13 +75,6 @@ static int32_t signed_half(uint32_t word, uint32_t shift)
     return (int32_t)(word << (16u - shift)) >> 16;
 }
 
-/* A fraction of 32767 as one of 2 `steps` + 1 values; and back. */
-static int32_t to_steps(int32_t value, int32_t whole, int32_t steps)
-{
-    const int64_t scaled = (int64_t)value * steps * 2;
-    return (int32_t)((scaled + (scaled < 0 ? -whole : whole)) / (2 * (int64_t)whole));
-}
-
 static void guess_of(const noh_wire_filter *f, uint32_t v, int32_t steps, int32_t guess[2])
 {
     const noh_wire_near n = noh_wire_near_of(f, v);
@@ -95,7 +88,7 @@ static void guess_of(const noh_wire_filter *f, uint32_t v, int32_t steps, int32_
         int64_t sum = 0;
         for (uint32_t k = 0; k < n.count; k++) {
             const uint32_t word = noh_wire_load(f, base + (uint64_t)n.vertex[k] * stride);
-            sum += (int64_t)n.sign[k] * to_steps(signed_half(word, 16u * i), 32767, steps);
+            sum += (int64_t)n.sign[k] * noh_wire_steps(signed_half(word, 16u * i), 32767, steps);
         }
         guess[i] = noh_wire_mean(&n, sum);
     }
@@ -111,12 +104,12 @@ static void code_normal(noh_wire_filter *f, uint32_t v)
     int32_t guess[2];
     guess_of(f, v, steps, guess);
     for (uint32_t i = 0; i < 2u; i++) {
-        const int32_t value = to_steps(signed_half(old, 16u * i), 32767, steps);
+        const int32_t value = noh_wire_steps(signed_half(old, 16u * i), 32767, steps);
         const int32_t residual = noh_wire_residual(f, 16u * i + (before > 1u ? 8u : 0u), noh_wire_activity(f, i),
                                                    (int32_t)((uint32_t)value - (uint32_t)guess[i]));
         noh_wire_note(f, i, residual);
         before = noh_wire_magnitude(residual);
-        word |= ((uint32_t)to_steps((int32_t)((uint32_t)guess[i] + (uint32_t)residual), steps, 32767) & 0xffffu)
+        word |= ((uint32_t)noh_wire_steps((int32_t)((uint32_t)guess[i] + (uint32_t)residual), steps, 32767) & 0xffffu)
                 << 16u * i;
     }
     noh_wire_store(f, at, word);

@@ -149,13 +149,6 @@ static uint64_t attribute_at(const noh_wire_filter *f, uint32_t v)
            (uint64_t)v * f->mesh.header.attribute_stride;
 }
 
-/* A fraction of `whole` as one of `steps` + 1 values, and back: rounded, so that it returns. */
-static int32_t to_steps(int32_t value, int32_t whole, int32_t steps)
-{
-    const int64_t scaled = (int64_t)value * steps * 2;
-    return (int32_t)((scaled + (scaled < 0 ? -whole : whole)) / (2 * (int64_t)whole));
-}
-
 typedef struct field {
     uint32_t shift, mask;
     int32_t whole, steps;
@@ -180,12 +173,12 @@ static int32_t field_value(const field *d, uint32_t word)
 {
     const uint32_t raw = word >> d->shift & d->mask;
     const int32_t value = d->is_signed && raw > d->mask >> 1 ? (int32_t)raw - (int32_t)d->mask - 1 : (int32_t)raw;
-    return to_steps(value, d->whole, d->steps);
+    return noh_wire_steps(value, d->whole, d->steps);
 }
 
 static uint32_t field_word(const field *d, int32_t value)
 {
-    return ((uint32_t)to_steps(value, d->steps, d->whole) & d->mask) << d->shift;
+    return ((uint32_t)noh_wire_steps(value, d->steps, d->whole) & d->mask) << d->shift;
 }
 
 static int32_t word_guess(const noh_wire_filter *f, const noh_wire_near *n, const field *d)

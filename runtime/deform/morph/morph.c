@@ -1,5 +1,6 @@
 /* morph.c: morph targets on the CPU, the reference for the GPU's accumulators. Products and sums have the same order as
  * in the shaders, so equal inputs give equal bits. */
+#include "core/base/name_internal.h"
 #include "core/base/assert_internal.h"
 #include "core/base/compiler_internal.h"
 #include "deform/morph/morph_internal.h"
@@ -115,12 +116,6 @@ static void finish_wide(const noh_mesh *mesh, const noh_morph_layers *layers, ui
 }
 #endif
 
-static int is_name(const char *a, const char *b)
-{
-    while (*a && *a == *b) a++, b++;
-    return *a == *b;
-}
-
 noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh_error *error)
 {
     const noh_morph_kernel kernels[] = {
@@ -132,7 +127,7 @@ noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh
     };
     NOH_ASSERT(kernel);
     for (size_t i = 0; i < sizeof kernels / sizeof kernels[0]; i++) {
-        if (kernels[i].accumulate && (!name || is_name(name, kernels[i].name))) {
+        if (kernels[i].accumulate && (!name || noh_names_equal(name, kernels[i].name))) {
             *kernel = kernels[i];
             return NOH_OK;
         }
@@ -142,16 +137,11 @@ noh_result noh_morph_kernel_find(const char *name, noh_morph_kernel *kernel, noh
                     0);
 }
 
-static float round_half(float value, noh_half_mode mode)
-{
-    return noh_half_to_float(noh_half_from_float(value, mode));
-}
-
 static void row_f16_rne(const uint32_t *words, size_t count, const morph_field f[3], float *const layers[3])
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
-            layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
+            layers[l][i] = noh_half_round(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RNE);
         }
     }
 }
@@ -160,7 +150,7 @@ static void row_f16_rtz(const uint32_t *words, size_t count, const morph_field f
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
-            layers[l][i] = round_half(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
+            layers[l][i] = noh_half_round(layers[l][i] + noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
         }
     }
 }
@@ -169,8 +159,8 @@ static void row_f16_rtz_rne(const uint32_t *words, size_t count, const morph_fie
 {
     for (int l = 0; l < 3 && layers[l]; l++) {
         for (size_t i = 0; i < count; i++) {
-            const float added = round_half(noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
-            layers[l][i] = round_half(layers[l][i] + added, NOH_HALF_RNE);
+            const float added = noh_half_round(noh_field_value(words[i], f[l]), NOH_HALF_RTZ);
+            layers[l][i] = noh_half_round(layers[l][i] + added, NOH_HALF_RNE);
         }
     }
 }
@@ -203,7 +193,7 @@ void noh_morph_round_f16(const noh_mesh *mesh, noh_half_mode mode, const noh_mor
 {
     size_t floats = layer_texels(mesh) * (layers->tangent ? 9u : 6u);
     for (size_t i = 0; i < floats; i++) {
-        layers->position[i] = round_half(layers->position[i], mode); /* the layers are contiguous */
+        layers->position[i] = noh_half_round(layers->position[i], mode); /* the layers are contiguous */
     }
 }
 

@@ -1,3 +1,4 @@
+#include "core/base/vector_internal.h"
 #include "core/base/assert_internal.h"
 #include "deform/morph/morph_internal.h"
 #include "deform/pick/bounds_internal.h"
@@ -47,13 +48,6 @@ static int ray_meets_box(const ray *r, const float box[6])
     return enter <= leave * 1.00001f; /* the quotients are rounded */
 }
 
-static void cross(const float a[3], const float b[3], float out[3])
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
 /* Moller and Trumbore 1997: origin + t direction = a + u ab + v ac is three linear equations in t, u and v, solved by
  * Cramer's rule; the scalar triple products share two cross products. The sign of the determinant gives the side from
  * which the triangle is seen, and both count. Fills distance and barycentric of a hit nearer than the limit. */
@@ -65,12 +59,12 @@ static int ray_meets_triangle(const ray *r, float corners[3][3], noh_pick_hit *h
         ac[i] = corners[2][i] - corners[0][i];
         from[i] = r->origin[i] - corners[0][i];
     }
-    cross(r->direction, ac, p);
+    noh_cross3(r->direction, ac, p);
     determinant = noh_dot3(ab, p);
     if (determinant == 0.0f) {
         return 0; /* no area, or seen from its edge */
     }
-    cross(from, ab, q);
+    noh_cross3(from, ab, q);
     u = noh_dot3(from, p) / determinant;
     v = noh_dot3(r->direction, q) / determinant;
     t = noh_dot3(ac, q) / determinant;
@@ -142,11 +136,6 @@ static uint32_t strongest_joint(const noh_mesh *mesh, uint32_t vertex)
 
 /* ---- how far targets go ---- */
 
-static float length_of(const float v[3])
-{
-    return noh_sqrt(noh_dot3(v, v));
-}
-
 /* An upper bound on the stretch of a matrix: the root of the sum of its squares. */
 static float stretch_of(const float m[12])
 {
@@ -171,7 +160,7 @@ static float moved_at_most(const noh_pick_surface *s, uint32_t joints)
         const float own = stretch_of(s->matrices + 12u * (size_t)j);
         stretch = own > stretch ? own : stretch;
     }
-    return 1.001f * stretch * length_of(most);
+    return 1.001f * stretch * noh_length3(most);
 }
 
 /* Whether the ray passes a triangle without targets closely enough to hit it with targets. */

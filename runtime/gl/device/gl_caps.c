@@ -66,11 +66,6 @@ static float value_at(const float values[FLOATS], uint32_t layer, uint32_t i)
     return values[(i + layer * 4) % FLOATS];
 }
 
-static float round_to_half(float value, noh_half_mode mode)
-{
-    return noh_half_to_float(noh_half_from_float(value, mode));
-}
-
 /* --- drawing and reading back --- */
 
 static GLuint make_array(const noh_gl_api *gl, GLenum format)
@@ -161,10 +156,10 @@ static void advance(models *m, uint32_t pass)
         for (uint32_t i = 0; i < FLOATS; i++) {
             float value = value_at(values, layer, i);
             m->exact[layer][i] = m->exact[layer][i] + value;
-            m->rtz[layer][i] = round_to_half(m->rtz[layer][i] + value, NOH_HALF_RTZ);
-            m->rne[layer][i] = round_to_half(m->rne[layer][i] + value, NOH_HALF_RNE);
-            m->rtz_rne[layer][i] = round_to_half(m->rtz_rne[layer][i] + round_to_half(value, NOH_HALF_RTZ),
-                                                 NOH_HALF_RNE);
+            m->rtz[layer][i] = noh_half_round(m->rtz[layer][i] + value, NOH_HALF_RTZ);
+            m->rne[layer][i] = noh_half_round(m->rne[layer][i] + value, NOH_HALF_RNE);
+            m->rtz_rne[layer][i] = noh_half_round(m->rtz_rne[layer][i] + noh_half_round(value, NOH_HALF_RTZ),
+                                                  NOH_HALF_RNE);
         }
     }
 }

@@ -98,11 +98,6 @@ void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ag
 
 /* ---- the eyes ---- */
 
-static float clamped(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
-
 /* Angles of an eye to the point it looks at, in the head's space. */
 static void aim(const noh_face_desc *desc, const float rotation[4], const float point[3], int eye, float out[2])
 {
@@ -111,9 +106,10 @@ static void aim(const noh_face_desc *desc, const float rotation[4], const float 
     noh_quat_conjugate(rotation, back);
     noh_quat_rotate(back, point, way);
     for (int i = 0; i < 3; i++) way[i] -= desc->eyes[eye][i];
-    out[0] = clamped(noh_atan2(way[0], way[2]), -yaw_max, yaw_max);
-    out[1] = clamped(noh_atan2(way[1], noh_sqrt(way[0] * way[0] + way[2] * way[2])),
-                     -noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), noh_face_or(desc->up_max, 25.0f * NOH_DEGREE));
+    out[0] = noh_clamped(noh_atan2(way[0], way[2]), -yaw_max, yaw_max);
+    out[1] = noh_clamped(noh_atan2(way[1], noh_sqrt(way[0] * way[0] + way[2] * way[2])),
+                         -noh_face_or(desc->down_max, 30.0f * NOH_DEGREE),
+                         noh_face_or(desc->up_max, 25.0f * NOH_DEGREE));
 }
 
 static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose)
@@ -148,19 +144,19 @@ float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
 static float brows_at(const noh_face *face, float lids_up)
 {
     const float idle = is_still(face) ? 0.0f : BROWS + BROWS * wave(face, NOH_FACE_BROWS, 110400u);
-    return clamped(idle + BROWS_FOLLOW * lids_up + BROWS_SPEAK * face->speech.brows, 0.0f, 1.0f);
+    return noh_clamped(idle + BROWS_FOLLOW * lids_up + BROWS_SPEAK * face->speech.brows, 0.0f, 1.0f);
 }
 
 static void show_emotions(const noh_face *face, float emotions[NOH_EMOTION_COUNT])
 {
     if (noh_face_is_four(face) && face->emotions[0].on) {
-        emotions[face->emotions[0].emotion] = clamped(noh_face_mood_at(face), 0.0f, 1.0f);
+        emotions[face->emotions[0].emotion] = noh_clamped(noh_face_mood_at(face), 0.0f, 1.0f);
         return;
     }
     for (uint32_t i = 0; i < NOH_FACE_EMOTIONS_MAX; i++) {
         const noh_face_emotion *f = &face->emotions[i];
         if (f->on) {
-            emotions[f->emotion] = clamped(noh_face_spring_at(&f->amount, (uint32_t)face->clock), 0.0f, 1.0f);
+            emotions[f->emotion] = noh_clamped(noh_face_spring_at(&f->amount, (uint32_t)face->clock), 0.0f, 1.0f);
         }
     }
 }
@@ -173,8 +169,8 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
     noh_face_head_rotation(face, desc, pose->head_angles, pose->head);
     aim_both(face, desc, pose);
     pitch = 0.5f * (pose->eyes[0][1] + pose->eyes[1][1]);
-    pose->lids_down = clamped(-pitch / noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), 0.0f, 1.0f);
-    pose->lids_up = clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
+    pose->lids_down = noh_clamped(-pitch / noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), 0.0f, 1.0f);
+    pose->lids_up = noh_clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
     pose->blink = noh_face_blink_at(face);
     pose->breath = noh_face_breath(face, desc);
     pose->brows = brows_at(face, pose->lids_up);

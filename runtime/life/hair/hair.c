@@ -6,7 +6,7 @@
 #include "noh/low_life.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 /* ---- size and init ---- */
 
@@ -124,16 +124,11 @@ static noh_hair_motion motion_of(const noh_hair *h, const noh_hair_desc *d, cons
     return m;
 }
 
-static void mix3(const float a[3], const float b[3], float t, float out[3])
-{
-    for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
-}
-
 void noh_hair_carry(const noh_hair *h, const noh_hair_desc *d, const noh_hair_carrier *carrier, float t,
                     noh_hair_carrier *at, noh_hair_motion *motion)
 {
-    mix3(h->last.position, carrier->position, t, at->position);
-    mix3(h->last.wind, carrier->wind, t, at->wind);
+    noh_mix3(h->last.position, carrier->position, t, at->position);
+    noh_mix3(h->last.wind, carrier->wind, t, at->wind);
     noh_quat_nlerp(h->last.rotation, carrier->rotation, t, at->rotation);
     *motion = motion_of(h, d, at);
 }

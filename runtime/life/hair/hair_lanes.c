@@ -9,7 +9,7 @@
 #include "core/base/compiler_internal.h"
 #include "life/hair/hair_internal.h"
 #include "life/physics/lanes3_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define FOLLOW 0.9f     /* share of a point's correction that is removed from the velocity of the previous one */
 #define SPEED_MAX 20.0f /* metres per second; exceeded only after a teleport without reset */

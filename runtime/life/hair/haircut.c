@@ -8,7 +8,7 @@
 #include "noh/pack.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define PIXELS_FULL 500.0f
 #define PIXELS_NONE 25.0f

@@ -6,7 +6,7 @@
  * source   Ericson: Real-Time Collision Detection, 2005, sections 4.4.1 (separating axes) and 5.1.9 (segments) */
 #include "life/physics/contact_internal.h"
 
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/shape_internal.h"

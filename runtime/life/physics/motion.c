@@ -3,7 +3,7 @@
 #include "noh/low_life.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 uint32_t noh_steps_take(noh_steps *steps, uint32_t ticks, uint32_t step_ticks, uint32_t limit)
 {

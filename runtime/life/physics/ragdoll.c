@@ -1,4 +1,5 @@
 /* ragdoll.c: sets of ragdolls: memory, input and output, sleep. */
+#include "core/base/math_internal.h"
 #include "core/base/trig_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "noh/base.h"
@@ -7,7 +8,7 @@
 #include "noh/low_life.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/shape_internal.h"
 
@@ -115,11 +116,6 @@ static void set_mass(noh_ragdoll_body *b, float mass)
     b->mass = mass;
 }
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 void noh_ragdoll_stabilize(noh_ragdoll_rig *rig)
 {
     float wanted[NOH_RAGDOLL_BODIES_MAX], below[NOH_RAGDOLL_BODIES_MAX] = { 0.0f }, sum = 0.0f, total = 0.0f;
@@ -134,12 +130,12 @@ void noh_ragdoll_stabilize(noh_ragdoll_rig *rig)
     for (uint32_t i = rig->body_count; i-- > 0;) {
         noh_ragdoll_body *b = &rig->bodies[i];
         if (below[i] > 0.0f) {
-            const float own = larger(b->inertia_across, b->inertia_along);
+            const float own = noh_larger(b->inertia_across, b->inertia_along);
             const float least = below[i] < 2.0f * own ? below[i] : 2.0f * own;
-            b->inertia_across = larger(b->inertia_across, least);
-            b->inertia_along = larger(b->inertia_along, least);
+            b->inertia_across = noh_larger(b->inertia_across, least);
+            b->inertia_along = noh_larger(b->inertia_along, least);
         }
-        if (i) below[b->parent] += larger(b->inertia_across, b->inertia_along) + below[i];
+        if (i) below[b->parent] += noh_larger(b->inertia_across, b->inertia_along) + below[i];
     }
 }
 
@@ -237,7 +233,7 @@ static float size_of(const noh_ragdoll_rig *rig)
             high[k % 3] = at + b->radius > high[k % 3] ? at + b->radius : high[k % 3];
         }
     }
-    for (int k = 0; k < 3; k++) size = larger(size, high[k] - low[k]);
+    for (int k = 0; k < 3; k++) size = noh_larger(size, high[k] - low[k]);
     return size;
 }
 
@@ -623,7 +619,7 @@ static void add_inertia(whole_doll *w, const noh_ragdoll_constants *c, const noh
     noh_quat_rotate(s->rotation, z, axis);
     noh_sub3(s->position, w->centre, arm);
     const float square = noh_dot3(arm, arm);
-    w->reach = larger(w->reach, noh_sqrt(square));
+    w->reach = noh_larger(w->reach, noh_sqrt(square));
     for (int i = 0; i < 3; i++) {
         for (int k = 0; k < 3; k++) {
             w->inertia[i][k] += (c->inertia_along - c->inertia_across) * axis[i] * axis[k] - c->mass * arm[i] * arm[k];
@@ -669,7 +665,7 @@ static void push_whole(const noh_ragdoll_shape *shape, noh_ragdoll_doll *d, cons
     noh_sub3(point, w.centre, arm);
     noh_cross3(arm, impulse, twist);
     spin_by(&w, twist, spin);
-    const float fast = noh_length3(speed), left = larger(shape->speed_max - fast, 0.0f);
+    const float fast = noh_length3(speed), left = noh_larger(shape->speed_max - fast, 0.0f);
     const float rim = noh_length3(spin) * w.reach, most = left < fast ? left : fast;
     if (rim > most) noh_madd3(spin, most / rim - 1.0f, spin, spin);
     for (uint32_t i = 0; i < shape->body_count; i++) {
@@ -700,7 +696,7 @@ static void push_body(const noh_ragdoll_constants *c, noh_ragdoll_state *s, cons
 static void shorten3(float v[3], float most)
 {
     float largest = 0.0f;
-    for (int k = 0; k < 3; k++) largest = larger(largest, v[k] < 0.0f ? -v[k] : v[k]);
+    for (int k = 0; k < 3; k++) largest = noh_larger(largest, v[k] < 0.0f ? -v[k] : v[k]);
     for (int k = 0; k < 3 && largest > most; k++) v[k] *= most / largest;
 }
 
@@ -738,7 +734,7 @@ static float strayed(const noh_ragdoll_constants *c, const noh_ragdoll_state *s,
     for (int k = 0; k < 2; k++) {
         float d[3];
         noh_sub3(ends[k], before[k], d);
-        most = larger(most, noh_dot3(d, d));
+        most = noh_larger(most, noh_dot3(d, d));
     }
     return most;
 }

@@ -12,7 +12,7 @@
 #include "core/base/compiler_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/ragdoll_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "noh/low_life.h"

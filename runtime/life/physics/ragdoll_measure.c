@@ -1,11 +1,12 @@
 /* ragdoll_measure.c: how far a ragdoll violates its joints' limits and the world. */
+#include "core/base/math_internal.h"
 #include "core/base/trig_internal.h"
 #include "core/base/assert_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/shape_internal.h"
@@ -16,11 +17,6 @@ static const noh_ragdoll_doll *doll_of(const noh_ragdolls *set, uint32_t doll)
 {
     const uint8_t *dolls = (const uint8_t *)set + ((sizeof *set + 15u) & ~(size_t)15u);
     return (const noh_ragdoll_doll *)(const void *)dolls + doll;
-}
-
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
 }
 
 /* ---- joints ---- */
@@ -37,7 +33,7 @@ static float past_swing(const noh_ragdoll_constants *c, const float r[4])
     const float x = r[0] * r[3] - r[1] * r[2], y = r[0] * r[2] + r[1] * r[3];
     const float fill = x * x * c->swing[0] + y * y * c->swing[1];
     if (fill <= rest) return 0.0f;
-    const float sine = noh_sqrt(swung * rest / fill), cosine = noh_sqrt(larger(1.0f - sine * sine, 0.0f));
+    const float sine = noh_sqrt(swung * rest / fill), cosine = noh_sqrt(noh_larger(1.0f - sine * sine, 0.0f));
     return 2.0f * (noh_atan2(noh_sqrt(swung), noh_sqrt(rest)) - noh_atan2(sine, cosine));
 }
 
@@ -45,7 +41,7 @@ static float past_twist(const noh_ragdoll_constants *c, const float r[4])
 {
     const float sign = r[3] < 0.0f ? -1.0f : 1.0f, angle = noh_atan2(sign * r[2], sign * r[3]);
     const float low = noh_atan2(c->twist_min[0], c->twist_min[1]), high = noh_atan2(c->twist_max[0], c->twist_max[1]);
-    return 2.0f * larger(larger(angle - high, low - angle), 0.0f);
+    return 2.0f * noh_larger(noh_larger(angle - high, low - angle), 0.0f);
 }
 
 static float past_limits(const joint *j)
@@ -57,9 +53,9 @@ static float past_limits(const joint *j)
     noh_quat_mul(back, b, r);
     if (j->c->flags & NOH_RAGDOLL_HINGE) { /* swing: the angle between its axes */
         swing = 2.0f * noh_atan2(noh_sqrt(r[0] * r[0] + r[1] * r[1]), noh_sqrt(r[2] * r[2] + r[3] * r[3]));
-        return j->c->flags & NOH_RAGDOLL_LOOSE ? swing : larger(swing, past_twist(j->c, r));
+        return j->c->flags & NOH_RAGDOLL_LOOSE ? swing : noh_larger(swing, past_twist(j->c, r));
     }
-    return j->c->flags & NOH_RAGDOLL_LOOSE ? 0.0f : larger(past_swing(j->c, r), past_twist(j->c, r));
+    return j->c->flags & NOH_RAGDOLL_LOOSE ? 0.0f : noh_larger(past_swing(j->c, r), past_twist(j->c, r));
 }
 
 static float separation(const joint *j)
@@ -111,13 +107,13 @@ static float in_ground(const noh_world *world, const float origin[3], const floa
     for (uint32_t i = 0; i < world->plane_count; i++) {
         const noh_plane *p = &world->planes[i];
         const float distance = noh_plane_distance(p, origin);
-        deepest = larger(deepest, distance + radius - noh_dot3(point, p->normal));
+        deepest = noh_larger(deepest, distance + radius - noh_dot3(point, p->normal));
     }
     for (uint32_t i = 0; i < world->box_count; i++) {
-        deepest = larger(deepest, in_box(&world->boxes[i], origin, point, radius));
+        deepest = noh_larger(deepest, in_box(&world->boxes[i], origin, point, radius));
     }
     if (world->field && noh_field_height_about(world->field, origin, point[0], point[2], &height, normal)) {
-        deepest = larger(deepest, radius - (point[1] - height) * normal[1]);
+        deepest = noh_larger(deepest, radius - (point[1] - height) * normal[1]);
     }
     return deepest;
 }
@@ -137,7 +133,7 @@ static float in_capsules(const noh_world *world, const float origin[3], const fl
         noh_sub3(b, a, d);
         noh_madd3(a, along[1], d, q);
         noh_sub3(p, q, d);
-        deepest = larger(deepest, k->radius + radius - noh_length3(d));
+        deepest = noh_larger(deepest, k->radius + radius - noh_length3(d));
     }
     return deepest;
 }
@@ -151,7 +147,7 @@ static float in_asked(const noh_touches *touches, const noh_ragdoll_constants *c
         const noh_touch *t = &touches->at[i];
         float point[3];
         noh_madd3(s->position, t->along * c->half, axis, point);
-        deepest = larger(deepest, t->plane.distance + c->radius - noh_dot3(point, t->plane.normal));
+        deepest = noh_larger(deepest, t->plane.distance + c->radius - noh_dot3(point, t->plane.normal));
     }
     return deepest;
 }
@@ -223,16 +219,16 @@ void noh_ragdoll_measure(const noh_ragdolls *set, uint32_t doll, const noh_world
         noh_madd3(s->position, -c->half, axis, to);
         m->energy += energy_of(c, s, axis, d->origin[1] + s->position[1]);
         if (world) {
-            m->penetration = larger(m->penetration, in_ground(world, d->origin, from, c->radius));
-            m->penetration = larger(m->penetration, in_ground(world, d->origin, to, c->radius));
-            m->penetration = larger(m->penetration, in_capsules(world, d->origin, from, to, c->radius));
+            m->penetration = noh_larger(m->penetration, in_ground(world, d->origin, from, c->radius));
+            m->penetration = noh_larger(m->penetration, in_ground(world, d->origin, to, c->radius));
+            m->penetration = noh_larger(m->penetration, in_capsules(world, d->origin, from, to, c->radius));
         }
-        if (asks) m->penetration = larger(m->penetration, in_asked(&touches[i], c, s, axis));
+        if (asks) m->penetration = noh_larger(m->penetration, in_asked(&touches[i], c, s, axis));
         if (i) {
             const joint j = { c, &d->bodies[c->parent], s };
             const float apart = separation(&j);
-            m->limit = larger(m->limit, past_limits(&j));
-            m->separation = larger(m->separation, apart);
+            m->limit = noh_larger(m->limit, past_limits(&j));
+            m->separation = noh_larger(m->separation, apart);
             m->separation_mean += apart / (float)(set->shape.body_count - 1u);
         }
     }

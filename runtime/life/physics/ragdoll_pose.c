@@ -9,7 +9,7 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/ragdoll_internal.h"
 
 /* ---- joints ---- */

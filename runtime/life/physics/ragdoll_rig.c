@@ -11,7 +11,7 @@
 #include "noh/pack.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/shape_internal.h"
 
 #define BINS 64u
@@ -183,13 +183,6 @@ static void find_bones(maker *m)
     }
 }
 
-static float apart(const float a[3], const float b[3])
-{
-    float d[3];
-    noh_sub3(a, b, d);
-    return noh_length3(d);
-}
-
 /* The length of a body with little or no skin of its own: three tenths of its parent's. */
 static float parent_length(const maker *m, uint32_t i)
 {
@@ -230,7 +223,7 @@ static int widest(const maker *m, uint32_t body, float axis[3], float middle[3])
     float most = 0.0f;
     for (uint32_t i = 1; i < m->rig->body_count; i++) {
         for (uint32_t k = 1; k < i; k++) {
-            const float far = apart(m->bones[i].start, m->bones[k].start);
+            const float far = noh_apart3(m->bones[i].start, m->bones[k].start);
             if (m->rig->bodies[i].parent == body && m->rig->bodies[k].parent == body && far > most) {
                 most = far;
                 noh_sub3(m->bones[i].start, m->bones[k].start, axis);
@@ -455,7 +448,7 @@ static float gap(const noh_ragdoll_body *a, const noh_ragdoll_body *b)
     noh_madd3(ends[0], along[0], d, p);
     noh_sub3(ends[3], ends[2], d);
     noh_madd3(ends[2], along[1], d, q);
-    return apart(p, q) - a->radius - b->radius;
+    return noh_apart3(p, q) - a->radius - b->radius;
 }
 
 /* Neighbours overlap by nature, as do bodies joined by a third one, except two children of the same parent. */

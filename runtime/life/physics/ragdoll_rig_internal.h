@@ -3,7 +3,7 @@
 #define NOH_SIM_RAGDOLL_RIG_INTERNAL_H
 
 #include "core/base/compiler_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/clip.h"
 #include "noh/low_core.h"
 #include "noh/low_motion.h"

@@ -10,7 +10,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/contact_internal.h"
 #include "life/physics/ragdoll_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define SECONDS ((float)NOH_RIGID_STEP_TICKS / 48000.0f)
 #define STEPS_MAX 150u /* a quarter of a second */
@@ -20,7 +20,7 @@
 #define BOUNCE_STEPS 4.0f /* an approach speed up to what gravity adds in this many substeps does not bounce */
 #define STILL_SPEED 0.08f
 #define STILL_STEPS 300u /* half a second */
-#define TURN_MAX 1e18f    /* of a momentum or a torque: its square stays finite */
+#define TURN_MAX 1e18f   /* of a momentum or a torque: its square stays finite */
 NOH_STATIC_ASSERT(sizeof(noh_rigid) == 144, rigid);
 
 /* ---- making a body ---- */

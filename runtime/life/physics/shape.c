@@ -3,13 +3,9 @@
 #include "noh/low_core.h"
 #include "noh/low_life.h"
 
-#include "life/physics/vector_internal.h"
+#include "core/base/math_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/shape_internal.h"
-
-static float clamp(float x, float low, float high)
-{
-    return x < low ? low : x > high ? high : x;
-}
 
 /* ---- boxes ---- */
 
@@ -51,7 +47,7 @@ void noh_obb_closest(const noh_obb *box, const float point[3], float closest[3])
         return;
     }
     into_box(box, point, p);
-    for (int i = 0; i < 3; i++) p[i] = clamp(p[i], -box->half[i], box->half[i]);
+    for (int i = 0; i < 3; i++) p[i] = noh_clamped(p[i], -box->half[i], box->half[i]);
     noh_quat_rotate(box->rotation, p, p);
     noh_madd3(box->centre, 1.0f, p, closest);
 }
@@ -194,7 +190,7 @@ float noh_ray_capsule(const noh_ray *ray, const float from[3], const float to[3]
 /* Along a, for a point of b at `t`: a . (b(t) - a_from) / a . a; 0 for a point. */
 static float project(float length, float along)
 {
-    return length > 1e-20f ? clamp(along / length, 0.0f, 1.0f) : 0.0f;
+    return length > 1e-20f ? noh_clamped(along / length, 0.0f, 1.0f) : 0.0f;
 }
 
 void noh_segments_closest(const float a_from[3], const float a_to[3], const float b_from[3], const float b_to[3],
@@ -206,7 +202,7 @@ void noh_segments_closest(const float a_from[3], const float a_to[3], const floa
     noh_sub3(a_from, b_from, r);
     const float aa = noh_dot3(a, a), bb = noh_dot3(b, b), ab = noh_dot3(a, b);
     const float ar = noh_dot3(a, r), br = noh_dot3(b, r), denominator = aa * bb - ab * ab;
-    const float s = denominator > 1e-7f * aa * bb ? clamp((ab * br - ar * bb) / denominator, 0.0f, 1.0f) : 0.0f;
+    const float s = denominator > 1e-7f * aa * bb ? noh_clamped((ab * br - ar * bb) / denominator, 0.0f, 1.0f) : 0.0f;
     along[1] = project(bb, ab * s + br);
     along[0] = project(aa, ab * along[1] - ar);
 }

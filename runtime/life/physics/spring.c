@@ -5,7 +5,7 @@
 #include "noh/low_life.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 /* ---- size and init ---- */
 
@@ -146,11 +146,6 @@ const char *noh_spring_check(const noh_spring *spring, const noh_spring_desc *de
 
 /* ---- results ---- */
 
-static void mix3(const float a[3], const float b[3], float t, float out[3])
-{
-    for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
-}
-
 /* From the first joint to the end of joint i, interpolated between the last two steps and turned with the carrier: a
  * chain that is carried rigidly does not lag behind. `turn` is the carrier's rotation since. */
 static void shown(const noh_spring *s, uint32_t i, float t, const float turn[4], float out[3])
@@ -158,7 +153,7 @@ static void shown(const noh_spring *s, uint32_t i, float t, const float turn[4],
     const noh_spring_point *p = &noh_spring_const_points(s)[i];
     float before[3];
     noh_madd3(p->before, 1.0f, s->moved, before); /* relative to the first joint at that time */
-    mix3(before, p->now, t, out);
+    noh_mix3(before, p->now, t, out);
     noh_quat_rotate(turn, out, out);
 }
 

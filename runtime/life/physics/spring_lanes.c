@@ -12,7 +12,7 @@
 #include "core/base/compiler_internal.h"
 #include "life/physics/lanes3_internal.h"
 #include "life/physics/spring_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define STEP_SECONDS ((float)NOH_SPRING_STEP_TICKS / 48000.0f)
 #define ROW 7u         /* floats of a point, a carrier and a collider */

@@ -8,7 +8,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/physics/shape_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/base.h"
 
 #define LEAF 4u

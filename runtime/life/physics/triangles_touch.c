@@ -7,7 +7,7 @@
 #include "life/physics/triangles_internal.h"
 
 #include "life/physics/shape_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define NEAREST 12u /* candidates that are kept of one point */
 #define END_MAX 3u  /* planes of one end */

@@ -4,7 +4,7 @@
 #include "noh/low_life.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/physics/shape_internal.h"

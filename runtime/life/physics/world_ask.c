@@ -1,7 +1,7 @@
 /* world_ask.c: questions to the physics of a world, and which of its answers count. */
 #include "life/physics/world_ask_internal.h"
 
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 int noh_world_asks(const noh_world *w)
 {

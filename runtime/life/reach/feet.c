@@ -12,7 +12,7 @@
 #include "noh/low_motion.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 /* Lengths are in leg lengths, speeds in leg lengths per second, times in seconds. */
 #define REACH_UP 0.6f

@@ -3,7 +3,7 @@
 #include "noh/body.h"
 #include "noh/low_core.h"
 #include "noh/low_life.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/shape_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "life/reach/feet_internal.h"

@@ -8,7 +8,7 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 #include "life/reach/rig_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 /* ---- legs ---- */
 
@@ -165,13 +165,6 @@ static int find_sole(const noh_ragdoll_source *source, noh_feet_leg *leg)
 
 /* ---- all ---- */
 
-static float apart(const float a[3], const float b[3])
-{
-    float d[3];
-    noh_sub3(a, b, d);
-    return noh_length3(d);
-}
-
 /* Measure the leg's length, and the direction of its knee from the foot's, in the thigh's space. */
 static float measure(const noh_ragdoll_source *s, noh_feet_leg *leg)
 {
@@ -181,7 +174,7 @@ static float measure(const noh_ragdoll_source *s, noh_feet_leg *leg)
     noh_ragdoll_bind(&s->joints, leg->foot, ankle, unused);
     noh_quat_conjugate(rotation, rotation);
     noh_quat_rotate(rotation, leg->knee, leg->knee);
-    return apart(hip, knee) + apart(knee, ankle);
+    return noh_apart3(hip, knee) + noh_apart3(knee, ankle);
 }
 
 static uint32_t larger(uint32_t a, uint32_t b)

@@ -6,7 +6,7 @@
 #include "noh/low_core.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 static const float identity[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
 

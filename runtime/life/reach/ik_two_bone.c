@@ -3,7 +3,7 @@
 #include "core/base/trig_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 /* Limbs shorter than this are points: nothing turns. */
 #define POINT 1e-12f

@@ -2,7 +2,7 @@
 #ifndef NOH_RETARGET_INTERNAL_H
 #define NOH_RETARGET_INTERNAL_H
 
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/low_life.h"
 #include "noh/low_motion.h"
 

@@ -10,7 +10,7 @@
 #include "noh/low_core.h"
 #include "noh/low_motion.h"
 #include "noh/pack.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/body.h"
 
 /* Get a fraction of a rotation about its axis: `share` 0..1 of the angle. Shares of consecutive joints add up. */

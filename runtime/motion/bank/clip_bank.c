@@ -1,3 +1,4 @@
+#include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/anim/root_motion_internal.h"
 #include "motion/anim/clip_set_internal.h"
@@ -110,8 +111,7 @@ static noh_result count_clip(const noh_bank_binding *b, const noh_bank_found *fo
     c->shape.event_count += found->packed.header->event_count;
     c->shape.marker_count += found->packed.header->marker_count;
     c->sampled = info.float_count > c->sampled ? info.float_count : c->sampled;
-    c->clip_bytes = noh_clip_bank_align(bytes) > SIZE_MAX - c->clip_bytes ? SIZE_MAX
-                                                                          : c->clip_bytes + noh_clip_bank_align(bytes);
+    c->clip_bytes = noh_aligned(bytes) > SIZE_MAX - c->clip_bytes ? SIZE_MAX : c->clip_bytes + noh_aligned(bytes);
     noh_clip_cache_needs_add(&c->cache, &info);
     count_groups(b, found, c);
     return NOH_OK;
@@ -174,11 +174,11 @@ static noh_result count(const noh_clip_bank_desc *desc, const noh_bank_binding *
                         "a clip bank has more floats (morph weights of all nodes, and named ones) than NOH_FLOATS_MAX",
                         0, c->shape.float_count);
     }
-    c->reserve_bytes = (uint32_t)noh_clip_bank_align(desc->reserve_bytes);
-    if (!NOH_PAGE && c->reserve_bytes && c->reserve_bytes < noh_clip_bank_align(c->clip_max)) {
+    c->reserve_bytes = (uint32_t)noh_aligned(desc->reserve_bytes);
+    if (!NOH_PAGE && c->reserve_bytes && c->reserve_bytes < noh_aligned(c->clip_max)) {
         return noh_fail(error, NOH_ERR_ARG,
                         "clip_reserve is smaller than the largest clip: raise it to `need` bytes or more", 0,
-                        noh_clip_bank_align(c->clip_max));
+                        noh_aligned(c->clip_max));
     }
     c->cached_segments = cached_segments_of(desc, c->cache.segment_count);
     c->cache_bytes = noh_clip_cache_needs_size(&c->cache, c->cached_segments, &why);
@@ -382,7 +382,7 @@ static void fill_keys(const noh_pack_clip *from, parts *p, noh_clip_entry *to)
 static void fill_clip(const noh_bank_binding *b, const noh_bank_found *from, parts *p)
 {
     const uint32_t m = p->bank->clips.clip_count++;
-    const size_t bytes = noh_clip_bank_align(noh_clip_size(&from->clip, NULL));
+    const size_t bytes = noh_aligned(noh_clip_size(&from->clip, NULL));
     noh_clip_entry *to = &p->clips[m];
     noh_clip *clip = NULL;
     (void)noh_clip_init(p->clip_memory, bytes, &from->clip, &clip, NULL);

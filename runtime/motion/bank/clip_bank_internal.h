@@ -46,12 +46,6 @@ static inline uint32_t noh_bank_map_joints(const noh_clip_map *map)
     return map->source->joint_count + map->least;
 }
 
-/* What bytes of the bank take in it: a multiple of 16. */
-static inline size_t noh_clip_bank_align(size_t bytes)
-{
-    return (bytes + 15u) & ~(size_t)15u;
-}
-
 /* ---- clips that come and go (clip_bank_reserve.c) ---- */
 
 /* From now on the packs' clips are not read: all are absent. */

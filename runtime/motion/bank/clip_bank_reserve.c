@@ -6,6 +6,7 @@
  * calls alone. */
 #include <string.h>
 
+#include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/anim/clip_set_internal.h"
 #include "motion/bank/clip_bank_internal.h"
@@ -59,7 +60,7 @@ uint64_t noh_clip_bank_touched(const noh_clip_bank *bank, uint32_t *absent)
     *absent = 0;
     for (uint32_t i = 0; i < bank->clips.clip_count; i++) {
         if (r->clips[i].used != r->clock) continue;
-        bytes += noh_clip_bank_align(bytes_of(bank, i));
+        bytes += noh_aligned(bytes_of(bank, i));
         *absent += r->clips[i].absent;
     }
     return bytes;
@@ -107,7 +108,7 @@ noh_result noh_clip_bank_bring(noh_clip_bank *bank, uint32_t clip, const uint8_t
                                noh_error *error)
 {
     noh_clip_reserve *r = bank->clips.reserve;
-    const uint32_t need = (uint32_t)noh_clip_bank_align(byte_count);
+    const uint32_t need = (uint32_t)noh_aligned(byte_count);
     uint32_t stays = 0;
     NOH_ASSERT(r && clip < bank->clips.clip_count && r->clips[clip].absent);
     if (byte_count != bytes_of(bank, clip)) {

@@ -19,7 +19,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "deform/skin/skin_internal.h"
 

@@ -7,7 +7,7 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 
 #define FACING 0.2f        /* cosine; as in shaders_es/decal_fragment.glsl */
 #define SPHERE_SQUARE 2.0f /* squared radius in sizes: through the corners of the square */

@@ -43,11 +43,6 @@ typedef struct step {
     float seconds;
 } step;
 
-static float within(float x, float low, float high)
-{
-    return x >= low ? x <= high ? x : high : low;
-}
-
 static float dot2(const float a[2], const float b[2])
 {
     return a[0] * b[0] + a[1] * b[1];
@@ -59,7 +54,7 @@ static float dot2(const float a[2], const float b[2])
 static float turn(float heading[2], const float to[2], float most)
 {
     const float cross = heading[0] * to[1] - heading[1] * to[0];
-    const float angle = noh_atan2(cross, dot2(heading, to)), by = within(angle, -most, most);
+    const float angle = noh_atan2(cross, dot2(heading, to)), by = noh_clamped(angle, -most, most);
     float sine, cosine;
     noh_sin_cos(by, &sine, &cosine);
     const float x = heading[0] * cosine - heading[1] * sine, z = heading[0] * sine + heading[1] * cosine;
@@ -105,7 +100,7 @@ static float speed_of(const walker_clip *c)
 static float runs_of(const noh_walkers *w, const walker *r, const walker_speed *g)
 {
     if (!(g->run > g->walk)) return 0.0f;
-    const float part = within((g->even - g->walk) / (g->run - g->walk), 0.0f, 1.0f);
+    const float part = noh_clamped((g->even - g->walk) / (g->run - g->walk), 0.0f, 1.0f);
     if (w->in_step) return part;
     return part > (r->runs > 0.5f ? 0.3f : 0.6f) ? 1.0f : 0.0f;
 }
@@ -116,7 +111,7 @@ static float pace(const step *s, const walker *r, const walker_speed *g, float s
     const walker_clip *walk = &s->w->clips[WALKER_WALK], *run = &s->w->clips[WALKER_RUN];
     const float stride = r->goes * (walk->stride + r->runs * (run->stride - walk->stride));
     const float most = RATE_MAX * (float)NOH_TICKS_PER_SECOND / (float)walk->ticks; /* applies to the run, too */
-    const float wanted = within(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
+    const float wanted = noh_clamped(stride > 1e-3f * walk->stride ? g->now / stride : 0.0f, -most, most);
     const float rate = noh_walkers_pace(s->w, r, g, wanted, share, s->seconds);
     *way = rate * stride * s->seconds;
     return rate;
@@ -179,7 +174,7 @@ static void play(const step *s, const walker *r, noh_controller *c, float passes
         if (clip->clip == NOH_NONE) continue;
         if (i != WALKER_IDLE) {
             const float rate = passes * (float)clip->ticks * (65536.0f / (float)NOH_TICKS_PER_SECOND);
-            speed = (int32_t)within(rate, -(float)NOH_SPEED_MAX, (float)NOH_SPEED_MAX);
+            speed = (int32_t)noh_clamped(rate, -(float)NOH_SPEED_MAX, (float)NOH_SPEED_MAX);
         }
         p->before[i] = noh_controller_track(c, track)->weight;
         (void)noh_controller_set_weight(c, track, weights[i]);
@@ -220,10 +215,10 @@ static void rotation_of(const noh_walkers *w, const float heading[2], float rota
 {
     const float cosine = dot2(w->forward, heading);
     const float sine = w->forward[1] * heading[0] - w->forward[0] * heading[1];
-    const float half = noh_sqrt(within(0.5f - 0.5f * cosine, 0.0f, 1.0f));
+    const float half = noh_sqrt(noh_clamped(0.5f - 0.5f * cosine, 0.0f, 1.0f));
     memset(rotation, 0, 4 * sizeof *rotation);
     rotation[1] = sine < 0.0f ? -half : half;
-    rotation[3] = noh_sqrt(within(0.5f + 0.5f * cosine, 0.0f, 1.0f));
+    rotation[3] = noh_sqrt(noh_clamped(0.5f + 0.5f * cosine, 0.0f, 1.0f));
 }
 
 /* Rotate and scale a horizontal vector. */
@@ -316,7 +311,7 @@ static void follow(const step *s, walker *r, noh_stage_actor *a, const float to[
     }
     find_wish(s->w, r, scale, wish);
     find_heading(s, r, wish, &g);
-    const float turns = within(g.angle, 0.0f, s->w->turn_speed * s->seconds), steps = ABOUT_M * turns * per;
+    const float turns = noh_clamped(g.angle, 0.0f, s->w->turn_speed * s->seconds), steps = ABOUT_M * turns * per;
     const float ahead = dot2(wish, r->heading);
     g.now = !r->begun ? 0.0f : r->goes_back ? ahead : ahead > steps ? ahead : steps;
     const float fast = g.now < 0.0f ? -g.now : g.now;

@@ -2,6 +2,7 @@
 #include <string.h>
 
 #include "stage/cast/stage_internal.h"
+#include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
 #include "stage/character/lod_pools_internal.h"
 #include "stage/character/scheduler_internal.h"
@@ -34,11 +35,6 @@ noh_result noh_stage_open_pools(noh_stage *s, uint32_t kind, void *memory, noh_e
 }
 
 /* ---- jobs ---- */
-
-static size_t aligned(size_t bytes)
-{
-    return (bytes + 15u) & ~(size_t)15u;
-}
 
 static void open_jobs(noh_stage *s, const noh_stage_blocks *b)
 {
@@ -74,7 +70,7 @@ static noh_result open_all_views(noh_stage *s, const noh_stage_blocks *b, noh_er
             at += (size_t)s->plan->kinds[i].room.view_bytes;
         } else if (k->bank && k->bank_kind == i) {
             result = noh_stage_open_views(s, i, at, b->views_bytes, error);
-            at += aligned(noh_clip_bank_view_size(k->bank));
+            at += noh_aligned(noh_clip_bank_view_size(k->bank));
         }
     }
     return result;

@@ -23,17 +23,12 @@
 #define REACH_SAMPLES 64u  /* of each clip */
 #define NEAR_RADII 2.25f   /* of its sphere, about its centre: within, an eye is measured to the figure */
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 /* The distance of the farthest corner of a box that contains 0. */
 static float farthest_corner(const float box[6])
 {
     float square = 0.0f;
     for (int i = 0; i < 3; i++) {
-        const float far = larger(-box[i], box[3 + i]);
+        const float far = noh_larger(-box[i], box[3 + i]);
         square += far * far;
     }
     return noh_sqrt(square) * ROUNDING;
@@ -88,7 +83,7 @@ void noh_stage_sphere(const noh_stage_kind *k, uint32_t index, float sphere[4])
         } else if (weights) {
             noh_mesh_target_box(&mesh->mesh, weights, own);
             moved = farthest_corner(own);
-            growth = larger(growth, moved * mesh->bind_stretch);
+            growth = noh_larger(growth, moved * mesh->bind_stretch);
         }
     }
     if (is_empty(k)) {
@@ -112,7 +107,7 @@ void noh_stage_sphere(const noh_stage_kind *k, uint32_t index, float sphere[4])
 void noh_stage_widen(float reach[4], const float sphere[4])
 {
     const float to[3] = { sphere[0] - reach[0], sphere[1] - reach[1], sphere[2] - reach[2] };
-    reach[3] = larger(reach[3], noh_sqrt(noh_dot3(to, to)) * ROUNDING + sphere[3]);
+    reach[3] = noh_larger(reach[3], noh_sqrt(noh_dot3(to, to)) * ROUNDING + sphere[3]);
 }
 
 /* Where what was shown last, or a weight that the game holds, sticks out of where clips may take it, by that much. */
@@ -144,7 +139,7 @@ static float nearest_of_box(const noh_view_planes *v, const float m[12], const f
         off = (off < 0.0f ? -off : off) - half * length;
         square += off > 0.0f ? off * off : 0.0f;
     }
-    return larger(nearest, noh_sqrt(square) * v->corner * v->w_slope);
+    return noh_larger(nearest, noh_sqrt(square) * v->corner * v->w_slope);
 }
 
 /* The nearest of the boxes that joints move. */
@@ -217,14 +212,15 @@ void noh_stage_measure(const noh_stage *s, const noh_stage_kind *k, uint32_t ind
         float nearest = noh_dot3(w, sphere) + w[3] - sphere[3] * planes->w_slope, here;
         if (!(shown->views >> v & 1u) || planes->is_light) continue;
         if (planes->w_slope > 0.0f) {
-            const float share = (NEAR_RADII * sphere[3] - apart) / ((NEAR_RADII - 1.0f) * larger(sphere[3], FLT_MIN));
-            nearest = larger(nearest, outside * planes->corner * planes->w_slope);
+            const float share = (NEAR_RADII * sphere[3] - apart) /
+                                ((NEAR_RADII - 1.0f) * noh_larger(sphere[3], FLT_MIN));
+            nearest = noh_larger(nearest, outside * planes->corner * planes->w_slope);
             if (share > 0.0f) {
                 nearest = nearest_of_both(nearest, nearest_of_figure(k, index, planes, shown->world, matrices), share);
             }
         }
-        here = planes->scale / larger(nearest, planes->near_w);
-        shown->scale = larger(shown->scale, here);
+        here = planes->scale / noh_larger(nearest, planes->near_w);
+        shown->scale = noh_larger(shown->scale, here);
         shown->distance = apart < shown->distance ? apart : shown->distance;
     }
 }
@@ -262,7 +258,7 @@ static void open_radii(noh_stage_kind *k)
         noh_mesh_add_joint_radii(&mesh->mesh, k->weights, k->joint_radii);
         for (uint32_t j = 0; j < mesh->skin.header->joint_count; j++) {
             if (noh_box_is_empty(mesh->mesh.joint_boxes + 6u * (size_t)j)) continue;
-            mesh->bind_stretch = larger(mesh->bind_stretch, noh_stretch(mesh->skin.inverse_bind + 12u * (size_t)j));
+            mesh->bind_stretch = noh_larger(mesh->bind_stretch, noh_stretch(mesh->skin.inverse_bind + 12u * (size_t)j));
         }
     }
 }
@@ -280,9 +276,9 @@ typedef struct range {
 static void widen_joint(const noh_transform *t, float *most)
 {
     float scale = 0.0f;
-    for (int i = 0; i < 3; i++) scale = larger(scale, t->scale[i] < 0.0f ? -t->scale[i] : t->scale[i]);
-    most[0] = larger(most[0], noh_sqrt(noh_dot3(t->translation, t->translation)));
-    most[1] = larger(most[1], scale);
+    for (int i = 0; i < 3; i++) scale = noh_larger(scale, t->scale[i] < 0.0f ? -t->scale[i] : t->scale[i]);
+    most[0] = noh_larger(most[0], noh_sqrt(noh_dot3(t->translation, t->translation)));
+    most[1] = noh_larger(most[1], scale);
 }
 
 static void widen_pose(const noh_stage_kind *k, const noh_transform *pose, range *r)
@@ -304,7 +300,7 @@ static void widen_weights(const noh_stage_kind *k, const float *floats, range *r
             const uint32_t at = mesh->first_float + t, from = k->named.sources[at];
             float *low = &r->low[mesh->first_weight + t], *high = &r->high[at];
             if (from >= k->set.float_count) continue;
-            *high = larger(*high, floats[from]);
+            *high = noh_larger(*high, floats[from]);
             *low = floats[from] < *low ? floats[from] : *low;
         }
     }
@@ -352,8 +348,8 @@ static void range_box(const noh_stage_mesh *mesh, const range *r, float box[6])
         const float low = r->low[mesh->first_weight + t], high = r->high[mesh->first_float + t];
         const float *b = mesh->mesh.target_boxes + 6u * (size_t)t;
         for (int i = 0; i < 3; i++) { /* low is at most 0 */
-            box[i] += larger(high * -b[i], low * -b[3 + i]) * -ROUNDING;
-            box[3 + i] += larger(high * b[3 + i], low * b[i]) * ROUNDING;
+            box[i] += noh_larger(high * -b[i], low * -b[3 + i]) * -ROUNDING;
+            box[3 + i] += noh_larger(high * b[3 + i], low * b[i]) * ROUNDING;
         }
     }
 }
@@ -372,7 +368,7 @@ static float bones_radius(const noh_stage_kind *k, const range *r)
         }
         own[0] = way * ROUNDING;
         own[1] = scale;
-        if (k->joint_radii[j] >= 0.0f) farthest = larger(farthest, own[0] + k->joint_radii[j] * scale);
+        if (k->joint_radii[j] >= 0.0f) farthest = noh_larger(farthest, own[0] + k->joint_radii[j] * scale);
     }
     for (uint32_t m = 0; m < k->plan->mesh_count; m++) {
         const noh_stage_mesh *mesh = &k->meshes[m];
@@ -384,7 +380,7 @@ static float bones_radius(const noh_stage_kind *k, const range *r)
             const uint32_t joint = mesh->skin.joints[j];
             const float *own = r->model + 12u * (size_t)joint, *bind = mesh->skin.inverse_bind + 12u * (size_t)j;
             if (k->joint_radii[joint] < 0.0f) continue;
-            farthest = larger(farthest, own[0] + (k->joint_radii[joint] + moved * noh_stretch(bind)) * own[1]);
+            farthest = noh_larger(farthest, own[0] + (k->joint_radii[joint] + moved * noh_stretch(bind)) * own[1]);
         }
     }
     return farthest * ROUNDING;

@@ -1,6 +1,7 @@
 /* stage_carve.c: how a stage lies in its block. The code that lays it out also measures it. */
 #include <string.h>
 
+#include "core/base/arena_internal.h"
 #include "core/base/compiler_internal.h"
 #include "life/face/recipe_internal.h"
 #include "stage/character/lod_pools_internal.h"
@@ -223,11 +224,6 @@ typedef struct widest {
     int reserves; /* 1: clips may come */
 } widest;
 
-static size_t aligned(size_t bytes)
-{
-    return (bytes + 15u) & ~(size_t)15u;
-}
-
 static int is_wearer(const noh_stage_desc *desc, uint32_t kind)
 {
     for (uint32_t i = 0; i < desc->kind_count; i++) {
@@ -247,7 +243,7 @@ static void widen(widest *most, const noh_stage_desc *desc, uint32_t kind, const
     if (n->inertia_bytes > most->inertia_bytes) most->inertia_bytes = n->inertia_bytes;
     if (n->skin_joints > most->skin_joints) most->skin_joints = n->skin_joints;
     if (n->shape.joint_count > most->wearer_joints && is_wearer(desc, kind)) most->wearer_joints = n->shape.joint_count;
-    most->views_bytes += aligned(n->view_bytes);
+    most->views_bytes += noh_aligned(n->view_bytes);
     most->actors += desc->kinds[kind].actor_count;
 }
 
@@ -331,9 +327,9 @@ static void carve_jobs(noh_arena *arena, const noh_stage_desc *filled, const wid
     b->jobs = CARVE(arena, filled->job_count, noh_stage_job_part);
     b->views_bytes = most->views_bytes;
     b->views = noh_arena_carve(arena, filled->job_count * most->views_bytes, 16);
-    b->scratch_bytes = aligned(most->scratch_bytes);
+    b->scratch_bytes = noh_aligned(most->scratch_bytes);
     b->scratch = noh_arena_carve(arena, filled->job_count * b->scratch_bytes, 16);
-    b->module_scratch_bytes = aligned(most->module_scratch_bytes);
+    b->module_scratch_bytes = noh_aligned(most->module_scratch_bytes);
     b->module_scratch = noh_arena_carve(arena, filled->job_count * b->module_scratch_bytes, 16);
     b->matrices_floats = 12u * (size_t)most->skin_joints;
     b->matrices = CARVE(arena, filled->job_count * b->matrices_floats, float);
@@ -358,7 +354,7 @@ static void list_states(noh_stage_list *list, const noh_stage_desc *desc, uint32
     const noh_kind_desc d = noh_stage_kind_desc(desc, kind);
     for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
         const noh_module m = noh_stage_wanted(&d, slot);
-        const size_t pool = aligned(n->modules[slot].pool_bytes);
+        const size_t pool = noh_aligned(n->modules[slot].pool_bytes);
         const size_t states = d.actor_count * n->modules[slot].actor_bytes;
         if (m.type && m.type->pool_name) {
             noh_stage_add_part(list, m.type->pool_name, kind, pool, 0);
@@ -425,7 +421,7 @@ static void point_at_state(const noh_stage_desc *desc, const noh_stage_needs *n,
     void *pools;
     carve_state(&arena, &d, n, k, &pools);
     noh_stage_open_modules(k, n);
-    *at += aligned(arena.used);
+    *at += noh_aligned(arena.used);
 }
 
 /* What is not state of one kind.
@@ -451,7 +447,7 @@ static NOH_NEVER_INLINE void carve_kind(noh_arena *arena, const noh_stage_desc *
     }
     b->of[i].bank = noh_arena_carve(arena, n->bank_bytes, 16);
     if (!NOH_PAGE && d.clip_reserve && n->bank_bytes) {
-        const uint32_t reserve = (uint32_t)aligned(d.clip_reserve);
+        const uint32_t reserve = (uint32_t)noh_aligned(d.clip_reserve);
         noh_stage_add_part(list, "clip reserve", i, reserve, 0);
         from += reserve;
     }
@@ -474,11 +470,11 @@ NOH_NEVER_INLINE void noh_stage_room(const noh_stage_desc *desc, const noh_stage
     room->actor_count = desc->kinds[kind].actor_count;
     room->joint_count = n->shape.joint_count;
     room->skin_joint_count = n->skin_joints;
-    room->state_bytes = aligned(state.used);
-    room->kind_bytes = aligned(own.used);
-    room->view_bytes = aligned(n->view_bytes);
-    room->scratch_bytes = aligned(n->scratch_bytes);
-    room->module_scratch_bytes = aligned(n->module_scratch_bytes);
+    room->state_bytes = noh_aligned(state.used);
+    room->kind_bytes = noh_aligned(own.used);
+    room->view_bytes = noh_aligned(n->view_bytes);
+    room->scratch_bytes = noh_aligned(n->scratch_bytes);
+    room->module_scratch_bytes = noh_aligned(n->module_scratch_bytes);
     room->pick_bytes = n->pick_bytes;
     room->inertia_bytes = n->inertia_bytes;
 }
@@ -534,7 +530,7 @@ noh_result noh_stage_carve(noh_arena *arena, const noh_stage_desc *desc, const n
     if (result != NOH_OK) {
         return result;
     }
-    state = b->actors ? (uint8_t *)b->actors + aligned(most.actors * sizeof *b->actors) : NULL;
+    state = b->actors ? (uint8_t *)b->actors + noh_aligned(most.actors * sizeof *b->actors) : NULL;
     from = arena->used;
     carve_stage(arena, &filled, &most, b);
     if (b->slots) memset(b->slots, 0, sizeof *b->slots);

@@ -1,4 +1,5 @@
 /* stage_modifier.c: the modifiers of a kind, and what all that change a pose are given. */
+#include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
@@ -13,11 +14,6 @@
 #include "motion/anim/clock_internal.h"
 #include "core/base/math_internal.h"
 #include "stage/cast/stage_internal.h"
-
-static size_t aligned(size_t bytes)
-{
-    return (bytes + 15u) & ~(size_t)15u;
-}
 
 /* ---- a kind's modifiers as a module ---- */
 
@@ -42,7 +38,7 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     needs->kind_bytes = d->modifier_count * sizeof *d->modifiers;
     for (uint32_t i = 0; i < d->modifier_count; i++) {
         const size_t scratch = d->modifiers[i].scratch_bytes;
-        needs->actor_bytes += aligned(d->modifiers[i].state_bytes);
+        needs->actor_bytes += noh_aligned(d->modifiers[i].state_bytes);
         needs->scratch_bytes = scratch > needs->scratch_bytes ? scratch : needs->scratch_bytes;
     }
     return NOH_OK;
@@ -70,7 +66,7 @@ void *noh_actor_modifier(noh_stage *stage, noh_actor actor, uint32_t modifier)
         return NULL;
     }
     state = states_of(k, noh_stage_index(k, a));
-    for (uint32_t i = 0; i < modifier; i++) state += aligned(noh_stage_modifiers_of(k)[i].state_bytes);
+    for (uint32_t i = 0; i < modifier; i++) state += noh_aligned(noh_stage_modifiers_of(k)[i].state_bytes);
     return state;
 }
 
@@ -82,7 +78,7 @@ static void shift(noh_stage_kind *k, const float by[3])
         for (uint32_t i = 0; i < k->desc->modifier_count; i++) {
             const noh_modifier *m = &noh_stage_modifiers_of(k)[i];
             if (k->actors[a].alive && m->shift) m->shift(m->user, state, by);
-            state += aligned(m->state_bytes);
+            state += noh_aligned(m->state_bytes);
         }
     }
 }
@@ -94,7 +90,7 @@ static noh_result check(const noh_stage_kind *k, const void *states, noh_error *
         const noh_modifier *m = &noh_stage_modifiers_of(k)[i];
         const char *what = m->check ? m->check(m->user, state) : NULL;
         if (what) return noh_fail(error, NOH_ERR_DATA, what, i, 0);
-        state += aligned(m->state_bytes);
+        state += noh_aligned(m->state_bytes);
     }
     return NOH_OK;
 }
@@ -108,7 +104,7 @@ static void modify(noh_modifier_work *w)
         w->state = state;
         w->user = m->user;
         m->modify(w);
-        state += aligned(m->state_bytes);
+        state += noh_aligned(m->state_bytes);
     }
 }
 

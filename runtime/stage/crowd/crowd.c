@@ -1,6 +1,7 @@
 /* crowd.c: a crowd's block, its agents, and the phases of its steps. */
 #include "stage/crowd/crowd_internal.h"
 
+#include "core/base/math_internal.h"
 #include "core/base/assert_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -230,16 +231,11 @@ void noh_crowd_remove(noh_crowd *crowd, uint32_t index)
     CROWD_ARRAY(crowd_wish, crowd, wish)[index].radius = 0.0f;
 }
 
-static float within(float x, float low, float high)
-{
-    return x >= low ? x <= high ? x : high : low; /* NaN: low */
-}
-
 void noh_crowd_move(noh_crowd *crowd, uint32_t index, const float position[2])
 {
     NOH_ASSERT(crowd && position && index < crowd->agent_max && !crowd->to_do);
     vec2 *at = CROWD_ARRAY(vec2, crowd, position) + index;
-    const float to[2] = { within(position[0], -FAR, FAR), within(position[1], -FAR, FAR) };
+    const float to[2] = { noh_clamped(position[0], -FAR, FAR), noh_clamped(position[1], -FAR, FAR) };
     *at = noh_crowd_keep_out(crowd, *at, noh_crowd_from(crowd, to), CROWD_CONST(crowd_wish, crowd, wish)[index].radius);
     CROWD_ARRAY(vec2, crowd, velocity)[index] = v2(0.0f, 0.0f);
     begin_anew(crowd, index);
@@ -254,7 +250,7 @@ void noh_crowd_shift_origin(noh_crowd *crowd, const float by[2])
 void noh_crowd_set_goal(noh_crowd *crowd, uint32_t index, const float goal[2])
 {
     NOH_ASSERT(crowd && goal && index < crowd->agent_max);
-    const float absolute[2] = { within(goal[0], -FAR, FAR), within(goal[1], -FAR, FAR) };
+    const float absolute[2] = { noh_clamped(goal[0], -FAR, FAR), noh_clamped(goal[1], -FAR, FAR) };
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
     const vec2 to = noh_crowd_from(crowd, absolute), by = v2_sub(to, w->goal);
     const float way = v2_length(by);
@@ -267,7 +263,7 @@ void noh_crowd_set_speed(noh_crowd *crowd, uint32_t index, float speed)
 {
     NOH_ASSERT(crowd && index < crowd->agent_max);
     crowd_wish *w = CROWD_ARRAY(crowd_wish, crowd, wish) + index;
-    w->speed = within(speed, 0.0f, SPEED_MAX * w->radius);
+    w->speed = noh_clamped(speed, 0.0f, SPEED_MAX * w->radius);
 }
 
 void noh_crowd_field_aim(noh_crowd *crowd, uint32_t field, const float goal[2])
@@ -277,8 +273,8 @@ void noh_crowd_field_aim(noh_crowd *crowd, uint32_t field, const float goal[2])
     const crowd_cells *cells = &flow->cells;
     crowd_field *f = CROWD_ARRAY(crowd_field, flow, field) + field;
     const vec2 at = noh_crowd_from(crowd, goal);
-    f->asked = v2(within(at.x, cells->origin.x, cells->origin.x + (float)cells->width * cells->edge),
-                  within(at.z, cells->origin.z, cells->origin.z + (float)cells->depth * cells->edge));
+    f->asked = v2(noh_clamped(at.x, cells->origin.x, cells->origin.x + (float)cells->width * cells->edge),
+                  noh_clamped(at.z, cells->origin.z, cells->origin.z + (float)cells->depth * cells->edge));
     f->is_asked = 1;
 }
 

@@ -61,16 +61,11 @@ static noh_smart_object *objects_of(const noh_smart *s)
 
 /* ---- size and init ---- */
 
-static int is_within(float x, float low, float high)
-{
-    return x >= low && x <= high;
-}
-
 static noh_result check_slot(const noh_smart_slot *s, uint32_t index, noh_error *error)
 {
     const float face = s->face[0] * s->face[0] + s->face[1] * s->face[1];
-    if (!is_within(s->at[0], -PLACE_MAX, PLACE_MAX) || !is_within(s->at[1], -PLACE_MAX, PLACE_MAX) ||
-        !is_within(face, 0.99f, 1.01f)) {
+    if (!noh_is_within(s->at[0], -PLACE_MAX, PLACE_MAX) || !noh_is_within(s->at[1], -PLACE_MAX, PLACE_MAX) ||
+        !noh_is_within(face, 0.99f, 1.01f)) {
         return noh_fail(error, NOH_ERR_ARG, "slot: position is out of range, or face is not a unit vector", index, 0);
     }
     if (!s->use_ticks || s->use_ticks > TICKS_MAX || s->enter_ticks > TICKS_MAX || s->leave_ticks > TICKS_MAX) {
@@ -82,7 +77,7 @@ static noh_result check_slot(const noh_smart_slot *s, uint32_t index, noh_error 
 static noh_result check_object(const noh_smart_desc *d, uint32_t index, uint32_t next_slot, noh_error *error)
 {
     const noh_smart_object *o = &d->objects[index];
-    if (o->need >= d->need_count || !is_within(o->rate, 1e-6f, RATE_MAX) || !o->going_ticks ||
+    if (o->need >= d->need_count || !noh_is_within(o->rate, 1e-6f, RATE_MAX) || !o->going_ticks ||
         o->going_ticks > TICKS_MAX) {
         return noh_fail(error, NOH_ERR_ARG, "smart object: need, rate or going_ticks is out of range", index, o->need);
     }
@@ -102,7 +97,7 @@ static noh_result check_counts(const noh_smart_desc *d, noh_error *error)
                         "smart objects: a count of agents, needs, objects or slots is 0 or above its limit", 0, 0);
     }
     for (uint32_t n = 0; n < d->need_count; n++) {
-        if (!is_within(d->growth[n], 0.0f, RATE_MAX)) {
+        if (!noh_is_within(d->growth[n], 0.0f, RATE_MAX)) {
             return noh_fail(error, NOH_ERR_ARG, "smart objects: growth of a need is negative or out of range", n, 0);
         }
     }

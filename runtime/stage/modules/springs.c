@@ -17,7 +17,7 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 #include "stage/modules/springs_internal.h"
 

@@ -2,7 +2,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/contact_internal.h"
 #include "life/physics/spring_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

@@ -6,7 +6,7 @@
 
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

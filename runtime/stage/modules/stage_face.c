@@ -306,11 +306,6 @@ static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifie
     shut_lids(shared, f, channels, w->floats);
 }
 
-static float larger(float a, float b)
-{
-    return a > b ? a : b;
-}
-
 /* What live shapes ask: a mouth that opens farther than lately stresses, a pause blinks, a long one looks aside. */
 static void hear(noh_stage_face *f, uint32_t ticks, noh_face_speech *asked)
 {
@@ -327,8 +322,8 @@ static void hear(noh_stage_face *f, uint32_t ticks, noh_face_speech *asked)
     if (open > 0.1f) f->said = 1.0f;
     over = STRESS * (f->open - f->mean);
     over = over < 0.0f ? 0.0f : over > 1.0f ? 1.0f : over;
-    asked->brows = larger(asked->brows, over);
-    asked->nod = larger(asked->nod, over);
+    asked->brows = noh_larger(asked->brows, over);
+    asked->nod = noh_larger(asked->nod, over);
     if (f->said > 0.0f && f->quiet > PAUSE_S) asked->blink = 1.0f;
     if (f->said > 0.0f && f->quiet > 2.0f * PAUSE_S && f->quiet < 6.0f * PAUSE_S) asked->away = 1.0f;
 }

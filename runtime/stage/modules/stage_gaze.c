@@ -9,7 +9,7 @@
 #include "noh/modules.h"
 
 #include "core/base/assert_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "stage/cast/stage_internal.h"
 
 #define SKIP_TICKS 24000u /* longer than half a second unseen: nothing to go on from */

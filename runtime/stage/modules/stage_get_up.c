@@ -16,7 +16,7 @@
 #include "noh/noh.h"
 #include "core/base/assert_internal.h"
 #include "core/base/name_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 #include "life/physics/ragdoll_internal.h"

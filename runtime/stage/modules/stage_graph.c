@@ -1,6 +1,7 @@
 /* stage_graph.c: the graphs of a kind: which, how many bytes, made, and their names. */
 #include <string.h>
 
+#include "core/base/arena_internal.h"
 #include "core/base/assert_internal.h"
 #include "motion/graph/graph_pack_internal.h"
 #include "noh/base.h"
@@ -119,11 +120,6 @@ static uint32_t count_graphs(const noh_kind_desc *d, const void *names)
 
 /* ---- bytes ---- */
 
-static size_t aligned(size_t bytes)
-{
-    return (bytes + 15u) & ~(size_t)15u;
-}
-
 typedef struct tables {
     noh_stage_graphs *shared;
     noh_graph_pack **graphs;
@@ -141,14 +137,15 @@ static size_t carve_tables(noh_arena *arena, uint32_t graphs, uint32_t clips, in
     t->clips = noh_arena_carve(arena, rows * sizeof *t->clips, 16);
     t->roots = noh_arena_carve(arena, has_roots ? rows * sizeof *t->roots : 0u, 16);
     t->errors = noh_arena_carve(arena, rows * NOH_UPDATE_RATE_COUNT * sizeof *t->errors, 16);
-    return aligned(arena->used);
+    return noh_aligned(arena->used);
 }
 
 /* Two poses of an actor, and what playing a copy ahead and evaluating it takes. */
 static size_t scratch_size(const noh_clip_set *set, size_t state_bytes, size_t evaluation_bytes)
 {
-    return 2u * (aligned(set->joint_count * sizeof(noh_transform)) + aligned(set->float_count * sizeof(float))) +
-           aligned(state_bytes) + aligned(evaluation_bytes);
+    return 2u *
+               (noh_aligned(set->joint_count * sizeof(noh_transform)) + noh_aligned(set->float_count * sizeof(float))) +
+           noh_aligned(state_bytes) + noh_aligned(evaluation_bytes);
 }
 
 static noh_result measure(const noh_kind_desc *d, const void *names, const noh_stage_needs *n, noh_module_needs *needs,
@@ -172,11 +169,11 @@ static noh_result measure(const noh_kind_desc *d, const void *names, const noh_s
         noh_graph_pack_needs own;
         result = noh_graph_pack_measure(&desc, &own, error);
         if (result != NOH_OK) break;
-        needs->kind_bytes += aligned(own.bytes);
+        needs->kind_bytes += noh_aligned(own.bytes);
         state_bytes = own.state_bytes > state_bytes ? own.state_bytes : state_bytes;
         evaluation_bytes = own.scratch_bytes > evaluation_bytes ? own.scratch_bytes : evaluation_bytes;
     }
-    needs->actor_bytes = sizeof(noh_stage_graph_slot) + aligned(state_bytes);
+    needs->actor_bytes = sizeof(noh_stage_graph_slot) + noh_aligned(state_bytes);
     needs->scratch_bytes = scratch_size(&n->shape, state_bytes, evaluation_bytes);
     return result;
 }
@@ -232,7 +229,7 @@ static noh_result init(noh_stage_kind *k, const void *names, noh_error *error)
         const noh_graph_pack_desc desc = graph_desc(k->desc, &list, i, &k->bank->clips);
         const size_t bytes = noh_graph_pack_size(&desc, error);
         result = noh_graph_pack_init(at, bytes, &desc, &t.graphs[i], error);
-        at += aligned(bytes);
+        at += noh_aligned(bytes);
         if (result == NOH_OK) add_clip(k, t.graphs[i], &t);
     }
     noh_stage_wrap(k, &k->set, &t.shared->sampler);

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/body.h"
 #include "noh/low_core.h"

@@ -17,7 +17,7 @@
 #include "core/base/assert_internal.h"
 #include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 

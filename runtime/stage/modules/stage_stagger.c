@@ -10,7 +10,7 @@
 #include "core/base/math_internal.h"
 #include "core/base/trig_internal.h"
 #include "life/physics/ragdoll_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/physics/world_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/base.h"

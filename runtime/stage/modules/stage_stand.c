@@ -6,7 +6,7 @@
 
 #include "core/base/assert_internal.h"
 #include "life/face/face_internal.h"
-#include "life/physics/vector_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"

@@ -1,6 +1,6 @@
-/* vector_internal.h: vectors of three floats for the solvers. Threads: no state; any thread. */
-#ifndef NOH_SIM_VECTOR_INTERNAL_H
-#define NOH_SIM_VECTOR_INTERNAL_H
+/* vector_internal.h: vectors of three floats. Threads: no state; any thread. */
+#ifndef NOH_BASE_VECTOR_INTERNAL_H
+#define NOH_BASE_VECTOR_INTERNAL_H
 
 #include <string.h>
 
@@ -34,6 +34,18 @@ static inline void noh_cross3(const float a[3], const float b[3], float out[3])
 static inline float noh_length3(const float v[3])
 {
     return noh_sqrt(noh_dot3(v, v));
+}
+
+static inline float noh_apart3(const float a[3], const float b[3])
+{
+    float way[3];
+    noh_sub3(a, b, way);
+    return noh_length3(way);
+}
+
+static inline void noh_mix3(const float a[3], const float b[3], float t, float out[3])
+{
+    for (int i = 0; i < 3; i++) out[i] = a[i] + t * (b[i] - a[i]);
 }
 
 /* v without its component along the unit vector `axis`; out may be v. */
