@@ -365,7 +365,8 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     if (options->only == CONVERT_CLIPS) return 0;
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
     if (teeth_paint(s->m)) return out_of_memory(error);
-    if (!options->keep_looks && (eye_paint(s->m) || lash_strips_hide(s->m))) return out_of_memory(error);
+    if (!options->keep_looks && (eye_paint(s->m) || eye_shade_clear(s->m) || lash_strips_hide(s->m)))
+        return out_of_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }

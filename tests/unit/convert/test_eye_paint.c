@@ -1,4 +1,5 @@
-/* Eyes of one colour get an iris, which is then found; other eyes stay. Strips of lashes are hidden. */
+/* Eyes of one colour get an iris, which is then found; other eyes stay, and lose the shadows that would
+ * turn with them. Strips of lashes are hidden. */
 #include "convert/model/eye_paint.h"
 
 #include <math.h>
@@ -407,6 +408,40 @@ static void slabs_of_lashes_are_hidden(void **state)
     }
 }
 
+/* Greys with shadows among them become white; colours, one grey, eyes without a texture, and what is given stay. */
+static void shadows_on_eyes_are_left_out(void **state)
+{
+    static const struct {
+        float front, back[3];
+        int has_picture, is_given, is_cleared;
+    } cases[] = { { 1.0f, { 0.25f, 0.25f, 0.25f }, 1, 0, 1 },
+                  { 1.0f, { 0.25f, 0.25f, 0.5f }, 1, 0, 0 },
+                  { 0.5f, { 0.5f, 0.5f, 0.5f }, 1, 0, 0 },
+                  { 1.0f, { 0.25f, 0.25f, 0.25f }, 0, 0, 0 },
+                  { 1.0f, { 0.25f, 0.25f, 0.25f }, 1, 1, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model *m = eyes_of(0.06f);
+        float *color = m->meshes[0].color = test_zeros(4u * 2u * BALL * sizeof *color);
+        for (uint32_t v = 0; v < 2u * BALL; v++) {
+            const int is_back = v % BALL / SIDES > RINGS / 2u;
+            for (uint32_t c = 0; c < 3; c++) color[4u * v + c] = is_back ? cases[i].back[c] : cases[i].front;
+            color[4u * v + 3u] = 0.5f;
+        }
+        m->materials[0].base_color_texture = cases[i].has_picture ? 0 : MODEL_NONE;
+        m->materials[0].surface_given = (uint8_t)cases[i].is_given;
+        assert_int_equal(eye_shade_clear(m), 0);
+        assert_int_equal(m->warning_count, cases[i].is_cleared);
+        for (uint32_t c = 0; c < 3; c++) {
+            const float *last = color + 4u * (2u * BALL - 1u);
+            assert_true(last[c] == (cases[i].is_cleared ? 1.0f : cases[i].back[c]));
+            assert_true(color[c] == cases[i].front && last[3] == 0.5f);
+        }
+        m->materials[0].base_color_texture = MODEL_NONE;
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -415,6 +450,7 @@ int main(void)
         cmocka_unit_test(eyes_with_an_iris_stay),       cmocka_unit_test(grey_faces_become_skin),
         cmocka_unit_test(slabs_of_lashes_are_hidden),   cmocka_unit_test(half_balls_get_an_iris),
         cmocka_unit_test(skinned_meshes_stand_upright), cmocka_unit_test(eyes_of_nodes_are_apart),
+        cmocka_unit_test(shadows_on_eyes_are_left_out),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,4 +1,5 @@
-/* eye_paint.h: an iris and a pupil for eyes of one colour, which would look blind, and no lashes that are a slab. */
+/* eye_paint.h: an iris and a pupil for eyes of one colour, which would look blind, no shadow that turns with
+ * an eye, and no lashes that are a slab. */
 #ifndef NOH_CONVERT_MODEL_EYE_PAINT_H
 #define NOH_CONVERT_MODEL_EYE_PAINT_H
 
@@ -13,6 +14,12 @@
  * their surface is given or they have vertex colours: a living eye in plaster looks uncanny.
  * returns  1: out of memory */
 int eye_paint(model *m);
+
+/* Eyes with a texture may have the shadow of the lids in their vertex colours: greys, dark behind the lids. It turns with
+ * the eyeball, and an eye that looks aside is grey where it should be white. Such colours become white, with a warning,
+ * unless the surface is given.
+ * returns  1: out of memory */
+int eye_shade_clear(model *m);
 
 /* Strips of lashes that lack the picture that cuts them are slabs: opaque ones without a texture and vertex colours are
  * not drawn, with a warning. Modelled lashes, of many small pieces, stay, and so do those whose surface is given.
