@@ -341,7 +341,8 @@ typedef struct noh_kind_plan {
     uint32_t cached_segment_count, segment_count; /* of its clips: held decoded at once; in all */
     noh_kind_clips clips;                         /* of the kind whose clips it shares: itself, or an earlier one */
     noh_actor_level levels[NOH_LOD_LEVELS_MAX];
-    noh_kind_room room; /* of a kind that changes; otherwise 0 */
+    uint32_t meshes[NOH_STAGE_MESHES_MAX]; /* [mesh_count] of its mesh pack, in the order of mesh_levels */
+    noh_kind_room room;                    /* of a kind that changes; otherwise 0 */
 } noh_kind_plan;
 
 /* A reduction made to keep a bound. */
@@ -353,7 +354,7 @@ typedef struct noh_concession {
     uint64_t cpu_bytes, gpu_bytes; /* bytes saved */
 } noh_concession;
 
-/* Plain data, 10 KiB, that can be printed, compared and stored with the build. */
+/* Plain data, 12 KiB, that can be printed, compared and stored with the build. */
 typedef struct noh_stage_plan {
     uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
     uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots or texture_reserve, at most.

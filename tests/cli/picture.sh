@@ -35,6 +35,27 @@ done
     expect 2 'no other pose'
 }
 
+# as many nodes as a stage holds share a mesh: planning compares them in pairs, once
+nodes() {
+    awk -v n="$1" 'BEGIN {
+        printf "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64,"
+        printf "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+        printf "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
+        printf "\"max\":[1,1,0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":["
+        for (i = 0; i < n; i++) printf "%s{\"mesh\":0,\"translation\":[%d,%d,0]}", i ? "," : "", i % 32, i / 32
+        print "]}"
+    }'
+}
+nodes 512 >many.gltf
+nodes 513 >too_many.gltf
+# shellcheck disable=SC2086
+noh render many.gltf -o many.png $small
+expect 0 '512 nodes with one mesh'
+# shellcheck disable=SC2086
+noh render too_many.gltf -o x.png $small
+expect 1 '513 are too many'
+says 'join them'
+
 # a sheet frames what moves, as a picture of the clip does
 tiles='--tiles 2 --tile 64'
 puppet=$build/demo/puppet.noh

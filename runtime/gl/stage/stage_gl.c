@@ -34,6 +34,7 @@ typedef struct measure {
     uint32_t morph_path;
     int direct;            /* draws sum (noh_gl_sums_in_draws) */
     uint64_t shared_bytes; /* that peers have, not in gpu_bytes */
+    uint32_t next_model;   /* with gl: of the kinds that do not change */
 } measure;
 
 #define CARVE(m, count, type) ((type *)noh_arena_carve(&(m)->arena, (size_t)(count) * sizeof(type), 16))
@@ -57,30 +58,12 @@ static uint32_t count_models(const measure *m)
     return count;
 }
 
-/* The index of an owner's model. */
-static uint32_t model_index(const measure *m, noh_gl_site owner)
-{
-    noh_gl_site site = { UINT32_MAX, UINT32_MAX };
-    uint32_t index = 0;
-    if (m->desc->kinds[owner.kind].changes) return m->gl ? m->gl->kinds[owner.kind].first_model + owner.item : 0;
-    while (noh_gl_next_site(m->plan, m->desc->kind_count, &site) &&
-           (site.kind != owner.kind || site.item != owner.item)) {
-        const noh_gl_site of = noh_gl_owner(m->desc, m->plan, site);
-        if (m->desc->kinds[site.kind].changes) continue;
-        index += of.kind == site.kind && of.item == site.item;
-    }
-    return index;
-}
-
 /* A model whose finer levels are loaded later. */
 NOH_NEVER_INLINE static void set_later(const measure *m, noh_gl_site site, const noh_mesh *mesh, const noh_mesh *coarse,
                                        void *room, noh_gl_model *model)
 {
-    const noh_kind_desc kind = noh_stage_kind_desc(m->desc, site.kind);
-    noh_stage_item items[NOH_STAGE_MESHES_MAX];
-    (void)noh_stage_items(&kind, items);
     model->load_kind = noh_stage_load_kind(m->desc, site.kind);
-    model->mesh_index = items[site.item].mesh;
+    model->mesh_index = m->plan->kinds[site.kind].meshes[site.item];
     model->coarse = *coarse;
     model->room = noh_gl_room_make(mesh, coarse, room);
 }
@@ -348,21 +331,29 @@ static noh_mesh mesh_for_renderers(const measure *m, noh_gl_site site, const noh
     return model->load_kind == NOH_NONE ? noh_gl_site_mesh(m->desc, m->plan, site) : model->room;
 }
 
+/* The model of an owner, which is visited before those that share it. */
+static noh_gl_model *model_of(measure *m, noh_gl_site owner, int is_new)
+{
+    const noh_gl_kind *k = &m->gl->kinds[owner.kind];
+    if (!is_new) return k->items[owner.item].model;
+    return &m->gl->models[m->desc->kinds[owner.kind].changes ? k->first_model + owner.item : m->next_model++];
+}
+
 static noh_result visit_site(measure *m, noh_gl_site site, noh_error *error)
 {
     const noh_gl_site owner = noh_gl_owner(m->desc, m->plan, site);
-    const uint32_t index = model_index(m, owner);
-    noh_stage_gl *gl = m->gl;
-    noh_gl_model *model = gl ? &gl->models[index] : NULL;
-    noh_gl_item *item = gl ? &gl->kinds[site.kind].items[site.item] : NULL;
+    const int owns = owner.kind == site.kind && owner.item == site.item;
+    noh_gl_model *model = m->gl ? model_of(m, owner, owns) : NULL;
+    noh_gl_item *item = m->gl ? &m->gl->kinds[site.kind].items[site.item] : NULL;
     noh_result result = NOH_OK;
-    if (owner.kind == site.kind && owner.item == site.item) {
+    if (owns) {
         unsigned peers = 0;
         if (!NOH_PAGE && m->desc->share) {
             peers = noh_gl_peers_have(m->desc, m->plan, m->caps, site, m->direct);
         }
         result = visit_model(m, site, peers, model, error);
-        if (model && !m->desc->kinds[site.kind].changes) gl->meshes[index] = mesh_for_renderers(m, site, model);
+        if (model && !m->desc->kinds[site.kind].changes)
+            m->gl->meshes[model - m->gl->models] = mesh_for_renderers(m, site, model);
     }
     if (item) {
         item->model = model;
@@ -424,7 +415,7 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
 {
     measure m = { desc, desc, plan, caps, memory ? noh_arena_over(memory, SIZE_MAX) : noh_arena_measure(),
                   gl,   NULL, 0,    0,    noh_gl_sums_in_draws(desc, plan, caps),
-                  0 };
+                  0,    0 };
     noh_gl_site site = { kind, 0 };
     noh_result result = NOH_OK;
     carve_kind(&m, kind, gl ? &gl->kinds[kind] : NULL);
@@ -452,7 +443,7 @@ static noh_result measure_slot(const noh_stage_desc *desc, const struct noh_gl_c
 static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                 uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
 {
-    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0, 0, 0 };
     const noh_result result = visit(&m, error);
     *cpu_bytes = m.arena.used;
     *gpu_bytes = m.gpu_bytes;
@@ -464,7 +455,7 @@ static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_
 static void list_parts(const noh_stage_desc *desc, const struct noh_gl_caps *caps, const noh_stage_plan *plan,
                        noh_stage_list *list)
 {
-    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0, 0 };
+    measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, list, 0, 0, 0, 0, 0 };
     (void)visit(&m, NULL);
 }
 
@@ -572,7 +563,7 @@ static noh_result open_slots(noh_stage *s, const noh_stage_desc *asked, noh_erro
 static noh_result init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc, noh_stage *stage,
                        noh_error *error)
 {
-    measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0, 0 };
+    measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;

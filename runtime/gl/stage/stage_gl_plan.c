@@ -27,11 +27,9 @@ int noh_gl_next_site(const noh_stage_plan *plan, uint32_t kind_count, noh_gl_sit
     return site->kind < kind_count;
 }
 
-static noh_stage_item item_of(const noh_stage_desc *desc, noh_gl_site site)
+static uint32_t mesh_of(const noh_stage_plan *plan, noh_gl_site site)
 {
-    noh_stage_item items[NOH_STAGE_MESHES_MAX];
-    (void)noh_stage_items(&desc->kinds[site.kind], items); /* no default changes which meshes are drawn */
-    return items[site.item];
+    return plan->kinds[site.kind].meshes[site.item];
 }
 
 static uint32_t finest_of(const noh_stage_plan *plan, noh_gl_site site)
@@ -49,14 +47,14 @@ noh_mesh noh_gl_as_lit(const noh_stage_desc *desc, const noh_mesh *mesh, uint32_
 
 noh_mesh noh_gl_site_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
-    const noh_mesh mesh = noh_stage_whole_mesh(&desc->kinds[site.kind], item_of(desc, site).mesh);
+    const noh_mesh mesh = noh_stage_whole_mesh(&desc->kinds[site.kind], mesh_of(plan, site));
     return noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
 }
 
 int noh_gl_site_coarse(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site, noh_mesh *coarse)
 {
     noh_mesh mesh;
-    (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, item_of(desc, site).mesh, &mesh, NULL);
+    (void)noh_pack_mesh_at(desc->kinds[site.kind].mesh, mesh_of(plan, site), &mesh, NULL);
     *coarse = noh_gl_as_lit(desc, &mesh, finest_of(plan, site));
     return coarse->header->level > finest_of(plan, site) && desc->kinds[site.kind].finer;
 }
@@ -66,7 +64,7 @@ static int same_mesh(const noh_stage_desc *desc, const noh_stage_plan *plan, noh
     if (a.kind != b.kind && (desc->kinds[a.kind].changes || desc->kinds[b.kind].changes)) return 0;
     return desc->kinds[a.kind].mesh->bytes == desc->kinds[b.kind].mesh->bytes &&
            noh_stage_load_kind(desc, a.kind) == noh_stage_load_kind(desc, b.kind) &&
-           item_of(desc, a).mesh == item_of(desc, b).mesh && finest_of(plan, a) == finest_of(plan, b);
+           mesh_of(plan, a) == mesh_of(plan, b) && finest_of(plan, a) == finest_of(plan, b);
 }
 
 static uint32_t pool_count(const noh_stage_plan *plan, uint32_t kind)
@@ -75,21 +73,21 @@ static uint32_t pool_count(const noh_stage_plan *plan, uint32_t kind)
     return noh_stage_pools(&plan->kinds[kind], levels, slots);
 }
 
-/* Pools of all sites that draw a mesh. If there are too many, no site shares it. */
-static uint32_t count_pools(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site of)
+/* Whether the sites that draw a mesh share its model: unless they have too many pools. */
+static int is_shared(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site of)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
     uint32_t pools = 0;
     while (noh_gl_next_site(plan, desc->kind_count, &site)) {
         if (same_mesh(desc, plan, site, of)) pools += pool_count(plan, site.kind);
     }
-    return pools;
+    return pools <= NOH_MODEL_POOLS_MAX;
 }
 
 noh_gl_site noh_gl_owner(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
     noh_gl_site other = { UINT32_MAX, UINT32_MAX };
-    if (count_pools(desc, plan, site) > NOH_MODEL_POOLS_MAX) {
+    if (!is_shared(desc, plan, site)) {
         return site;
     }
     while (noh_gl_next_site(plan, desc->kind_count, &other) && !same_mesh(desc, plan, other, site)) {}
@@ -134,21 +132,24 @@ static int takes_vertices(const noh_stage_desc *desc, const noh_stage_plan *plan
 void noh_gl_tiles_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site owner, noh_gl_tiles *out)
 {
     noh_gl_site site = { UINT32_MAX, UINT32_MAX };
+    const int shared = is_shared(desc, plan, owner);
     out->count = 0;
     out->vertices = takes_vertices(desc, plan);
     out->comes_later = noh_gl_site_coarse(desc, plan, owner, &out->coarse);
     while (noh_gl_next_site(plan, desc->kind_count, &site)) {
-        if (is_same(noh_gl_owner(desc, plan, site), owner)) add_tiles(desc, plan, site, out);
+        if (shared ? same_mesh(desc, plan, site, owner) : is_same(site, owner)) add_tiles(desc, plan, site, out);
     }
 }
 
 uint32_t noh_gl_first_pool(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
-    const noh_gl_site owner = noh_gl_owner(desc, plan, site);
     noh_gl_site other = { UINT32_MAX, UINT32_MAX };
     uint32_t first = 0;
+    if (!is_shared(desc, plan, site)) {
+        return 0;
+    }
     while (noh_gl_next_site(plan, desc->kind_count, &other) && !is_same(other, site)) {
-        if (is_same(noh_gl_owner(desc, plan, other), owner)) first += pool_count(plan, other.kind);
+        if (same_mesh(desc, plan, other, site)) first += pool_count(plan, other.kind);
     }
     return first;
 }

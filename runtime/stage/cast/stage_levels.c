@@ -189,6 +189,7 @@ noh_result noh_stage_find_levels(const noh_stage_desc *desc, uint32_t kind, noh_
     count_triangles(&f);
     if (!d.levels_by_number) thin_out(&f);
     plan->mesh_count = f.item_count;
+    for (uint32_t i = 0; i < f.item_count; i++) plan->meshes[i] = f.items[i].mesh;
     plan->level_count = f.count;
     plan->finest_level = finest < f.count ? finest : f.count - 1u;
     for (uint32_t e = 0; e < f.count; e++) {

@@ -40,7 +40,9 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     noh_kind_desc *k = &f->kinds[f->stage_desc.kind_count];
     const figure_desc *d = &f->desc;
     if (f->stage_desc.kind_count == NOH_STAGE_KINDS_MAX) {
-        return tool_fail(d->file->path, "too many meshes for a stage, which holds %u kinds of %u each",
+        return tool_fail(d->file->path,
+                         "too many meshes for a stage, which holds %u kinds of %u each: join them in the program that "
+                         "made them",
                          NOH_STAGE_KINDS_MAX, NOH_STAGE_MESHES_MAX);
     }
     k->mesh = &d->file->pack;
