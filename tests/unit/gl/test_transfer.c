@@ -293,6 +293,34 @@ static void occlusion_follows_the_targets(void **state)
     free(p.bytes);
 }
 
+/* Two plates, one of them below a lid. Of an eye, which turns, what the lid covers is lit as what it leaves open; of an eye
+ * that a target moves, and of skin, it stays dark. */
+static void eyes_turn_out_of_the_shade(void **state)
+{
+    static const float corners[3][4][3] = { { { -8, 0, -1 }, { -8, 0, 1 }, { -6, 0, 1 }, { -6, 0, -1 } },
+                                            { { -1, 0, -1 }, { -1, 0, 1 }, { 1, 0, 1 }, { 1, 0, -1 } },
+                                            { { -3, 1, -3 }, { 3, 1, -3 }, { 3, 1, 3 }, { -3, 1, 3 } } };
+    float deltas[3][4][3];
+    (void)state;
+    for (int i = 0; i < 36; i++) (&deltas[0][0][0])[i] = 1.0f;
+    for (int kind = 0; kind < 3; kind++) {
+        model *m = quads_model(corners[0][0], 3, kind == 1 ? deltas[0][0] : NULL);
+        lit_pack p;
+        m->materials = test_zeros(sizeof *m->materials);
+        m->materials[0] = model_material_default();
+        m->materials[0].name = model_string("eye");
+        m->materials[0].surface = kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_EYE;
+        m->material_count = 1;
+        m->meshes[0].submeshes[0].material = 0;
+        light_model(&p, m, 4, 0);
+        print_message("open %.3f, covered %.3f\n", occlusion_at(&p, -8, 0, 1), occlusion_at(&p, 1, 0, 1));
+        assert_true(occlusion_at(&p, -8, 0, 1) > 0.8f);
+        assert_true(kind == 0 ? occlusion_at(&p, 1, 0, 1) == occlusion_at(&p, -8, 0, 1)
+                              : occlusion_at(&p, 1, 0, 1) < 0.3f);
+        free(p.bytes);
+    }
+}
+
 /* ---- lobes ---- */
 
 /* A surface that has turned under light that has turned with it looks the same: only the axis turns. */
@@ -687,6 +715,7 @@ int main(void)
         cmocka_unit_test(plane_and_wall),
         cmocka_unit_test(a_ball_in_a_furnace_is_white),
         cmocka_unit_test(occlusion_follows_the_targets),
+        cmocka_unit_test(eyes_turn_out_of_the_shade),
         cmocka_unit_test(turned_surfaces_under_turned_light_look_alike),
         cmocka_unit_test(a_lobe_fits_itself),
         cmocka_unit_test(blue_light_is_answered_by_blue),

@@ -195,6 +195,56 @@ static void take_brightest(maker *k, uint32_t target)
     }
 }
 
+/* ---- eyes: their balls turn, and what the lids cover comes into sight ---- */
+
+#define SEEN 0.5f /* of the occlusion of the brightest vertex: what is in front of the lids */
+
+static int turns(const maker *k, const noh_submesh *part, uint32_t v)
+{
+    return part->material != NOH_NONE && k->surface.mesh.pack->materials[part->material].surface == NOH_SURFACE_EYE &&
+           noh_mesh_accumulation_texel(&k->surface.mesh, v) >= k->surface.mesh.header->touched_count;
+}
+
+/* The mean lobe about the normals of a part's vertices that are brighter than `least`. Returns their number. */
+static uint32_t mean_lobe(const maker *k, const noh_submesh *part, float least, noh_lobe *mean)
+{
+    uint32_t count = 0;
+    memset(mean, 0, sizeof *mean);
+    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+        noh_lobe lobe;
+        if (!turns(k, part, v) || !(k->occlusion[v] > least)) continue;
+        transfer_lobe(k->transfers + NOH_SH_COUNT_MAX * (size_t)v, k->normals + 3u * (size_t)v, &lobe);
+        for (uint32_t band = 0; band < NOH_SH_ORDER_MAX; band++) mean->shape[band] += lobe.shape[band];
+        mean->occlusion += k->occlusion[v];
+        count++;
+    }
+    for (uint32_t band = 0; count && band < NOH_SH_ORDER_MAX; band++) mean->shape[band] /= (float)count;
+    if (count) mean->occlusion /= (float)count;
+    return count;
+}
+
+/* Eyeballs that no target moves follow joints: all their vertices take the light of those that are seen at rest. */
+static void even_out_eyes(maker *k)
+{
+    for (uint32_t i = 0; i < k->surface.mesh.header->submesh_count; i++) {
+        const noh_submesh *part = &k->surface.mesh.submeshes[i];
+        const uint32_t end = part->first_vertex + part->vertex_count;
+        float brightest = 0.0f;
+        noh_lobe mean;
+        for (uint32_t v = part->first_vertex; v < end; v++) {
+            if (turns(k, part, v) && k->occlusion[v] > brightest) brightest = k->occlusion[v];
+        }
+        if (!(brightest > 0.0f) || !mean_lobe(k, part, SEEN * brightest, &mean)) continue;
+        for (uint32_t v = part->first_vertex; v < end; v++) {
+            float *own = k->transfers + NOH_SH_COUNT_MAX * (size_t)v;
+            if (!turns(k, part, v)) continue;
+            noh_sh_basis(NOH_SH_ORDER_MAX, k->normals + 3u * (size_t)v, own);
+            noh_sh_convolve(NOH_SH_ORDER_MAX, mean.shape, own);
+            k->occlusion[v] = mean.occlusion;
+        }
+    }
+}
+
 static void make_records(const maker *k, transfer_data *out)
 {
     const transfer_settings *s = k->settings;
@@ -275,6 +325,7 @@ static int make(maker *k, transfer_data *out, model_error *error)
         take_brightest(k, t);
     }
     if (!failed) {
+        even_out_eyes(k);
         make_records(k, out);
         failed = make_all_deltas(k, out, error);
     }
