@@ -90,6 +90,15 @@ check 'it has none' sh -c '! grep -q "targets, " "$1"' - "$work/out"
 check 'and its head is framed' sh -c '! cmp -s "$1" "$2"' - still_face.png still_full.png
 
 
+# A picture of a feeling shows it, without a time by which it has come.
+# shellcheck disable=SC2086
+{
+    noh render "$build/mask.noh" -o calm.png $small --face on --time 0.01
+    noh render "$build/mask.noh" -o joy.png $small --face on --feel joy=1
+    expect 0 'a face that feels'
+    check 'shows it' sh -c '! cmp -s "$1" "$2"' - calm.png joy.png
+}
+
 # A body whose face is a square of 0.2 at a height of 1.5, with hair as high as 0.8 of it: of a drawn figure.
 quads='f 1 2 3 4\nf 5 6 7 8\nf 9 10 11 12\n'
 rest='v -.2 0 0\nv .2 0 0\nv .2 1.5 0\nv -.2 1.5 0\nv -.1 1.7 0\nv .1 1.7 0\nv .1 1.86 0\nv -.1 1.86 0\n'
@@ -101,6 +110,13 @@ noh render tall.noh -o tall.png --size 64x64 --camera face,0,0 --json
 expect 0 'a face below high hair'
 height=$(sed -n '/"eye"/{n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between 1.476 and 1.86
 check 'its frame has all of the hair' awk "BEGIN { exit !($height > 1.667 && $height < 1.669) }"
+printf "v -.1 1.5 0\nv .1 1.5 0\nv .1 1.7 0\nv -.1 1.7 0\n${rest}v -.1 1.7 -.15\nv .1 1.7 -.15\nv .1 1.86 -.15\nv -.1 1.86 -.15\n${quads}f 13 14 15 16\n" >deep.obj
+printf "v -.1 1.5 .01\nv .1 1.5 .01\nv .1 1.7 .01\nv -.1 1.7 .01\n${rest}v -.1 1.7 -.15\nv .1 1.7 -.15\nv .1 1.86 -.15\nv -.1 1.86 -.15\n${quads}f 13 14 15 16\n" >shapes/smile.obj
+noh build deep.obj --targets shapes -o deep.noh
+noh render deep.noh -o deep.png --size 64x64 --camera face,90,0 --json
+expect 0 'a face in front of deep hair, from the side'
+depth=$(sed -n '/"eye"/{n;n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between -0.15 and 0.01 or 0
+check 'its frame has all of the hair, too' awk "BEGIN { exit !($depth > -0.076 && $depth < -0.069) }"
 if command -v node >/dev/null 2>&1; then
     # shellcheck disable=SC2016
     check 'and so has the page' node -e '

@@ -175,17 +175,20 @@ static int take_person(picture *p, const render_args *a)
     return status;
 }
 
+#define FELT_S 0.01 /* by then an emotion has come */
+
 static int draw(picture *p, const render_args *a, noh_gl_camera *camera, uint8_t *rgba)
 {
     const int alive = a->figure.alive;
     const int lives = alive || a->figure.stands || a->body.has_ground;
+    const double life_s = alive && a->emotions.count ? fmax(a->time_s, FELT_S) : a->time_s;
     const int hangs = !alive && !a->body.has_ground && a->rests && p->figure.hair.is_there;
     int status = p->shows_bones ? 0 : take_person(p, a);
     if (!status && !p->shows_bones) status = strike(p, a);
     if (!status) status = figure_play_options(&p->figure, &a->clips, lives ? 0.0 : a->time_s);
     if (!status && alive) status = figure_feel(&p->figure, &a->emotions);
     if (!status && (lives || hangs))
-        status = figure_live(&p->figure, (lives ? a->time_s : 0.0) + (hangs ? a->swing : 0.0), a->turn);
+        status = figure_live(&p->figure, (lives ? life_s : 0.0) + (hangs ? a->swing : 0.0), a->turn);
     if (!status) status = figure_hold_options(&p->figure, &a->weights);
     if (!status) status = figure_pose(&p->figure);
     if (!status) {
