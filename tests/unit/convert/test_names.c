@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "convert/model/recipe_make.h"
+#include "convert/model/recipe_whole.h"
 #include "convert/model/surface_kind.h"
 #include "noh/face.h"
 #include "noh/format.h"
@@ -209,6 +210,84 @@ static void joints_of_the_face_get_rows(void **state)
     recipe_free(recipe);
 }
 
+/* A face of six numbers: two for brows, two for eyes, two for the mouth. */
+#define FACE 6u
+
+typedef struct moved {
+    const char *name;
+    float by[FACE];
+} moved;
+
+static void add_shapes(model *m, model_mesh *mesh, model_target *targets, const moved *shapes, uint32_t count)
+{
+    memset(m, 0, sizeof *m);
+    memset(mesh, 0, sizeof *mesh);
+    memset(targets, 0, count * sizeof *targets);
+    m->meshes = mesh;
+    m->mesh_count = 1;
+    mesh->targets = targets;
+    mesh->target_count = count;
+    mesh->vertex_count = FACE / 3u;
+    for (uint32_t i = 0; i < count; i++) {
+        targets[i].name = (char *)shapes[i].name;
+        targets[i].position = (float *)shapes[i].by;
+    }
+}
+
+/* One shape under two names counts once; sides and parts of a shape add up. */
+static void one_shape_of_two_names_counts_once(void **state)
+{
+    static const moved shapes[] = {
+        { "Fcl_MTH_A", { 0, 0, 0, 0, 1.0f, 2.0f } },           { "viseme_aa", { 0, 0, 0, 0, 1.0f, 2.0f } },
+        { "Fcl_MTH_O", { 0, 0, 0, 0, 1.1f, 1.9f } },           { "viseme_O", { 0, 0, 0, 0, 1.0f, 2.0f } },
+        { "Mouth_Funnel_Up_L", { 0, 0, 0, 0.2f, 1.0f, 0 } },   { "Mouth_Funnel_Up_R", { 0, 0, 0, 1.0f, 0.2f, 0 } },
+        { "Mouth_Funnel_Down_L", { 0, 1.0f, 0, 0, 0, 0.1f } }, { "Mouth_Funnel_Down_R", { 1.0f, 0, 0, 0, 0, 0.1f } },
+    };
+    recipe_text *recipe = recipe_new();
+    model_target targets[TEST_COUNT(shapes)];
+    model_mesh mesh;
+    model m;
+    uint32_t count;
+    (void)state;
+    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
+    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+    assert_true(weight_of(recipe, "aa", "Fcl_MTH_A") == 1.0f);
+    assert_true(weight_of(recipe, "aa", "viseme_aa") == 0.0f);
+    assert_true(weight_of(recipe, "oh", "Fcl_MTH_O") + weight_of(recipe, "oh", "viseme_O") == 1.0f);
+    for (size_t i = 4; i < TEST_COUNT(shapes); i++) assert_true(weight_of(recipe, "CH", shapes[i].name) > 0.0f);
+    recipe_free(recipe);
+}
+
+/* An emotion of the whole face gives its mouth to speech, and its lids to blinks; one that is no sum stays. */
+static void whole_faces_take_their_parts(void **state)
+{
+    static const moved shapes[] = {
+        { "F_Fcl_ALL_Joy", { 1, 1, 2, 2, 1, 1 } },   { "F_Fcl_BRW_Joy", { 1, 1, 0, 0, 0, 0 } },
+        { "F_Fcl_EYE_Joy", { 0, 0, 2, 2, 0, 0 } },   { "F_Fcl_MTH_Joy", { 0, 0, 0, 0, 1, 1 } },
+        { "F_Fcl_ALL_Angry", { 1, 0, 1, 0, 1, 0 } }, { "F_Fcl_BRW_Angry", { 1, 0, 0, 0, 0, 0 } },
+        { "F_Fcl_EYE_Angry", { 0, 0, 1, 0, 0, 0 } }, { "F_Fcl_MTH_Angry", { 0, 0, 0, 0, 0, 3 } },
+        { "F_Fcl_EYE_Close", { 0, 0, 2, 3, 0, 0 } },
+    };
+    recipe_text *recipe = recipe_new();
+    model_target targets[TEST_COUNT(shapes)];
+    model_mesh mesh;
+    model m;
+    (void)state;
+    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
+    assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Joy", "anger-upper", 1.0f, 0), 0); /* an artist's own row */
+    assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Joy", "joy-upper", 0.5f, 0), 0);
+    assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Angry", "fear-upper", 1.0f, 0), 0);
+    assert_int_equal(recipe_split_whole(recipe, &m, 1), 0);
+    assert_true(weight_of(recipe, "anger-upper", "F_Fcl_ALL_Joy") == 1.0f);
+    assert_true(weight_of(recipe, "fear-upper", "F_Fcl_ALL_Angry") == 1.0f);
+    assert_true(weight_of(recipe, "joy-upper", "F_Fcl_ALL_Joy") == 0.0f);
+    assert_true(weight_of(recipe, "joy-upper", "F_Fcl_BRW_Joy") == 0.5f);
+    assert_true(weight_of(recipe, "joy-upper", "F_Fcl_EYE_Joy") == 0.5f);
+    assert_true(weight_of(recipe, "joy-mouth", "F_Fcl_MTH_Joy") == 0.5f);
+    assert_true(weight_of(recipe, "override-lids", "joy-upper") == (float)NOH_OVERRIDE_BLEND);
+    recipe_free(recipe);
+}
+
 static void wrong_lines_are_named(void **state)
 {
     static const struct {
@@ -231,9 +310,14 @@ static void wrong_lines_are_named(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(targets_have_other_names),    cmocka_unit_test(joints_have_other_names),
-        cmocka_unit_test(every_line_is_read),          cmocka_unit_test(a_file_comes_first),
-        cmocka_unit_test(joints_of_the_face_get_rows), cmocka_unit_test(wrong_lines_are_named),
+        cmocka_unit_test(targets_have_other_names),
+        cmocka_unit_test(joints_have_other_names),
+        cmocka_unit_test(every_line_is_read),
+        cmocka_unit_test(a_file_comes_first),
+        cmocka_unit_test(joints_of_the_face_get_rows),
+        cmocka_unit_test(wrong_lines_are_named),
+        cmocka_unit_test(one_shape_of_two_names_counts_once),
+        cmocka_unit_test(whole_faces_take_their_parts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

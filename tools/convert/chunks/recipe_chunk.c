@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "convert/model/recipe_make.h"
+#include "convert/model/recipe_whole.h"
 #include "convert/model/model_build.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -84,8 +85,10 @@ static int read_recipe(const convert_options *options, const source *s, void **m
     if (!recipe) recipe = recipe_new();
     *made = recipe;
     if (failed) return 1;
+    const uint32_t own = recipe ? recipe->count : 0u;
     if (!recipe || recipe_add_extras(recipe, s->m) || recipe_add_lips(recipe, s->m) ||
-        recipe_add_known(recipe, s->m, &known) || (s->m->mesh_count && add_joints(recipe, s)) ||
+        recipe_add_known(recipe, s->m, &known) || recipe_split_whole(recipe, s->m, own) ||
+        (s->m->mesh_count && add_joints(recipe, s)) ||
         (!options->no_correctives && recipe_add_named(recipe, s->m, &named))) {
         (void)snprintf(failure->error.what, sizeof failure->error.what,
                        "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);

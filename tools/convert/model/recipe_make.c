@@ -9,6 +9,7 @@
 #include "convert/base/names.h"
 #include "convert/model/lip_target.h"
 #include "convert/model/model_build.h"
+#include "convert/model/recipe_whole.h"
 
 /* ---- extras ---- */
 
@@ -132,6 +133,7 @@ int recipe_add_lips(recipe_text *recipe, const model *m)
 /* ---- the table of names ---- */
 
 typedef struct known {
+    const model *m;
     const char *names[NOH_TARGETS_MAX]; /* of all meshes, each once */
     const char *means[NOH_TARGETS_MAX]; /* the table's, or its own */
     char text[NOH_TARGETS_MAX][NOH_NAME_BYTES_MAX];
@@ -159,12 +161,23 @@ static void list_known(known *k, const model *m)
     }
 }
 
+/* Whether another target of the same meaning stands for this one, too. */
+static int is_held(const known *k, uint32_t i)
+{
+    for (uint32_t j = 0; j < k->count; j++) {
+        const int is_other = j != i && strcmp(k->means[i], k->means[j]) == 0;
+        if (is_other && target_is_held(k->m, k->names[i], k->names[j], j < i)) return 1;
+    }
+    return 0;
+}
+
 /* A row for each target that means this. */
 static int add_meant(recipe_text *recipe, const known *k, const char *meant, uint32_t channel, float weight)
 {
     const char *name = noh_face_channel_name(channel);
     for (uint32_t i = 0; i < k->count; i++) {
-        if (strcmp(k->means[i], meant) == 0 && recipe_add_row(recipe, k->names[i], name, weight, 0)) return 1;
+        if (strcmp(k->means[i], meant) == 0 && !is_held(k, i) && recipe_add_row(recipe, k->names[i], name, weight, 0))
+            return 1;
     }
     return 0;
 }
@@ -199,7 +212,10 @@ int recipe_add_known(recipe_text *recipe, const model *m, uint32_t *count)
     const uint32_t before = recipe->count;
     known *k = calloc(1, sizeof *k);
     int failed = !k;
-    if (k) list_known(k, m);
+    if (k) {
+        k->m = m;
+        list_known(k, m);
+    }
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT && !failed; c++) failed = add_channel(recipe, k, c);
     free(k);
     *count = recipe->count - before;
