@@ -600,6 +600,30 @@ static void materials_and_pictures(void **state)
 
 /* ---- what is left out, and what is refused ---- */
 
+/* Hidden nodes hide those below that inherit it. What a take moves is not hidden. */
+static void hidden_nodes_are_not_drawn(void **state)
+{
+    model *m;
+    (void)state;
+    begin();
+    add_triangle(1, "");
+    add_object("Model", 2, "shown", "Mesh", P1("Visibility", "1"), "");
+    add_object("Model", 3, "hidden", "Mesh", P1("Visibility", "0"), "");
+    add_object("Model", 4, "below", "Mesh", "", "");
+    add_object("Model", 5, "own", "Mesh", P1("Visibility Inheritance", "0"), "");
+    add_object("Model", 6, "blinks", "Mesh", P1("Visibility", "0"), "");
+    add_take(10, "take", "46186158000");
+    add("\tAnimationLayer: 11, \"AnimLayer::a\", \"\" {\n\t}\n\tAnimationCurveNode: 12, \"AnimCurveNode::v\", \"\" {\n"
+        "\t\tProperties70:  {\n" P1("d|Visibility", "0") "\t\t}\n\t}\n");
+    links(OO(2, 0) OO(3, 0) OO(4, 3) OO(5, 3) OO(6, 0) OO(1, 2) OO(1, 3) OO(1, 4) OO(1, 5) OO(1, 6) OO(11, 10)
+              OO(12, 11) OP(12, 6, "Visibility"));
+    m = load();
+    assert_true(node_of(m, "shown")->mesh != MODEL_NONE && node_of(m, "hidden")->mesh == MODEL_NONE);
+    assert_true(node_of(m, "below")->mesh == MODEL_NONE && node_of(m, "blinks")->mesh != MODEL_NONE);
+    assert_true(has_warning(m, "node 'hidden' is hidden in the file and is not drawn"));
+    model_free(m);
+}
+
 static void losses_are_warned_of(void **state)
 {
     (void)state;
@@ -791,6 +815,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_take_of_two_frames_is_whole),
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
+    cmocka_unit_test(hidden_nodes_are_not_drawn),
     cmocka_unit_test(losses_are_warned_of),
     cmocka_unit_test(marks_units_and_numbers),
     cmocka_unit_test(each_picture_has_its_texture_coordinates),

@@ -2666,6 +2666,28 @@ static void instances_are_nodes(void **state)
     model_free(m);
 }
 
+/* KHR_node_visibility hides a node and what is below it, unless nothing would be left. */
+static void hidden_nodes_are_not_drawn(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"p\",\"children\":[1],\"extensions\":{\"KHR_node_visibility\":{"
+                    "\"visible\":false}}},{\"name\":\"n\",\"mesh\":0},{\"name\":\"o\",\"mesh\":0,"
+                    "\"extensions\":{\"KHR_node_visibility\":{\"visible\":true}}}]");
+    model *m = load(s);
+    assert_true(m->node_count == 3 && m->nodes[1].mesh == MODEL_NONE && m->nodes[2].mesh == 0);
+    assert_true(has_warning(m, "node 'n' is hidden in the file and is not drawn"));
+    assert_int_equal(m->warning_count, 1);
+    model_free(m);
+    s = triangle("", "");
+    APPEND(s->rest, ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{"
+                    "\"visible\":false}}}]");
+    m = load(s);
+    assert_int_equal(m->nodes[0].mesh, 0);
+    assert_true(has_warning(m, "node 'n' is hidden in the file, as are all that have a mesh: they are drawn"));
+    model_free(m);
+}
+
 /* A clip moves the weights of the first instance, which the others follow; another node with the mesh keeps its own. */
 static void weights_of_instances_are_animated(void **state)
 {
@@ -2922,6 +2944,7 @@ int main(void)
         cmocka_unit_test(nodes_are_in_the_scene_once),
         cmocka_unit_test(bad_references),
         cmocka_unit_test(instances_are_nodes),
+        cmocka_unit_test(hidden_nodes_are_not_drawn),
         cmocka_unit_test(weights_of_instances_are_animated),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),
         cmocka_unit_test(compressed_head_has_the_same_shape),

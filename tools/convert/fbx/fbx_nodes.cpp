@@ -76,8 +76,36 @@ parts parts_of(job &j, const std::vector<placed> &pose, size_t model)
     return parts();
 }
 
+/* --- visibility --- */
+
+static bool blinks(const scene &s, size_t model)
+{
+    for (const take &t : s.takes)
+        for (const layer &l : t.layers)
+            if (l.channels.count({ model, "Visibility" })) return true;
+    return false;
+}
+
+/* What a take moves is seen at some time. Only meshes are marked: glTF's mark hides all that is below it. */
+static std::vector<bool> hidden_models(const scene &s)
+{
+    std::vector<bool> hidden(s.models.size());
+    for (size_t i = 0; i < hidden.size(); ++i) {
+        const size_t model = s.models[i], parent = s.parent[i];
+        const bool own = s.real(model, "Visibility", 1.0) == 0.0 && !blinks(s, model);
+        hidden[i] = own || (parent != none && hidden[parent] && s.whole(model, "Visibility Inheritance", 1) != 0);
+    }
+    return hidden;
+}
+
+static tinygltf::Value not_visible()
+{
+    return tinygltf::Value(tinygltf::Value::Object{ { "visible", tinygltf::Value(false) } });
+}
+
 void write_nodes(job &j)
 {
+    const std::vector<bool> hidden = hidden_models(j.in);
     std::vector<placed> pose;
     find_holders(j);
     pose_rig(make_rig(j.in, nullptr), 0.0, pose);
@@ -90,6 +118,8 @@ void write_nodes(job &j)
         n.translation = { p.translation[0], p.translation[1], p.translation[2] };
         n.rotation = { p.rotation.x, p.rotation.y, p.rotation.z, p.rotation.w };
         n.scale = { p.scale[0], p.scale[1], p.scale[2] };
+        if (hidden[i] && j.in.objects[j.in.models[i]].sub == "Mesh")
+            n.extensions["KHR_node_visibility"] = not_visible();
         j.out.nodes.push_back(n);
     }
     for (size_t i = 0; i < pose.size(); ++i) {

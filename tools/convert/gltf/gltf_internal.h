@@ -265,6 +265,7 @@ void read_springs(file &f); /* after read_nodes */
 /* Notes what no reader above handles: textures other than the base colour's, further UV sets and colours, cameras,
  * nodes outside the scene. */
 void find_left_out(file &f);
+void hide_nodes(file &f); /* after read_nodes */
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf

@@ -60,7 +60,8 @@ static const char *const supported[] = { "KHR_mesh_quantization",  "EXT_meshopt_
                                          "KHR_materials_ior",      "KHR_materials_emissive_strength",
                                          "EXT_texture_webp",       "VRMC_vrm",
                                          "VRMC_vrm_animation",     "VRMC_springBone",
-                                         "VRMC_materials_mtoon",   "VRM" };
+                                         "VRMC_materials_mtoon",   "VRM",
+                                         "KHR_node_visibility" };
 
 bool is_supported(const std::string &name)
 {

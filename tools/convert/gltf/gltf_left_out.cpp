@@ -1,6 +1,7 @@
 /* gltf_left_out.cpp: warnings about features that the model does not store, one for each kind. */
 #include "gltf_internal.h"
 
+#include <cstdlib>
 #include <cstring>
 #include <set>
 
@@ -75,6 +76,36 @@ static void find_in_scene(file &f)
         if (f.node_of[i] == MODEL_NONE)
             leave_out(f, "node '" + printable(name_or(f.json.nodes[i].name, "node", i)) + "'",
                       " was left out: it is not in the default scene");
+}
+
+/* KHR_node_visibility: a node and what is below it. A file that shows nothing is drawn whole. */
+void hide_nodes(file &f)
+{
+    std::vector<bool> hidden(f.out->node_count);
+    bool any_shown = false;
+    for (size_t i = 0; i < f.json.nodes.size(); ++i) {
+        const auto said = f.json.nodes[i].extensions.find("KHR_node_visibility");
+        if (f.node_of[i] == MODEL_NONE || said == f.json.nodes[i].extensions.end() || !said->second.IsObject())
+            continue;
+        const tinygltf::Value &visible = said->second.Get("visible");
+        hidden[f.node_of[i]] = visible.IsBool() && !visible.Get<bool>();
+    }
+    for (size_t i = 0; i < hidden.size(); ++i) { /* parents first */
+        const model_node &node = f.out->nodes[i];
+        if (node.parent != MODEL_NONE && hidden[node.parent]) hidden[i] = true;
+        any_shown |= node.mesh != MODEL_NONE && !hidden[i];
+    }
+    for (size_t i = 0; i < hidden.size(); ++i) {
+        model_node &node = f.out->nodes[i];
+        if (!hidden[i] || node.mesh == MODEL_NONE) continue;
+        leave_out(f, std::string("node '") + node.name + "'",
+                  any_shown ? " is hidden in the file and is not drawn: to draw it, show it in its program"
+                            : " is hidden in the file, as are all that have a mesh: they are drawn");
+        if (!any_shown) continue;
+        node.mesh = MODEL_NONE;
+        free(node.weights);
+        node.weights = nullptr;
+    }
 }
 
 void find_left_out(file &f)

@@ -457,6 +457,7 @@ void read_nodes(file &f)
     f.out->node_count = static_cast<uint32_t>(order.size());
     for (size_t i = 0; i < order.size(); ++i) read_node(f, order[i], f.out->nodes[i]);
     add_instances(f);
+    hide_nodes(f);
 }
 
 } // namespace gltf
