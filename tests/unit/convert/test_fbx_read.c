@@ -598,6 +598,23 @@ static void materials_and_pictures(void **state)
     model_free(m);
 }
 
+/* Where a picture gives the colour, the material's own is often black: without the picture it is white. */
+static void a_missing_picture_leaves_white(void **state)
+{
+    model *m;
+    (void)state;
+    begin();
+    add_triangle(1, "");
+    add_object("Model", 2, "t", "Mesh", "", "");
+    add_object("Material", 3, "a", "", P3("DiffuseColor", "0", "0", "0") P1("DiffuseFactor", "0.2"), "");
+    add_object("Texture", 4, "outside", "", "", "\t\tRelativeFilename: \"away.png\"\n");
+    links(OO(2, 0) OO(1, 2) OO(3, 2) OP(4, 3, "DiffuseColor"));
+    m = load();
+    assert_int_equal(m->materials[0].base_color_texture, MODEL_NONE);
+    for (int i = 0; i < 3; i++) assert_near((double)m->materials[0].base_color[i], 1.0);
+    model_free(m);
+}
+
 /* ---- what is left out, and what is refused ---- */
 
 /* Hidden nodes hide those below that inherit it. What a take moves is not hidden. */
@@ -815,6 +832,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_take_of_two_frames_is_whole),
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
+    cmocka_unit_test(a_missing_picture_leaves_white),
     cmocka_unit_test(hidden_nodes_are_not_drawn),
     cmocka_unit_test(losses_are_warned_of),
     cmocka_unit_test(marks_units_and_numbers),

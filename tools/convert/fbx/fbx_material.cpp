@@ -165,9 +165,9 @@ static double metallic_of(const source &m)
     return share(m.real({ "metalness", "metallic" }, is_blender(m.s) ? m.real({ "ReflectionFactor" }, 0.0) : 0.0));
 }
 
-static void read_colors(const source &m, tinygltf::Material &out)
+/* A picture takes the place of the colour, which says nothing then (it is often black), also if it was not found. */
+static void read_colors(const source &m, bool textured, tinygltf::Material &out)
 {
-    const bool textured = out.pbrMetallicRoughness.baseColorTexture.index >= 0;
     const double strength = m.real({ "base" }, 1.0), opacity = opacity_of(m);
     const vec color = textured ? vec{ { 1.0, 1.0, 1.0 } }
                                : m.color({ "basecolor", "color", "DiffuseColor", "Diffuse" }, 1.0);
@@ -225,7 +225,7 @@ int material_of(job &j, size_t material, size_t model)
     out.pbrMetallicRoughness.baseColorTexture.index = index(USE_COLOR);
     out.normalTexture.index = index(USE_NORMAL);
     out.emissiveTexture.index = index(USE_EMISSIVE);
-    read_colors(m, out);
+    read_colors(m, uses[USE_COLOR] != none, out);
     if (uses[USE_OPACITY] != none) { /* exporters name the colours' own picture: its alpha cuts */
         if (same_picture(j.in, uses[USE_COLOR], uses[USE_OPACITY]))
             out.alphaMode = "MASK";
