@@ -205,6 +205,19 @@ static void materials_are_submeshes(void **state)
     model_free(m);
 }
 
+/* What would be invisible was written by an exporter that takes Tr for the opacity. */
+static void nothing_is_invisible(void **state)
+{
+    (void)state;
+    save("face.mtl", "newmtl a\nTr 1\nnewmtl b\nd 1\nTr 1\n");
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    for (uint32_t i = 0; i < 2; i++) {
+        assert_true(m->materials[i].base_color[3] == 1.0f && m->materials[i].alpha == MODEL_ALPHA_OPAQUE);
+    }
+    assert_true(has_warning(m, "material 'a': its opacity is 0 (d 0 or Tr 1), and it was taken as opaque"));
+    model_free(m);
+}
+
 /* What an image would take is counted before it is decoded: a few bytes cannot take gigabytes by many names. */
 static void large_images_are_counted_first(void **state)
 {
@@ -420,6 +433,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(broken_polygons_are_cut_somehow),
     cmocka_unit_test(corners_become_vertices),
     cmocka_unit_test(materials_are_submeshes),
+    cmocka_unit_test(nothing_is_invisible),
     cmocka_unit_test(large_images_are_counted_first),
     cmocka_unit_test(missing_materials_are_told),
     cmocka_unit_test(colours_of_positions),

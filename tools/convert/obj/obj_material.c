@@ -146,15 +146,22 @@ static void set_color(library *l)
     for (int k = 0; k < 3; k++) l->at->base_color[k] = (float)fmin(fmax(c[k], 0.0), 1.0);
 }
 
-static void set_opacity(library *l, int transparency)
+/* Some exporters write the opacity as Tr, which makes what is opaque invisible: nobody exports that on purpose. */
+static int set_opacity(library *l, int transparency)
 {
-    double d[3];
-    if (read_numbers(l, d) == 0) return;
-    l->at->base_color[3] = (float)fmin(fmax(transparency ? 1.0 - d[0] : d[0], 0.0), 1.0);
+    double d[3], opacity;
+    if (read_numbers(l, d) == 0) return 0;
+    opacity = fmin(fmax(transparency ? 1.0 - d[0] : d[0], 0.0), 1.0);
+    if (!(opacity > 0.0)) {
+        return model_warn(l->m, "material '%.60s': its opacity is 0 (d 0 or Tr 1), and it was taken as opaque",
+                          l->at->name);
+    }
+    l->at->base_color[3] = (float)opacity;
     if (l->at->base_color[3] < 1.0f) {
         l->at->alpha = MODEL_ALPHA_BLEND;
         surface_kind_set(l->at, surface_kind_by_name(l->at->name, l->at->alpha));
     }
+    return 0;
 }
 
 /* Blinn-Phong's exponent as a roughness of the same width (Walter et al. 2007). */
@@ -174,9 +181,9 @@ static int read_line(library *l)
     }
     if (!l->at) return 0;
     if (text_is(keyword, "map_Kd")) return read_texture(l);
+    if (text_is(keyword, "d")) return set_opacity(l, 0);
+    if (text_is(keyword, "Tr")) return set_opacity(l, 1);
     if (text_is(keyword, "Kd")) set_color(l);
-    if (text_is(keyword, "d")) set_opacity(l, 0);
-    if (text_is(keyword, "Tr")) set_opacity(l, 1);
     if (text_is(keyword, "Ns")) set_exponent(l);
     return 0;
 }
