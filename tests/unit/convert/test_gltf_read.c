@@ -1922,7 +1922,7 @@ static void bad_images_are_warnings(void **state)
 {
     (void)state;
     check_left_out_texture("{\"uri\":\"nowhere.png\"}", "does not exist");
-    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG, JPEG nor WebP");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG, JPEG, WebP nor TGA");
     check_left_out_texture("{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAAAAAAA\"}", "damaged");
     check_left_out_texture("{\"bufferView\":99}", "buffer view 99 does not exist");
     check_left_out_texture("{\"uri\":\"/etc/hostname\"}", "not a relative path");

@@ -7,6 +7,7 @@
 
 #include "convert/base/image_whole.h"
 #include "convert/base/input_file.h"
+#include "convert/base/tga_file.h"
 
 /* stb_image's other decoders are kept from files of unknown origin. */
 static int is_png_or_jpeg(const char *bytes, size_t count)
@@ -59,6 +60,26 @@ static int append_end(char **bytes, size_t *count, image_file *image, model_erro
     return 0;
 }
 
+static int decode_png_or_jpeg(char **bytes, size_t *count, uint64_t *pixels_left, image_file *image, model_error *error)
+{
+    int failed = check_size((const unsigned char *)*bytes, *count, pixels_left, error);
+    if (!failed) failed = image_is_cut((const unsigned char *)*bytes, *count, error);
+    if (failed == IMAGE_NO_END) failed = append_end(bytes, count, image, error);
+    return failed ? failed : decode((const unsigned char *)*bytes, *count, image, error);
+}
+
+static int decode_tga(const char *bytes, size_t count, uint64_t *pixels_left, image_file *image, model_error *error)
+{
+    const uint64_t left = *pixels_left + 64u * (uint64_t)count;
+    if (tga_read((const unsigned char *)bytes, count, left < IMAGE_PIXELS ? left : IMAGE_PIXELS, &image->width,
+                 &image->height, &image->channels, &image->rgba, error)) {
+        return 1;
+    }
+    image->bits = 8;
+    *pixels_left = left - (uint64_t)image->width * image->height;
+    return 0;
+}
+
 int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error)
 {
     size_t count = 0;
@@ -68,11 +89,12 @@ int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, 
     if (!bytes) {
         return 1;
     }
-    failed = is_png_or_jpeg(bytes, count) ? check_size((const unsigned char *)bytes, count, pixels_left, error)
-                                          : model_fail(error, "", "it is neither PNG nor JPEG");
-    if (!failed) failed = image_is_cut((const unsigned char *)bytes, count, error);
-    if (failed == IMAGE_NO_END) failed = append_end(&bytes, &count, image, error);
-    if (!failed) failed = decode((const unsigned char *)bytes, count, image, error);
+    if (is_png_or_jpeg(bytes, count))
+        failed = decode_png_or_jpeg(&bytes, &count, pixels_left, image, error);
+    else if (tga_begins((const unsigned char *)bytes, count))
+        failed = decode_tga(bytes, count, pixels_left, image, error);
+    else
+        failed = model_fail(error, "", "it is neither PNG, JPEG nor TGA");
     free(bytes);
     return failed;
 }

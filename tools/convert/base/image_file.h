@@ -1,4 +1,4 @@
-/* image_file.h: a PNG or JPEG file as its bytes say, without any management of colours. */
+/* image_file.h: a PNG, JPEG or TGA file as its bytes say, without any management of colours. */
 #ifndef NOH_CONVERT_BASE_IMAGE_FILE_H
 #define NOH_CONVERT_BASE_IMAGE_FILE_H
 

@@ -10,6 +10,7 @@
 #include "noh/base.h"
 #include "noh/format.h"
 #include "convert/base/image_whole.h"
+#include "convert/base/tga_file.h"
 #include "convert/base/webp_file.h"
 #include "convert/model/surface_kind.h"
 
@@ -75,12 +76,14 @@ static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture 
     }
 }
 
-/* EXT_texture_webp */
-static void decode_webp(file &f, const bytes &data, model_texture &out, const std::string &where)
+/* EXT_texture_webp, or TGA, which FBX files name */
+static void decode_other(file &f, const bytes &data, bool is_webp, model_texture &out, const std::string &where)
 {
     model_error error = { "", "" };
     unsigned char *rgba = nullptr;
-    if (webp_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &rgba, &error))
+    uint32_t channels = 0;
+    if (is_webp ? webp_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &rgba, &error)
+                : tga_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &channels, &rgba, &error))
         fail(where, error.what);
     const std::unique_ptr<unsigned char, void (*)(void *)> held(rgba, free);
     const size_t count = size_t{ out.width } * out.height * 4;
@@ -91,11 +94,12 @@ static void decode_webp(file &f, const bytes &data, model_texture &out, const st
 static void decode_image(file &f, const image &source, model_texture &out, const std::string &where)
 {
     bytes data = encoded_image(f, source, where);
-    if (webp_begins(data.data(), data.size())) {
-        decode_webp(f, data, out, where);
+    if (!is_png_or_jpeg(data)) {
+        const bool is_webp = webp_begins(data.data(), data.size());
+        if (!is_webp && !tga_begins(data.data(), data.size())) fail(where, "it is neither PNG, JPEG, WebP nor TGA");
+        decode_other(f, data, is_webp, out, where);
         return;
     }
-    if (!is_png_or_jpeg(data)) fail(where, "it is neither PNG, JPEG nor WebP");
     check_image_size(f, data, where);
     model_error cut = { "", "" };
     const int is_cut = image_is_cut(data.data(), data.size(), &cut);
