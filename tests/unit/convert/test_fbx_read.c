@@ -598,6 +598,29 @@ static void materials_and_pictures(void **state)
     model_free(m);
 }
 
+/* A picture is known by its bytes: its name may end in anything. */
+static void pictures_have_any_name(void **state)
+{
+    static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
+    static const char *const names[3] = { "a.tga", "A.PNG", "picture" };
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        char line[64];
+        begin();
+        add_triangle(1, "");
+        add_object("Model", 2, "t", "Mesh", "", "");
+        add_object("Material", 3, "a", "", "", "");
+        (void)snprintf(line, sizeof line, "\t\tRelativeFilename: \"%s\"\n", names[i]);
+        add_object("Texture", 4, "outside", "", "", line);
+        links(OO(2, 0) OO(1, 2) OO(3, 2) OP(4, 3, "DiffuseColor"));
+        test_write_file(test_path(names[i]), tga, sizeof tga);
+        model *m = load();
+        assert_true(m->texture_count == 1 && m->textures[0].width == 1);
+        assert_true(m->textures[0].rgba[0] == 10 && m->textures[0].rgba[2] == 30);
+        model_free(m);
+    }
+}
+
 /* Where a picture gives the colour, the material's own is often black: without the picture it is white. */
 static void a_missing_picture_leaves_white(void **state)
 {
@@ -832,6 +855,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(a_take_of_two_frames_is_whole),
     cmocka_unit_test(masks_and_in_betweens),
     cmocka_unit_test(materials_and_pictures),
+    cmocka_unit_test(pictures_have_any_name),
     cmocka_unit_test(a_missing_picture_leaves_white),
     cmocka_unit_test(hidden_nodes_are_not_drawn),
     cmocka_unit_test(losses_are_warned_of),

@@ -26,6 +26,7 @@ static std::string write_glb(job &j)
 {
     std::ostringstream out(std::ios::binary);
     tinygltf::TinyGLTF writer;
+    writer.SetImageWriter(nullptr, nullptr); /* its own drops names that do not end in png, jpg or bmp */
     j.out.asset.version = "2.0";
     if (!writer.WriteGltfSceneToStream(&j.out, out, false, true)) fail("FBX", "the model cannot be written");
     return out.str();
