@@ -28,7 +28,8 @@ V3 teeth_place(const Seed *seed, const Pose *pose)
     double rise = tooth_rise[row] + (row >= 3 ? 0.0007 * corner * (upper ? 1 : 0.7) : 0);
     double edge = upper ? MOUTH_Y - 0.0012 : MOUTH_Y - 0.0030;
     double canine = 0.0005 * bump((fabs(seed->s) - 2.5) / 1.2);
-    V3 at = v3((wide - back) * sin(angle), edge + (upper ? rise - canine : -rise),
+    double arc = 0.0026 * bump(seed->s / 4); /* as low as the middle of the lip, which hangs down */
+    V3 at = v3((wide - back) * sin(angle), edge + (upper ? rise - canine - arc : -rise),
                lips_z - 0.0062 - deep + (deep - back) * cos(angle));
     if (!upper) {
         at.z -= 0.0014;
