@@ -199,10 +199,15 @@ static void take_brightest(maker *k, uint32_t target)
 
 #define SEEN 0.5f /* of the occlusion of the brightest vertex: what is in front of the lids */
 
+int transfer_turns(const noh_mesh *mesh, const noh_submesh *part, uint32_t vertex)
+{
+    return part->material != NOH_NONE && mesh->pack->materials[part->material].surface == NOH_SURFACE_EYE &&
+           noh_mesh_accumulation_texel(mesh, vertex) >= mesh->header->touched_count;
+}
+
 static int turns(const maker *k, const noh_submesh *part, uint32_t v)
 {
-    return part->material != NOH_NONE && k->surface.mesh.pack->materials[part->material].surface == NOH_SURFACE_EYE &&
-           noh_mesh_accumulation_texel(&k->surface.mesh, v) >= k->surface.mesh.header->touched_count;
+    return transfer_turns(&k->surface.mesh, part, v);
 }
 
 /* The mean lobe about the normals of a part's vertices that are brighter than `least`. Returns their number. */

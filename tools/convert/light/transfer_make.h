@@ -26,6 +26,9 @@ typedef struct transfer_data {
 /* 0, or 1 and a filled error; free in both cases. */
 int transfer_make(const noh_pack *pack, uint32_t mesh, const light_rays *rays, const transfer_settings *settings,
                   transfer_data *out, model_error *error);
+/* Whether a vertex of the mesh's part is on an eyeball that no target moves, and so follows a joint. Its record is the mean
+ * of what is seen at rest: what the lids cover comes into sight. */
+int transfer_turns(const noh_mesh *mesh, const noh_submesh *part, uint32_t vertex);
 void transfer_data_free(transfer_data *d);
 
 #endif

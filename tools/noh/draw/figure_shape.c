@@ -226,7 +226,7 @@ static bounds around_face(const figure *f, const bounds *all, bounds face)
     const double high = face.high[1] - face.low[1];
     const double hair = f->hair.is_there ? HAIR_OVER * (all->high[1] - all->low[1]) : 0.0;
     /* a drawn head is half hair, over the face and behind it */
-    const double below[3] = { 0.35, 0.12, 0.9 }, above[3] = { 0.35, 0.9, 0.35 };
+    const double below[3] = { 0.35, 0.12, 1.3 }, above[3] = { 0.35, 0.9, 0.35 };
     for (int c = 0; c < 3; c++) {
         face.low[c] = fmax(face.low[c] - below[c] * high, all->low[c] - (c != 1 ? hair : 0.0));
         face.high[c] = fmin(face.high[c] + above[c] * high, all->high[c] + (c < 2 ? hair : 0.0));

@@ -213,11 +213,18 @@ static int make_seed(mesh_work *w)
     return failed || !blocked;
 }
 
-/* The vertices of materials that do not blend. */
+/* The vertices of materials that do not blend, without eyeballs, whose records are means. */
 static void keep_opaque(mesh_work *w)
 {
+    const noh_mesh *mesh = &w->surface.mesh;
     for (uint32_t i = 0; i < 3u * w->surface.own_count; i++) {
         w->kept[w->surface.corners[i]] = 1;
+    }
+    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
+        const noh_submesh *part = &mesh->submeshes[i];
+        for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+            if (transfer_turns(mesh, part, v)) w->kept[v] = 0;
+        }
     }
 }
 
