@@ -4,6 +4,7 @@
 #include "draw/silhouette.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -131,10 +132,34 @@ static void all_corners_of_a_box_are_seen(void **state)
     }
 }
 
+/* A body stands while only its face has clips. */
+static void a_body_stands_unless_a_clip_moves_it(void **state)
+{
+    static const char *const packs[] = { "demo/nell.noh", "demo/puppet.noh" };
+    const char *build = getenv("NOH_BUILD");
+    const option_list none = { .count = 0 },
+                      idle = { { "idle" }, 1 }; /* of the face in one, of the body in the other */
+    pack_file files[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        char path[1024];
+        (void)snprintf(path, sizeof path, "%s/%s", build ? build : "build", packs[i]);
+        assert_int_equal(pack_file_open(&files[i], path), 0);
+        const figure_desc desc = { .file = &files[i], .clips = &files[i] };
+        assert_int_equal(figure_rests(&desc, &none), 1);
+        assert_int_equal(figure_rests(&desc, &idle), i == 0);
+        assert_int_equal(figure_rests(&desc, NULL), i == 0);
+    }
+    const figure_desc more = { .file = &files[0], .clips = &files[0], .more_clips = &files[1], .more_clip_count = 1 };
+    assert_int_equal(figure_rests(&more, &idle), 0);
+    for (int i = 0; i < 2; i++) pack_file_close(&files[i]);
+}
+
 int main(int argument_count, char **arguments)
 {
     const struct CMUnitTest tests[] = { cmocka_unit_test(every_clip_stays_in_the_picture),
-                                        cmocka_unit_test(all_corners_of_a_box_are_seen) };
+                                        cmocka_unit_test(all_corners_of_a_box_are_seen),
+                                        cmocka_unit_test(a_body_stands_unless_a_clip_moves_it) };
     if (argument_count > 1) cmocka_set_test_filter(arguments[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

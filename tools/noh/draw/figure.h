@@ -161,6 +161,8 @@ typedef struct figure_anims {
 /* Into desc->clips and desc->more_clips; none given: `file` itself. Close them in any case. */
 int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file *file, figure_desc *desc);
 void figure_close_anims(figure_anims *a);
+/* Whether none of these clips (NULL: all) of desc->clips and desc->more_clips moves a joint, so that a body stands. */
+int figure_rests(const figure_desc *desc, const option_list *clips);
 
 /* 1 where a pack has meshes to draw. */
 int figure_draws(const noh_pack *pack);

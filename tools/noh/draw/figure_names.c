@@ -72,6 +72,20 @@ void figure_close_anims(figure_anims *a)
     while (a->count) pack_file_close(&a->files[--a->count]);
 }
 
+int figure_rests(const figure_desc *desc, const option_list *clips)
+{
+    for (uint32_t n = 0; n <= desc->more_clip_count; n++) {
+        const pack_file *file = n ? &desc->more_clips[n - 1u] : desc->clips;
+        noh_pack_clip clip;
+        for (uint32_t i = 0; file && noh_pack_clip_at(&file->pack, i, &clip, NULL) == NOH_OK; i++) {
+            int plays = !clips;
+            for (int k = 0; clips && k < clips->count; k++) plays |= strcmp(clips->items[k], clip.name) == 0;
+            if (plays && clip.header->joint_count) return 0;
+        }
+    }
+    return 1;
+}
+
 /* The n-th pack that clips are taken from; NULL past the last. */
 static const pack_file *clips_of(const figure *f, uint32_t n)
 {

@@ -65,14 +65,15 @@ static int name_output(render_args *a)
     return 0;
 }
 
-/* How it stands that no clip poses. */
+/* How it stands that no clip poses, once packs of clips are open. */
 static int choose_pose(render_args *a, const noh_pack *pack)
 {
     const int rest = strcmp(a->pose, "rest") == 0;
     if (!rest && strcmp(a->pose, "auto") != 0) return tool_usage("--pose must be auto or rest, not '%s'", a->pose);
     a->rests = !a->clips.count;
-    if (rest || !a->rests || a->body.has_ground || a->show_bones || !figure_draws(pack)) return 0;
-    const char *idle = figure_idle_clip(pack);
+    if (rest || a->body.has_ground || a->show_bones || !figure_draws(pack)) return 0;
+    if (!a->rests && !(a->figure.alive && figure_rests(&a->figure, &a->clips))) return 0;
+    const char *idle = a->rests ? figure_idle_clip(pack) : NULL;
     if (idle) a->clips.items[a->clips.count++] = idle;
     a->figure.stands = !idle;
     return 0;
@@ -235,11 +236,13 @@ static int render(render_args *a, const pack_file *file)
         a->figure.light = &light;
     }
     a->figure.file = file;
+    if (!status && a->clips.count) status = figure_open_anims(&anims, &a->anims, file, &a->figure);
+    if (!status) status = choose_pose(a, &file->pack);
+    if (!status && a->clips.count && !a->figure.clips) status = figure_open_anims(&anims, &a->anims, file, &a->figure);
     a->figure.track_count = (uint32_t)a->clips.count;
     a->figure.face_layer = a->clips.count > 1;
     a->figure.held_float_count = a->person > 0.0 ? FIGURE_HELD_ALL : (uint32_t)a->weights.count;
     a->figure.complexions = a->person > 0.0;
-    if (!status && a->clips.count) status = figure_open_anims(&anims, &a->anims, file, &a->figure);
     if (!status) status = gpu_open_drawing(&g, a->driver);
     if (!status) {
         status = draw_and_write(&g, a, shows_bones);
@@ -259,7 +262,6 @@ static int run(void *args)
         status = pack_file_open(&file, a->pack);
         if (!status) {
             status = name_output(a);
-            if (!status) status = choose_pose(a, &file.pack);
             if (!status) status = render(a, &file);
             pack_file_close(&file);
         }

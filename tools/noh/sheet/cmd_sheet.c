@@ -183,7 +183,10 @@ static int make_sheet(sheet *s, const pack_file *file)
         s->show_bones = picture_shows_bones(file, s->show_bones);
         status = s->show_bones < 0 ? EXIT_FAILED : lay_out(s);
     }
-    if (!status && s->tiles.clip) status = figure_open_anims(&anims, &s->tiles.anims, file, &s->figure);
+    if (!status && s->tiles.clip) {
+        status = figure_open_anims(&anims, &s->tiles.anims, file, &s->figure);
+        s->figure.stands = s->figure.alive && !s->show_bones && figure_rests(&s->figure, &s->tiles.clips);
+    }
     if (!status) status = draw_sheet(s, file);
     if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
     figure_close_anims(&anims);

@@ -88,7 +88,7 @@ int setting_open(const view_model *m, gpu *g, const view_model_desc *desc, setti
     d.weight_rules = desc->weight_rules;
     d.hair = !s->show_bones;
     d.falls = !m->cannot_fall.result;
-    d.stands = !m->clips_of->pack.runs[NOH_CHUNK_CLIP].count && has_joints(pack);
+    d.stands = has_joints(pack) && figure_rests(&d, NULL);
     d.root_axes = desc->root_motion ? NOH_ROOT_GROUND : 0;
     d.path = desc->morph_path;
     d.sums = 1;
