@@ -58,12 +58,21 @@ static noh_result check_desc(const noh_hair_desc *d, noh_error *error)
     return NOH_OK;
 }
 
+int noh_hair_carries(const noh_hair_carrier *carrier)
+{
+    const float square = noh_quat_dot(carrier->rotation, carrier->rotation);
+    return noh_are_sound(carrier->position, 3) && noh_are_sound(carrier->wind, 3) && square > 0.9f && square < 1.1f;
+}
+
 noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, const noh_hair_carrier *carrier,
                          noh_hair **hair, noh_error *error)
 {
     noh_arena arena;
     NOH_ASSERT(desc && carrier && hair);
     noh_result result = check_desc(desc, error);
+    if (!result && !noh_hair_carries(carrier)) {
+        return noh_fail(error, NOH_ERR_ARG, "the carrier of hair is out of range, or its rotation is not unit", 0, 0);
+    }
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_hair_size(desc), error);
     if (result) return result;
     noh_hair *h = memory;
@@ -97,7 +106,8 @@ void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_ca
         memcpy(p->before, rest, sizeof p->before);
         p->length = noh_length3(way);
     }
-    hair->last = hair->stepped = *carrier;
+    if (noh_hair_carries(carrier)) hair->last = *carrier;
+    hair->stepped = hair->last;
     hair->left = 0;
 }
 
@@ -141,13 +151,8 @@ const char *noh_hair_check(const noh_hair *hair, const noh_hair_desc *desc)
     if (hair->hair_count != desc->hair_count || hair->point_count != desc->point_count) {
         return "hair was made with another desc";
     }
-    const noh_hair_carrier *carriers[2] = { &hair->last, &hair->stepped };
-    for (int i = 0; i < 2; i++) {
-        const float square = noh_quat_dot(carriers[i]->rotation, carriers[i]->rotation);
-        if (!noh_are_sound(carriers[i]->position, 3) || !noh_are_sound(carriers[i]->wind, 3) ||
-            !(square > 0.9f && square < 1.1f)) {
-            return "hair: the head's transform is out of range";
-        }
+    if (!noh_hair_carries(&hair->last) || !noh_hair_carries(&hair->stepped)) {
+        return "hair: the head's transform is out of range";
     }
     if (hair->left >= NOH_HAIR_STEP_TICKS) return "hair: its time is out of range";
     for (uint32_t i = 0; i < hair->hair_count * hair->point_count; i++) {

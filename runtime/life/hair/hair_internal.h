@@ -45,20 +45,24 @@ typedef struct noh_hair_carrier {
     float wind[3];
 } noh_hair_carrier;
 
+/* Whether hair can follow it: numbers in range, and a unit rotation. */
+int noh_hair_carries(const noh_hair_carrier *carrier);
+
 /* Exact size of hair in bytes: 112, and 40 per point, rounded up to 16. 0 if the desc is invalid. */
 size_t noh_hair_size(const noh_hair_desc *desc);
 
 /* Make hair at rest.
  * errors  ARG memory NULL or misaligned, equal points in a hair, or a number out of its range (where: the point,
- *         counted over all hairs); LIMIT a count; MEMORY too small */
+ *         counted over all hairs), also of the carrier; LIMIT a count; MEMORY too small */
 noh_result noh_hair_init(void *memory, size_t bytes, const noh_hair_desc *desc, const noh_hair_carrier *carrier,
                          noh_hair **hair, noh_error *error);
 
-/* Put hair at rest at the head's present place, after a teleport. Gusts continue. */
+/* Put hair at rest at the head's present place, after a teleport. Gusts continue. A carrier out of range: the last one
+ * stays. */
 void noh_hair_reset(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier);
 
 /* Advance time, in pieces of any length; at most NOH_HAIR_STEPS_MAX steps, one second, per call.
- * carrier  at the end of this time; interpolated in between
+ * carrier  at the end of this time; interpolated in between. Out of range: the last one stays
  * returns  ticks dropped, 0 up to a second */
 uint32_t noh_hair_step(noh_hair *hair, const noh_hair_desc *desc, const noh_hair_carrier *carrier, uint32_t ticks);
 

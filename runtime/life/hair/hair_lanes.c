@@ -311,14 +311,15 @@ uint32_t NOH_HAIR_STEP(noh_hair *hair, const noh_hair_desc *desc, const noh_hair
 {
     NOH_ASSERT(hair && desc && carrier && desc->hair_count == hair->hair_count &&
                desc->point_count == hair->point_count);
+    const noh_hair_carrier to = noh_hair_carries(carrier) ? *carrier : hair->last;
     const uint64_t whole = ((uint64_t)hair->left + ticks) / NOH_HAIR_STEP_TICKS;
     const uint32_t steps = whole < NOH_HAIR_STEPS_MAX ? (uint32_t)whole : NOH_HAIR_STEPS_MAX;
     const uint32_t dropped = (uint32_t)(whole - steps) * NOH_HAIR_STEP_TICKS, kept = ticks - dropped;
     for (uint32_t i = 1; i <= steps; i++) {
-        step_all(hair, desc, carrier, (float)(i * NOH_HAIR_STEP_TICKS - hair->left) / (float)kept);
+        step_all(hair, desc, &to, (float)(i * NOH_HAIR_STEP_TICKS - hair->left) / (float)kept);
     }
     hair->left += kept - steps * NOH_HAIR_STEP_TICKS;
-    hair->last = *carrier;
+    hair->last = to;
     return dropped;
 }
 

@@ -257,6 +257,33 @@ static void a_copy_goes_on(void **state)
     free(hair);
 }
 
+/* A head whose place, turn or wind is no number, as from a matrix without scale: hair stays with the last good one. */
+static void bad_carriers_are_not_followed(void **state)
+{
+    const noh_hair_desc d = wig();
+    noh_hair_carrier bad[3] = { still, still, still };
+    noh_hair *hair, *same;
+    void *memory = malloc(noh_hair_size(&d)), *other = malloc(noh_hair_size(&d));
+    noh_error error;
+    (void)state;
+    bad[0].position[1] = NAN;
+    memset(bad[1].rotation, 0, sizeof bad[1].rotation);
+    bad[2].wind[0] = INFINITY;
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(noh_hair_init(memory, noh_hair_size(&d), &d, &bad[i], &hair, &error), NOH_ERR_ARG);
+        assert_non_null(strstr(error.what, "carrier"));
+        assert_int_equal(noh_hair_init(memory, noh_hair_size(&d), &d, &still, &hair, NULL), NOH_OK);
+        assert_int_equal(noh_hair_init(other, noh_hair_size(&d), &d, &still, &same, NULL), NOH_OK);
+        (void)noh_hair_step(hair, &d, &bad[i], 4800u);
+        (void)noh_hair_step(same, &d, &still, 4800u);
+        assert_memory_equal(memory, other, noh_hair_size(&d));
+        noh_hair_reset(hair, &d, &bad[i]);
+        assert_null(noh_hair_check(hair, &d));
+    }
+    free(memory);
+    free(other);
+}
+
 static void bad_descs_are_refused(void **state)
 {
     static uint8_t memory[ALL * 40u + 112u] __attribute__((aligned(16)));
@@ -471,6 +498,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_copy_goes_on),
         cmocka_unit_test(every_width_gives_the_same_bits),
         cmocka_unit_test(bad_descs_are_refused),
+        cmocka_unit_test(bad_carriers_are_not_followed),
         cmocka_unit_test(tangents_are_halved),
         cmocka_unit_test(rest_turns_with_the_head),
         cmocka_unit_test(hair_comes_to_rest),
