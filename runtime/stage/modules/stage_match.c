@@ -129,6 +129,17 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     return NOH_OK;
 }
 
+/* Whether the table was made of a clip of this name in its own pack, and another pack's plays instead. */
+static int is_replaced(const noh_stage_kind *k, const match_kind *m, const noh_pack_match_clip *c, uint32_t clip)
+{
+    const noh_chunk_run run = m->pack->runs[NOH_CHUNK_CLIP];
+    if (!k->desc->clip_packs || k->desc->clip_packs[k->bank->packs[clip]] == m->pack) return 0;
+    for (uint32_t i = run.first; i < run.first + run.count; i++) {
+        if (m->pack->chunks[i].name_hash == c->name_hash) return 1;
+    }
+    return 0;
+}
+
 static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *error)
 {
     const noh_pack_match_header *h = m->table.header;
@@ -139,6 +150,12 @@ static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *
         if (clip == NOH_NONE) {
             return noh_fail(error, NOH_ERR_NOT_FOUND,
                             "match of a kind: its packs lack a clip of the table: add the pack that has it", i, 0);
+        }
+        if (is_replaced(k, m, c, clip)) {
+            return noh_fail(error, NOH_ERR_DATA,
+                            "match of a kind: a later pack replaces a clip of the table: build a table with that clip "
+                            "into the later pack",
+                            i, 0);
         }
         if ((uint64_t)(c->row_count - 1u) * h->row_ticks > k->set.clips[clip].duration_ticks) {
             return noh_fail(error, NOH_ERR_DATA,

@@ -468,6 +468,35 @@ static void bad_descs_are_refused(void **state)
     for (int i = 0; i < 2; i++) noh_file_unmap(&c.files[i]);
 }
 
+/* A later pack's clip of the same name moves otherwise than the rows of the table say. */
+static void replaced_clips_are_refused(void **state)
+{
+    const noh_pack *packs[2];
+    noh_stage_plan plan;
+    noh_stage *stage;
+    noh_pack bare;
+    cast c;
+    (void)state;
+    describe(&c, NULL);
+    bare = c.packs[ROAM];
+    bare.runs[NOH_CHUNK_MATCH].count = 0;
+    c.kinds[0].clips = NULL;
+    c.kinds[0].clip_packs = packs;
+    c.kinds[0].clip_pack_count = 2;
+    for (int later = 0; later < 2; later++) {
+        void *memory;
+        packs[later] = &c.packs[ROAM];
+        packs[!later] = &bare;
+        assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &plan, NULL), NOH_OK);
+        memory = malloc((size_t)plan.cpu_bytes);
+        const noh_result made = noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &c.desc, &plan, &stage, &said);
+        assert_int_equal(made, later ? NOH_OK : NOH_ERR_DATA);
+        if (!later) assert_non_null(strstr(said.what, "a later pack replaces a clip"));
+        free(memory);
+    }
+    for (int i = 0; i < 2; i++) noh_file_unmap(&c.files[i]);
+}
+
 static void bad_goals_are_refused(void **state)
 {
     noh_match_goal goal = { .velocity = { NAN, 0, 0 } };
@@ -540,6 +569,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(damaged_states_do_no_harm),
     cmocka_unit_test(bad_descs_are_refused),
     cmocka_unit_test(bad_goals_are_refused),
+    cmocka_unit_test(replaced_clips_are_refused),
 };
 
 TEST_MAIN(tests, NULL, NULL)
