@@ -32,15 +32,13 @@ typedef struct noh_ray {
  *
  *   noh_world_check       check a world
  *   noh_field_height      height and normal of a height field at a place
- *   noh_field_ray         intersect a ray with a height field
  *   noh_triangles_size    triangles as the physics of a world; noh_triangles_init
  *
- * Besides, it may hold the game's own physics: functions that answer rays and touches. Ragdolls, rigid bodies,
+ * It may also hold the game's own physics: functions that answer rays and touches. Ragdolls, rigid bodies,
  * points, springs, feet, steps, walkers and shadows ask it wherever they look at the shapes here.
  *
  * The caller owns the world's arrays and keeps them while it is used. Up is +Y.
- * source   Amanatides, Woo: A fast voxel traversal algorithm, 1987 (the ray's walk through cells)
- * Threads: read-only; any number of threads, but for `physics`. */
+ * Threads: read-only; any number of threads, except for `physics`. */
 
 #define NOH_PUSH_OUT_SPEED 1.0f /* metres per second at which overlaps separate */
 
@@ -151,10 +149,6 @@ noh_result noh_world_check(const noh_world *world, noh_error *error);
  * returns  0 outside the grid; nothing is written then */
 int noh_field_height(const noh_field *field, float x, float z, float *height, float normal[3]);
 
-/* Intersect a ray with a field, from above.
- * returns  the distance, in lengths of the ray's direction; below 0: no hit */
-float noh_field_ray(const noh_field *field, const noh_ray *ray);
-
 /* ======== ragdolls ======== */
 
 /* ---- rigs ---- */
@@ -259,7 +253,6 @@ typedef struct noh_haircut {
 
 /* ======== levels of a terrain ========
  * A height field in square blocks, each drawn at the coarsest level that its screen error allows.
- *
  *
  * A block has NOH_TERRAIN_BLOCK cells per side; level k uses every 2^k-th height. Along an edge to a coarser block the
  * finer one uses only the coarser one's heights, so that there is no crack between any two levels. Cells are split from
@@ -392,7 +385,7 @@ int noh_point_touch(const noh_world *world, float radius, float position[3], flo
 /* ======== the height field of a pack ========
  * The height field in a pack, used in place.
  *
- *   noh_terrain_of        get the height field: heights, normals, rays, and the ground of a world
+ *   noh_terrain_of        get the height field: heights, normals, and the ground of a world
  *
  * Threads: no state; any thread. */
 
@@ -446,19 +439,10 @@ void noh_ik_two_bone(const noh_ik_limb *limb, const float target[3], const float
 
 /* ---- looking ---- */
 
-/* Limits of a head. Zero is a good value for all. */
-typedef struct noh_ik_look_desc {
-    float angle_max; /* radians from ahead; 0..pi; default (0) 60 degrees */
-    /* a target farther off than this is released until it is within angle_max again; angle_max..pi; default (0) pi:
-     * never */
-    float release_max;
-    float speed_max; /* radians per second; default (0) 4 */
-} noh_ik_look_desc;
-
 /* The state of a look. May be copied. */
 typedef struct noh_ik_look {
     float direction[3]; /* unit, the present direction */
-    /* 0: no target, or a released one; 1: a target; 2, 3: a target behind, over the left or the right shoulder */
+    /* 0: no target; 1: a target; 2, 3: a target behind, over the left or the right shoulder */
     uint32_t follows;
 } noh_ik_look;
 

@@ -65,18 +65,10 @@ typedef enum noh_activity {
 #define NOH_FACE_FOUR 32u
 #define NOH_FACE_FLAGS 63u
 
-/* Settings shared by faces of one kind. Zero is a good value for all but `eyes`. */
+/* What faces of one kind share. */
 typedef struct noh_face_desc {
-    float eyes[2][3];                            /* centres of the left and the right eye, neck space; required */
-    float blinks_per_minute[NOH_ACTIVITY_COUNT]; /* default (0) 17, 26, 4.5 */
-    /* share of blinks that are followed by another; 0..0.5; default (0) 0.02 */
-    float double_blinks;
-    float breaths_per_minute;           /* default (0) 15 */
-    float yaw_max, up_max, down_max;    /* limits of an eye in its socket; default (0) 35, 25 and 30 degrees */
-    float head_yaw_max, head_pitch_max; /* default (0) 75 and 40 degrees */
-    /* eyes turned farther than this turn the head too; default (0) 17.5 degrees */
-    float head_from;
-    float idle_rad; /* small idle motions of the head, with slower ones of 1.5 times; default (0) 0.8 degrees */
+    float eyes[2][3];                   /* centres of the left and the right eye, neck space; required */
+    float head_yaw_max, head_pitch_max; /* how far the head turns, radians; default (0) 75 and 40 degrees */
 } noh_face_desc;
 
 typedef struct noh_face_spring {
@@ -136,7 +128,7 @@ typedef struct noh_face_pose {
  *          index among the desc's floats) */
 noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t seed, uint32_t flags, noh_error *error);
 
-void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flags);
+void noh_face_set_flags(noh_face *face, uint32_t flags);
 
 /* Advance time. Everything due within the step happens at its own tick. */
 void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks);
@@ -160,10 +152,10 @@ noh_result noh_face_follow(noh_face *face, const noh_face_desc *desc, const floa
 noh_result noh_face_set_emotion(noh_face *face, noh_emotion emotion, float amount, uint32_t onset_ticks,
                                 uint32_t hold_ticks, uint32_t fade_ticks, noh_error *error);
 
-void noh_face_set_activity(noh_face *face, const noh_face_desc *desc, noh_activity activity);
+void noh_face_set_activity(noh_face *face, noh_activity activity);
 
 /* Blink now. Replaces the next spontaneous blink, so that the blink rate stays the same. */
-void noh_face_blink(noh_face *face, const noh_face_desc *desc);
+void noh_face_blink(noh_face *face);
 
 /* Set what speech asks of the face, until it is set again. Blinks of speech take the place of spontaneous ones.
  * speech  NULL: nothing
@@ -249,12 +241,11 @@ typedef struct noh_face_rules {
 } noh_face_rules;
 
 /* Compute channels from a pose and mouth shapes.
- * pose    NULL: at rest; desc is then unused
+ * pose    NULL: at rest
  * shapes  visemes[NOH_VISEME_COUNT], 0..1; NULL: silent. channels[NOH_CHANNEL_COUNT]
  * The lips close for p, b and m, and the lower lip touches the teeth for f and v, whatever the emotion and the other
  * mouth shapes: these two reduce all others. */
-void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, const float *visemes, noh_mouth_rule rule,
-                       float *channels);
+void noh_face_channels(const noh_face_pose *pose, const float *visemes, noh_mouth_rule rule, float *channels);
 
 typedef struct noh_face_row {
     const char *target;

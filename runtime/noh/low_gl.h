@@ -105,7 +105,6 @@ typedef struct noh_gl_program_desc {
 
     const char *const *varyings; /* outputs of the vertex stage for transform feedback */
     uint32_t varying_count;      /* default 0: no transform feedback */
-    unsigned varying_mode;       /* 0: GL_INTERLEAVED_ATTRIBS */
 
     /* All attributes of the vertex arrays that the program will draw. Reading an integer as a float, or a missing
      * attribute, is undefined and no GL error, so each active input is checked: it must be at one of these locations,

@@ -57,11 +57,6 @@ uint32_t noh_track_clip_tick(const noh_track *track, const noh_clip_entry *clip,
 
 #define NOH_JOINT_ROOT 0xffffu /* parent of a joint without one */
 
-/* Check a skeleton of your own; noh_pack_open checks skeletons in packs.
- * errors  ARG a count or pointer, named; DATA (where: the joint) a parent that does not come first, a value that is not
- *         finite, a rotation that is not unit */
-noh_result noh_skeleton_check(const noh_skeleton *skeleton, noh_error *error);
-
 /* Interpolate: out = a at t = 0, b at t = 1; out may be a or b. The mask multiplies t.
  * shapes  a, b, out and mask (NULL: 1 everywhere) [joint_count]
  * ranges  t 0..1 */

@@ -556,7 +556,7 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
  *   noh_gaze_modifier    a modifier of a kind that turns spine, neck, head and eyes
  *   noh_reach_modifier   a modifier that puts hands on points
  *
- *   noh_gaze_rig_make(&pack, 0, &gaze.rig, &error);
+ *   noh_gaze_rig_make(&pack, 0, &gaze, &error);
  *   const noh_modifier modifiers[] = { noh_gaze_modifier(&gaze), noh_feet_modifier(&feet),
  *                                    noh_reach_modifier(&reach) };
  *   noh_gaze *g = noh_actor_modifier(stage, actor, 0);      g->point[2] = 3.0f, g->looks = 1;
@@ -570,14 +570,8 @@ noh_result noh_actor_face(const noh_stage *stage, noh_actor actor, noh_face_pose
  * unchanged at a LOD level without the rig's joints. Do not use these modifiers in a kind whose actors are attached to
  * others: a modifier does not know their own place. */
 
-/* Data shared by the gaze of a kind's actors. */
-typedef struct noh_kind_gaze {
-    noh_gaze_rig rig;      /* of the kind's skeleton */
-    noh_ik_look_desc head; /* zeros: as in body.h */
-} noh_kind_gaze;
-
-/* gaze, rig  must outlive the stage */
-noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze);
+/* rig  of the kind's skeleton; must outlive the stage */
+noh_modifier noh_gaze_modifier(const noh_gaze_rig *rig);
 noh_modifier noh_reach_modifier(const noh_reach_rig *rig);
 
 #ifdef __cplusplus

@@ -231,21 +231,21 @@ typedef struct noh_kind_desc {
 } noh_kind_desc;
 
 struct noh_gl_light_desc;
-typedef struct noh_stage_gpu noh_stage_gpu; /* noh_gl.h has the only one */
+typedef struct noh_stage_gpu noh_stage_gpu; /* noh_gl.h defines the only one, noh_stage_on_gl */
 
 /* How much the library's shaders compute at each pixel. The phone tier approximates: ambient light comes from the
  * vertices, the shadow map is read once, and reflectance, highlights and the light in skin are simpler fits. On GPUs of
  * phones a lit pixel takes about 0.6 of the time. Shaders of your own that call noh_light get the same. */
 typedef enum noh_shading { NOH_SHADING_FULL, NOH_SHADING_PHONE } noh_shading;
 
-/* Another stage, planned before. */
+/* Another stage, planned earlier. */
 typedef struct noh_stage_peer {
     const struct noh_stage_desc *desc;
     const struct noh_stage_plan *plan;
 } noh_stage_peer;
 
-/* Stages that share and are there for as long as this one: the plan counts only what they do not have. Read by
- * noh_stage_plan_make and noh_stage_plan_parts alone. Zeros: none */
+/* Stages that share GL objects with this one, and that exist as long as it does: the plan counts only the objects that
+ * they do not have. Only noh_stage_plan_make and noh_stage_plan_parts read it. Zeros: none */
 typedef struct noh_stage_peers {
     const noh_stage_peer *peers; /* [peer_count] */
     uint32_t peer_count;
@@ -277,8 +277,9 @@ typedef struct noh_stage_desc {
                            * LOD tables, no programs that fade or use fewer influences */
     noh_shading shading; /* default (0) NOH_SHADING_FULL */
     int without_depth;   /* 1: NOH_PASS_DEPTH is never drawn, and its programs are not compiled */
-    int user_values; /* 1: your own shaders read noh_appearance.user, NOH_USER_COMPLEXION: the library's draw it: 16 bytes
-                           * more on the CPU and the GPU for each mesh of a visible actor */
+    int user_values; /* 1: your own shaders read noh_appearance.user; NOH_USER_COMPLEXION: it is a complexion, which the
+                           * library's shaders draw. Each mesh of a visible actor then takes 16 bytes more on the CPU
+                           * and the GPU */
     int motion; /* 1: your own shaders read where a vertex was in the last frame (noh_clip_before), for motion vectors:
                            * palettes take twice the bytes on the GPU and three times on the CPU, accumulators twice */
     int sort_blended; /* 1: blended meshes of all actors are drawn from far to near, one actor after another, at 8 bytes
@@ -294,14 +295,14 @@ typedef struct noh_stage_desc {
     /* Reflections and the shadow map (noh_gl.h). Shaders are then lit by noh_stage_set_lighting. Must outlive the
      * stage. Default (NULL) a plain light that needs neither */
     const struct noh_gl_light_desc *light;
-    /* Bytes on the GPU for textures whose finer levels come as the size on screen needs them, in pieces within
-     * load_bytes, and go where the room is needed; until then coarser levels are shown. Levels up to 64 x 64 are always
-     * there. Their packs are read by frames. At least all these small levels, the largest texture whole, and small ones
-     * once more. Textures of kinds that change, masks at vertices and toons' ramps stay whole. Default (0) all textures
-     * whole */
+    /* Bytes on the GPU for textures whose finer levels are loaded when their size on screen needs them, in pieces of
+     * load_bytes, and dropped when others need the room. Until a level is loaded, coarser ones are shown. Levels up to
+     * 64 x 64 are always loaded. Frames read the textures' packs. The least is all these small levels twice, and the
+     * largest texture whole. Textures of kinds that change, masks at vertices and toons' ramps stay whole. Default (0)
+     * all textures whole */
     uint64_t texture_reserve;
     const noh_stage_gpu *gpu; /* &noh_stage_on_gl of noh_gl.h; default (NULL) nothing is drawn */
-    /* With the other stages of the same ledger that share, what a pack has on the GPU exists once (noh_gl.h). Default
+    /* Not NULL: the GL objects of a pack exist once for all stages of the same ledger that set it (noh_gl.h). Default
      * (NULL) each stage has its own */
     const noh_stage_peers *share;
 } noh_stage_desc;
@@ -356,17 +357,17 @@ typedef struct noh_concession {
 
 /* Plain data, 12 KiB, that can be printed, compared and stored with the build. */
 typedef struct noh_stage_plan {
-    uint64_t cpu_bytes;   /* size of the block for noh_stage_init; exact */
-    uint64_t gpu_bytes;   /* of all its GL objects; exact, as the ledger counts. With slots or texture_reserve, at most.
+    uint64_t cpu_bytes; /* size of the block for noh_stage_init; exact */
+    uint64_t gpu_bytes; /* of all its GL objects; exact, as the ledger counts. With slots or texture_reserve, at most.
                            * With peers, only while these are there */
-    uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: what its peers have, and it would take if it were alone */
-    uint64_t state_bytes; /* size of noh_stage_state; included in cpu_bytes */
-    uint64_t pack_bytes;  /* of the packs, which are read in place and not counted above; without `finer`,
+    uint64_t shared_bytes; /* on the GPU, not in gpu_bytes: objects of its peers that it uses */
+    uint64_t state_bytes;  /* size of noh_stage_state; included in cpu_bytes */
+    uint64_t pack_bytes;   /* of the packs, which are read in place and not counted above; without `finer`,
                            * and without clips that only kinds with clip_reserve play */
-    uint32_t halves;      /* 1: 16-bit accumulators */
-    uint32_t sums;        /* 1: sums instead of finished vertices, as with morph_sums */
-    uint32_t morph_path;  /* the chosen noh_morph_path; 0 without GPU */
-    uint32_t hash;        /* of the desc and the plan; states of other plans are refused */
+    uint32_t halves;       /* 1: 16-bit accumulators */
+    uint32_t sums;         /* 1: sums instead of finished vertices, as with morph_sums */
+    uint32_t morph_path;   /* the chosen noh_morph_path; 0 without GPU */
+    uint32_t hash;         /* of the desc and the plan; states of other plans are refused */
     uint32_t concession_count;
     noh_concession concessions[NOH_CONCESSIONS_MAX]; /* in the order they were made */
     noh_kind_plan kinds[NOH_STAGE_KINDS_MAX];
@@ -424,14 +425,14 @@ void noh_stage_delete(noh_stage *stage);
  *         noh_gl_ledger.contexts was not counted after the context was lost: nothing has changed */
 noh_result noh_stage_restore(noh_stage *stage, noh_error *error);
 
-/* A clip to be brought: read these bytes of its pack's file, and give them to noh_stage_load_clip. */
+/* A clip to be loaded: read these bytes of its pack's file and pass them to noh_stage_load_clip. */
 typedef struct noh_wanted_clip {
     uint32_t kind, clip;    /* of the first kind that has these clips */
     uint32_t pack;          /* index in clip_packs; 0 with `clips` */
     uint32_t offset, bytes; /* its chunk */
 } noh_wanted_clip;
 
-/* Counts of the last frame, and high-water marks for planning the next build. Not part of the state. */
+/* Counts of the last frame. Not part of the state. */
 typedef struct noh_stage_stats {
     uint32_t actors, seen, updated, fading, events;
     uint32_t at_level[NOH_LOD_LEVELS_MAX]; /* visible actors by level */
@@ -445,14 +446,13 @@ typedef struct noh_stage_stats {
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
-    uint32_t actors_high, events_high, coarser_high;
-    uint32_t textures_coarser;     /* textures whose levels are coarser than needed: they come, or texture_reserve is
-                                    * too small */
-    uint32_t wanted_count;         /* clips that something asked for and that have not come since */
-    /* [wanted_count] in the order of asking. In a full list the oldest gives way. noh_stage_load_clip takes the clip
-     * that it brings out of the list, and later ones move down: walk it from its end */
+    uint32_t textures_coarser;             /* textures shown coarser than needed: finer levels are being loaded, or
+                                * texture_reserve is too small */
+    uint32_t wanted_count;                 /* clips that were needed while they were absent, and are still absent */
+    /* [wanted_count] the longest wanted first; a full list drops its first. noh_stage_load_clip removes the clip that
+     * it loads, and the clips after it move down: walk the list from its end */
     const noh_wanted_clip *wanted;
-    float error_pixels;            /* the largest of all visible actors */
+    float error_pixels; /* the largest of all visible actors */
 } noh_stage_stats;
 
 const noh_stage_stats *noh_stage_stats_of(const noh_stage *stage);
@@ -704,7 +704,7 @@ noh_result noh_actor_mesh_at(const noh_stage *stage, noh_actor actor, uint32_t i
 typedef struct noh_draw {
     uint32_t kind;
     uint32_t index;         /* of the mesh, as in noh_actor_mesh_at */
-    uint32_t mesh, level;   /* in the kind's mesh pack; a level that this lacks is in the loaded pack */
+    uint32_t mesh, level;   /* in the kind's mesh pack, or, if that lacks the level, in the loaded pack */
     const uint32_t *actors; /* [actor_count] first_actor + each is an index for noh_stage_actor_at; until the next
                                * frame */
     uint32_t actor_count, first_actor;
@@ -877,21 +877,21 @@ noh_result noh_stage_load_level(noh_stage *stage, uint32_t kind, const noh_pack 
 
 /* ---- clips loaded later ---- */
 
-/* Bring a clip of a kind with clip_reserve into the reserve, or ask for it. What plays keeps its clips. Others make
- * room for the new one, the least recently used first, ended or never played. Kinds with the same clips share them.
- * Until a clip is there, what would start it fails with NOT_FOUND and leaves the actor as it was: noh_actor_play, a
- * graph with such a clip, walkers; motion matching stays with what it plays, and getting up takes another clip. What
- * failed is in noh_stage_stats.wanted; durations, keys and names of absent clips are known. Clips that have to be there
- * together (of a graph, of walkers, an additive clip and its reference) fail with MEMORY if what plays leaves too
- * little for all (need: the bytes of clip_reserve), and are not in `wanted`. Which clips are there depends on the order
- * of calls alone, not on jobs or time, and is not part of the state.
+/* Load a clip of a kind with clip_reserve into the reserve, or ask for it. Clips that play stay loaded. Of the others,
+ * the least recently used are dropped first where the new clip needs room. Kinds with the same clips share them.
+ * A call that would start an absent clip fails with NOT_FOUND and leaves the actor as it was: noh_actor_play,
+ * noh_actor_play_graph, calls of walkers. Motion matching goes on with what it plays, and getting up takes another
+ * clip. The absent clip is then in noh_stage_stats.wanted. Durations, keys and names of absent clips are known. Clips
+ * that are needed together (all of a graph or of walkers, an additive clip and its reference) fail with MEMORY if the
+ * clips that play leave too little room for all (need: the bytes of clip_reserve), and are not in `wanted`. Which clips
+ * are loaded depends only on the order of calls, not on jobs or time, and is not part of the state.
  * clip    as noh_stage_find has it
  * chunk   the whole chunk, as in the pack's file: noh_wanted_clip.bytes, copied. Any alignment. Bytes with the checksum
- *         that the pack has for them are trusted as the pack is. NULL: ask for the clip, which puts it into
+ *         that the pack gives are trusted as the pack is. NULL: ask for the clip, which puts it into
  *         noh_stage_stats.wanted if it is absent
  * errors  ARG kind, or called during a frame or a step; UNSUPPORTED the kind has no clip_reserve; NOT_FOUND no such
  *         clip (need: their count); DATA the bytes differ from those that the stage was made with; MEMORY what plays
- *         leaves too little of the reserve (where: bytes that play, need: bytes). Nothing has then changed */
+ *         leaves too little of the reserve (where: bytes of clips that play, need: bytes). Nothing has then changed */
 noh_result noh_stage_load_clip(noh_stage *stage, uint32_t kind, uint32_t clip, const void *chunk, noh_error *error);
 
 /* ---- kinds that change ---- */
@@ -908,7 +908,7 @@ noh_result noh_stage_load_clip(noh_stage *stage, uint32_t kind, uint32_t clip, c
  *         other objects that were made for it, or drawn on it, again before you use them
  * errors  ARG no such slot, it holds a kind, actors of the kind are there (need: how many), a field of desc, or called
  *         during a step or a frame; MEMORY the kind is larger than the slot (need: what it takes of noh_kind_room,
- *         where: what there is), or the driver is out of memory; UNSUPPORTED with `gpu`, it needs a program that no
+ *         where: what the slot has), or the driver is out of memory; UNSUPPORTED with `gpu`, it needs a program that no
  *         kind of the plan needs, or has `finer`; it has clip_reserve, and no kind of the plan has; GL the driver
  *         refused an object; as noh_stage_init. The slot is then as it was */
 noh_result noh_stage_set_kind(noh_stage *stage, uint32_t kind, const noh_kind_desc *desc, noh_error *error);

@@ -18,7 +18,7 @@ enum { WALKERS, MATCHED, KINDS };
 
 typedef struct busy_stage {
     cast c;
-    noh_kind_gaze gaze;
+    noh_gaze_rig gaze;
     noh_kind_feet feet;
     noh_reach_rig arms;
     noh_modifier parts[PARTS];
@@ -34,7 +34,7 @@ static inline void make_parts(busy_stage *s)
 {
     noh_ragdoll_source source = { .pack = &s->c.packs[PUPPETS], .metres = 1.0f };
     assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
-    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &s->gaze.rig, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &s->gaze, NULL), NOH_OK);
     assert_int_equal(noh_feet_rig_make(&source, &s->feet.rig, NULL), NOH_OK);
     assert_int_equal(noh_reach_rig_make(&source, &s->arms, NULL), NOH_OK);
     s->floor.normal[1] = 1.0f;

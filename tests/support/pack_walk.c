@@ -380,7 +380,7 @@ static void walk_meshes(walk *w)
     free(meshes);
 }
 
-/* Heights and normals all over it and beyond, and rays. */
+/* Heights and normals all over it and beyond. */
 static void walk_terrain(walk *w)
 {
     noh_field field;
@@ -388,11 +388,8 @@ static void walk_terrain(walk *w)
     for (uint32_t i = 0; i < 64u; i++) {
         const float x = field.origin[0] + weight(w) * field.spacing * (float)field.width;
         const float z = field.origin[2] + weight(w) * field.spacing * (float)field.depth;
-        const noh_ray ray = { { x, field.origin[1] + 1.0f, z }, { weight(w), weight(w), 1.0f }, 1e5f };
         float at[4];
         if (noh_field_height(&field, x, z, &at[0], at + 1)) eat(w, at, sizeof at);
-        at[0] = noh_field_ray(&field, &ray);
-        eat(w, at, sizeof at[0]);
     }
 }
 

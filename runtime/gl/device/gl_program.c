@@ -98,8 +98,7 @@ static noh_result link_program(const noh_gl_api *api, const noh_gl_program_desc 
                                noh_error *error)
 {
     if (desc->varying_count) {
-        GLenum mode = desc->varying_mode ? desc->varying_mode : GL_INTERLEAVED_ATTRIBS;
-        api->TransformFeedbackVaryings(program, (GLsizei)desc->varying_count, desc->varyings, mode);
+        api->TransformFeedbackVaryings(program, (GLsizei)desc->varying_count, desc->varyings, GL_INTERLEAVED_ATTRIBS);
     }
     api->LinkProgram(program);
     GLint linked = GL_FALSE;

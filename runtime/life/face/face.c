@@ -17,6 +17,7 @@
 NOH_STATIC_ASSERT(sizeof(noh_face) == 256, face_bytes);
 
 #define NEAREST_M 0.05f
+#define BREATHS_PER_MINUTE 15.0f
 #define FOLLOW_RAD (1.5f * NOH_DEGREE) /* a target that moves less per call is followed without a saccade */
 #define HOLD_MAX 0x7fffffffu
 
@@ -40,42 +41,26 @@ const char *noh_emotion_name(noh_emotion emotion)
 
 /* ---- descs ---- */
 
-/* Rates per minute, shares, then angles, each with a sensible maximum. */
 static const char *bad_desc(const noh_face_desc *d, uint64_t *where)
 {
-    const float values[] = { d->blinks_per_minute[0],
-                             d->blinks_per_minute[1],
-                             d->blinks_per_minute[2],
-                             d->double_blinks,
-                             d->breaths_per_minute,
-                             d->yaw_max,
-                             d->up_max,
-                             d->down_max,
-                             d->head_yaw_max,
-                             d->head_pitch_max,
-                             d->head_from,
-                             d->idle_rad };
-    static const float most[] = { 120.0f, 120.0f, 120.0f, 0.5f, 120.0f, 1.5f, 1.5f, 1.5f, 3.1f, 1.5f, 1.5f, 1.0f };
     for (uint32_t i = 0; i < 6; i++) {
         *where = i;
         if (!noh_is_number(d->eyes[i / 3][i % 3])) return "eyes of a face desc are not finite, or too large";
     }
     *where = 0;
     if (d->eyes[0][0] - d->eyes[1][0] < 1e-4f) return "eyes of a face desc: the left eye must have the greater x";
-    for (uint32_t i = 0; i < sizeof values / sizeof values[0]; i++) {
-        *where = 6u + i;
-        if (!(values[i] >= 0.0f && values[i] <= most[i]))
-            return "a field of a face desc is negative or above its maximum";
-    }
-    return NULL;
+    *where = 6;
+    return noh_is_within(d->head_yaw_max, 0.0f, 3.1f) && noh_is_within(d->head_pitch_max, 0.0f, 1.5f)
+               ? NULL
+               : "head_yaw_max of a face desc is not in 0..3.1, or head_pitch_max not in 0..1.5";
 }
 
 /* ---- a face ---- */
 
-uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, uint32_t breath)
+uint32_t noh_face_breath_ticks(const noh_face *face, uint32_t breath)
 {
     const float u = noh_face_uniform(face->seed, NOH_FACE_BREATH, breath);
-    return noh_face_ticks(60.0f / noh_face_or(desc->breaths_per_minute, 15.0f) * (0.85f + 0.3f * u));
+    return noh_face_ticks(60.0f / BREATHS_PER_MINUTE * (0.85f + 0.3f * u));
 }
 
 static int has_moods(const noh_face *face)
@@ -102,15 +87,15 @@ noh_result noh_face_init(noh_face *face, const noh_face_desc *desc, uint32_t see
     face->flags = (uint8_t)flags;
     for (int i = 0; i < 2; i++) face->head[i].omega = 1.0f;
     look_ahead(face, desc);
-    noh_face_blink_schedule(face, desc);
+    noh_face_blink_schedule(face);
     noh_face_glance_schedule(face);
     if (has_moods(face)) noh_face_mood_next(face);
     return NOH_OK;
 }
 
-void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flags)
+void noh_face_set_flags(noh_face *face, uint32_t flags)
 {
-    NOH_ASSERT(face && desc && flags <= NOH_FACE_FLAGS);
+    NOH_ASSERT(face && flags <= NOH_FACE_FLAGS);
     const uint32_t before = face->flags;
     if (flags & (NOH_FACE_CALM | NOH_FACE_NO_WANDER)) memset(face->away, 0, sizeof face->away);
     if (flags & NOH_FACE_CALM) memset(face->tremor, 0, sizeof face->tremor);
@@ -120,7 +105,7 @@ void noh_face_set_flags(noh_face *face, const noh_face_desc *desc, uint32_t flag
         face->blinking = 0;
     }
     if (has_moods(face) && before != flags) noh_face_mood_next(face);
-    noh_face_blink_schedule(face, desc);
+    noh_face_blink_schedule(face);
     noh_face_glance_schedule(face);
     face->next_tremor = (uint32_t)face->clock;
     face->breath_start = (uint32_t)face->clock;
@@ -155,14 +140,13 @@ static int does(const noh_face *face, uint32_t flag)
 }
 
 /* The first event within `left` ticks. At one tick, the first in this order. */
-static event next_event(const noh_face *face, const noh_face_desc *desc, uint32_t *left)
+static event next_event(const noh_face *face, uint32_t *left)
 {
     const uint32_t now = (uint32_t)face->clock;
     event next = EVENT_NONE;
     if (does(face, NOH_FACE_NO_BLINK)) take_sooner(now, face->next_blink, EVENT_BLINK, left, &next);
     if (does(face, NOH_FACE_NO_BREATH)) {
-        take_sooner(now, face->breath_start + noh_face_breath_ticks(face, desc, face->breaths), EVENT_BREATH, left,
-                    &next);
+        take_sooner(now, face->breath_start + noh_face_breath_ticks(face, face->breaths), EVENT_BREATH, left, &next);
     }
     if (face->gaze != NOH_GAZE_HOLD) {
         take_sooner(now, face->gaze_start + face->gaze_ticks, EVENT_GAZE, left, &next);
@@ -193,7 +177,7 @@ static void fade_emotions(noh_face *face)
 static void handle(noh_face *face, const noh_face_desc *desc, event e)
 {
     switch (e) {
-    case EVENT_BLINK: noh_face_blink_begin(face, desc); break;
+    case EVENT_BLINK: noh_face_blink_begin(face); break;
     case EVENT_BREATH:
         face->breath_start = (uint32_t)face->clock;
         face->breaths++;
@@ -224,7 +208,7 @@ void noh_face_step(noh_face *face, const noh_face_desc *desc, uint32_t ticks)
     NOH_ASSERT(face && desc);
     while (ticks) {
         uint32_t left = ticks < HOLD_MAX ? ticks : HOLD_MAX;
-        const event e = next_event(face, desc, &left);
+        const event e = next_event(face, &left);
         face->clock += left;
         ticks -= left;
         handle(face, desc, e);
@@ -267,7 +251,7 @@ void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks)
     face->breath_start = face->next_tremor = now;
     noh_face_head_follow(face, desc);
     for (int i = 0; i < 2; i++) arrive(&face->head[i], now);
-    noh_face_blink_schedule(face, desc);
+    noh_face_blink_schedule(face);
     noh_face_glance_schedule(face);
 }
 
@@ -374,25 +358,25 @@ noh_result noh_face_set_emotion(noh_face *face, noh_emotion emotion, float amoun
     return NOH_OK;
 }
 
-void noh_face_set_activity(noh_face *face, const noh_face_desc *desc, noh_activity activity)
+void noh_face_set_activity(noh_face *face, noh_activity activity)
 {
-    NOH_ASSERT(face && desc && (unsigned)activity < NOH_ACTIVITY_COUNT);
+    NOH_ASSERT(face && (unsigned)activity < NOH_ACTIVITY_COUNT);
     const uint32_t now = (uint32_t)face->clock;
     float before, after;
     if (activity == face->activity) {
         return;
     }
-    before = noh_face_blink_mean(desc, face->activity);
-    after = noh_face_blink_mean(desc, activity);
+    before = noh_face_blink_mean(face->activity);
+    after = noh_face_blink_mean(activity);
     face->next_blink = now + (uint32_t)((float)(face->next_blink - now) * (after / before));
     face->activity = (uint8_t)activity;
     noh_face_glance_schedule(face);
 }
 
-void noh_face_blink(noh_face *face, const noh_face_desc *desc)
+void noh_face_blink(noh_face *face)
 {
-    NOH_ASSERT(face && desc);
-    noh_face_blink_pull(face, desc);
+    NOH_ASSERT(face);
+    noh_face_blink_pull(face);
 }
 
 noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_face_speech *speech, noh_error *error)
@@ -407,7 +391,7 @@ noh_result noh_face_speak(noh_face *face, const noh_face_desc *desc, const noh_f
         return noh_fail(error, NOH_ERR_ARG, "what speech asks of a face must be 0 to 1", 0, 0);
     }
     face->speech = *s;
-    if (s->blink > 0.5f && !(before.blink > 0.5f)) noh_face_blink_pull(face, desc);
+    if (s->blink > 0.5f && !(before.blink > 0.5f)) noh_face_blink_pull(face);
     if ((s->away > 0.5f) != (before.away > 0.5f)) noh_face_look_aside(face, desc, s->away > 0.5f);
     return NOH_OK;
 }

@@ -12,15 +12,17 @@
 #define SIGMA 0.7f             /* standard deviation of the logarithm of intervals */
 #define INTERVAL_MIN_S 0.36f   /* the longest blink has ended by this time */
 #define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two blinks of a double blink */
+#define DOUBLES 0.02f          /* share of blinks that are followed by another */
 #define STRATA 32u
 #define SEEN_S 5.0f   /* from a blink of another owner to a spontaneous one, at least */
 #define DEBT_MAX 4.0f /* mean intervals by which blinks in advance may delay the next one */
 
+/* A minute. */
 static const float rates[NOH_ACTIVITY_COUNT] = { 17.0f, 26.0f, 4.5f };
 
-float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity)
+float noh_face_blink_mean(uint32_t activity)
 {
-    return 60.0f / noh_face_or(desc->blinks_per_minute[activity], rates[activity]);
+    return 60.0f / rates[activity];
 }
 
 /* A permutation of 0..STRATA-1 by the key: every step is invertible. */
@@ -42,11 +44,11 @@ static float stratum(const noh_face *face, uint32_t blink)
     return ((float)shuffled(blink % STRATA, (uint32_t)(key * 1048576.0f)) + within) / (float)STRATA;
 }
 
-static uint32_t interval(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
+static uint32_t interval(const noh_face *face, uint32_t blink)
 {
     const float u = stratum(face, blink);
     if (noh_face_is_four(face)) return noh_face_four_wait(face, blink);
-    const float s = noh_face_log_normal(u, noh_face_blink_mean(desc, face->activity), SIGMA);
+    const float s = noh_face_log_normal(u, noh_face_blink_mean(face->activity), SIGMA);
     return noh_face_ticks(s < INTERVAL_MIN_S ? INTERVAL_MIN_S : s < 600.0f ? s : 600.0f);
 }
 
@@ -81,27 +83,27 @@ static float lid_at(const noh_face_lid *lid, uint32_t ticks)
     return (noh_exp2(-rate * noh_face_seconds(ticks)) - last) / (1.0f - last);
 }
 
-static int is_double(const noh_face *face, const noh_face_desc *desc, uint32_t blink)
+static int is_double(const noh_face *face, uint32_t blink)
 {
-    return noh_face_uniform(face->seed, NOH_FACE_DOUBLE, blink) < noh_face_or(desc->double_blinks, 0.02f);
+    return noh_face_uniform(face->seed, NOH_FACE_DOUBLE, blink) < DOUBLES;
 }
 
 /* Close the lids at the face's clock. `due` is the time of the spontaneous blink that it replaces, which may be later.
  * A double blink counts as two. */
-static void begin(noh_face *face, const noh_face_desc *desc, uint32_t due)
+static void begin(noh_face *face, uint32_t due)
 {
-    const uint32_t count = !noh_face_is_four(face) && is_double(face, desc, face->blinks) ? 2u : 1u;
+    const uint32_t count = !noh_face_is_four(face) && is_double(face, face->blinks) ? 2u : 1u;
     face->blink_start = (uint32_t)face->clock;
     face->blinking = (uint8_t)count;
     face->next_blink = due;
     for (uint32_t i = 0; i < count; i++) {
-        face->next_blink += interval(face, desc, face->blinks++);
+        face->next_blink += interval(face, face->blinks++);
     }
 }
 
-void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc)
+void noh_face_blink_begin(noh_face *face)
 {
-    begin(face, desc, face->next_blink);
+    begin(face, face->next_blink);
 }
 
 float noh_face_blink_at(const noh_face *face)
@@ -124,23 +126,23 @@ static int is_blinking(const noh_face *face)
     return face->blinking && noh_face_seconds((uint32_t)face->clock - face->blink_start) < INTERVAL_MIN_S;
 }
 
-void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc)
+void noh_face_blink_pull(noh_face *face)
 {
     const uint32_t now = (uint32_t)face->clock;
-    const uint32_t most = noh_face_ticks(DEBT_MAX * noh_face_blink_mean(desc, face->activity));
+    const uint32_t most = noh_face_ticks(DEBT_MAX * noh_face_blink_mean(face->activity));
     const int by_itself = !(face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BLINK));
     if (is_blinking(face)) {
         return;
     }
-    begin(face, desc, by_itself ? face->next_blink : now);
+    begin(face, by_itself ? face->next_blink : now);
     if (face->next_blink - now > most) {
         face->next_blink = now + most;
     }
 }
 
-void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc)
+void noh_face_blink_schedule(noh_face *face)
 {
-    face->next_blink = (uint32_t)face->clock + interval(face, desc, face->blinks++);
+    face->next_blink = (uint32_t)face->clock + interval(face, face->blinks++);
 }
 
 void noh_face_blink_seen(noh_face *face)

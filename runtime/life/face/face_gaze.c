@@ -14,6 +14,7 @@
 #include "noh/low_core.h"
 #include "life/face/face_internal.h"
 
+#define HEAD_FROM (17.5f * NOH_DEGREE) /* eyes turned farther than this turn the head too */
 #define HEAD_SHARE 0.8f
 #define HEAD_TICKS 24000u /* 0.5 s to 95 % of the way */
 #define TREMOR_RAD (0.08f * NOH_DEGREE)
@@ -55,7 +56,7 @@ static void goal_from(const noh_face *face, const noh_face_desc *desc, const flo
 void noh_face_gaze_goal(const noh_face *face, const noh_face_desc *desc, float gaze[3])
 {
     float angles[3], rotation[4];
-    noh_face_head_rotation(face, desc, angles, rotation);
+    noh_face_head_rotation(face, angles, rotation);
     goal_from(face, desc, rotation, gaze);
 }
 
@@ -82,7 +83,7 @@ void noh_face_gaze_from(const noh_face *face, const noh_face_desc *desc, const f
 void noh_face_gaze_at(const noh_face *face, const noh_face_desc *desc, float gaze[3])
 {
     float angles[3], rotation[4];
-    noh_face_head_rotation(face, desc, angles, rotation);
+    noh_face_head_rotation(face, angles, rotation);
     noh_face_gaze_from(face, desc, rotation, gaze);
 }
 
@@ -142,7 +143,7 @@ static void begin_saccade(noh_face *face, const noh_face_desc *desc)
     face->gaze_ticks = noh_face_ticks(0.021f + 0.0022f / NOH_DEGREE * turn);
     if (angle > BIG_SHIFT && !(face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BLINK | NOH_FACE_FOUR)) &&
         noh_face_uniform(face->seed, NOH_FACE_WITH_GAZE, face->glances) < 0.6f) {
-        noh_face_blink_pull(face, desc);
+        noh_face_blink_pull(face);
     }
 }
 
@@ -157,11 +158,12 @@ void noh_face_gaze_event(noh_face *face, const noh_face_desc *desc)
 
 /* ---- the head ---- */
 
-/* How far the head turns for a gaze of `angle`: part of the angle beyond `from`, and all that the eyes cannot reach. */
-static float head_goal(float angle, float from, float eye_max, float head_max)
+/* How far the head turns for a gaze of `angle`: part of the angle beyond HEAD_FROM, and all that the eyes cannot
+ * reach. */
+static float head_goal(float angle, float eye_max, float head_max)
 {
     const float size = angle < 0.0f ? -angle : angle;
-    float goal = size > from ? HEAD_SHARE * (size - from) : 0.0f;
+    float goal = size > HEAD_FROM ? HEAD_SHARE * (size - HEAD_FROM) : 0.0f;
     goal = size - goal > eye_max ? size - eye_max : goal;
     goal = goal < head_max ? goal : head_max;
     return angle < 0.0f ? -goal : goal;
@@ -169,15 +171,13 @@ static float head_goal(float angle, float from, float eye_max, float head_max)
 
 void noh_face_head_follow(noh_face *face, const noh_face_desc *desc)
 {
-    const float from = noh_face_or(desc->head_from, 17.5f * NOH_DEGREE), omega = noh_face_omega(HEAD_TICKS);
-    const float up = noh_face_or(desc->up_max, 25.0f * NOH_DEGREE);
-    const float down = noh_face_or(desc->down_max, 30.0f * NOH_DEGREE);
+    const float omega = noh_face_omega(HEAD_TICKS);
     const uint32_t now = (uint32_t)face->clock;
     float goal[3], yaw, pitch;
     noh_face_gaze_goal(face, desc, goal);
-    yaw = head_goal(goal[0], from, noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE),
-                    noh_face_or(desc->head_yaw_max, 75.0f * NOH_DEGREE));
-    pitch = head_goal(goal[1], from, goal[1] < 0.0f ? down : up, noh_face_or(desc->head_pitch_max, 40.0f * NOH_DEGREE));
+    yaw = head_goal(goal[0], NOH_EYE_YAW_MAX, noh_face_or(desc->head_yaw_max, 75.0f * NOH_DEGREE));
+    pitch = head_goal(goal[1], goal[1] < 0.0f ? NOH_EYE_DOWN_MAX : NOH_EYE_UP_MAX,
+                      noh_face_or(desc->head_pitch_max, 40.0f * NOH_DEGREE));
     if (yaw != face->head[0].goal) noh_face_spring_to(&face->head[0], now, yaw, omega);
     if (pitch != face->head[1].goal) noh_face_spring_to(&face->head[1], now, pitch, omega);
 }

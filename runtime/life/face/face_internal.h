@@ -26,7 +26,7 @@ noh_emotion noh_emotion_of_name(const char *name);
 void noh_face_skip(noh_face *face, const noh_face_desc *desc, int64_t ticks);
 
 /* Compute noh_face_pose.breath alone. */
-float noh_face_breath(const noh_face *face, const noh_face_desc *desc);
+float noh_face_breath(const noh_face *face);
 
 /* The four channels of a frame, for a shader that has only four: one blink, the strongest emotion, the two strongest
  * mouth shapes, with a sum of at most 1. */
@@ -47,6 +47,11 @@ void noh_face_four_visemes(const noh_face_four *four, float *visemes);
 
 #define NOH_DEGREE 0.0174532925f
 #define NOH_FACE_TICKS_PER_S 48000.0f
+
+/* How far an eye turns in its socket. */
+#define NOH_EYE_YAW_MAX (35.0f * NOH_DEGREE)
+#define NOH_EYE_UP_MAX (25.0f * NOH_DEGREE)
+#define NOH_EYE_DOWN_MAX (30.0f * NOH_DEGREE)
 
 /* ---- random numbers by seed ---- */
 
@@ -92,12 +97,12 @@ typedef struct noh_face_lid {
 } noh_face_lid;
 
 noh_face_lid noh_face_lid_of(const noh_face *face, uint32_t blink);
-float noh_face_blink_at(const noh_face *face);                        /* 0 open .. 1 shut */
-void noh_face_blink_begin(noh_face *face, const noh_face_desc *desc); /* begin the blink that is due */
-void noh_face_blink_pull(noh_face *face, const noh_face_desc *desc);  /* begin the next blink now */
-void noh_face_blink_schedule(noh_face *face, const noh_face_desc *desc);
-void noh_face_blink_seen(noh_face *face); /* another owner shuts the lids: no spontaneous blink for a while */
-float noh_face_blink_mean(const noh_face_desc *desc, uint32_t activity); /* mean seconds between two blinks */
+float noh_face_blink_at(const noh_face *face); /* 0 open .. 1 shut */
+void noh_face_blink_begin(noh_face *face);     /* begin the blink that is due */
+void noh_face_blink_pull(noh_face *face);      /* begin the next blink now */
+void noh_face_blink_schedule(noh_face *face);
+void noh_face_blink_seen(noh_face *face);     /* another owner shuts the lids: no spontaneous blink for a while */
+float noh_face_blink_mean(uint32_t activity); /* mean seconds between two blinks */
 
 /* ---- the mode of four channels ---- */
 
@@ -133,11 +138,11 @@ void noh_face_head_follow(noh_face *face, const noh_face_desc *desc);
 uint32_t noh_face_latency(const noh_face *face);
 float noh_face_angle(const float a[3], const float b[3]); /* angle between two gazes, radians */
 
-uint32_t noh_face_breath_ticks(const noh_face *face, const noh_face_desc *desc, uint32_t breath);
+uint32_t noh_face_breath_ticks(const noh_face *face, uint32_t breath);
 
 /* ---- the head ---- */
 
-void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4]);
+void noh_face_head_rotation(const noh_face *face, float angles[3], float rotation[4]);
 /* Get how far breath and small motions of the body move the head, neck space. */
 void noh_face_drift(const noh_face *face, const noh_face_desc *desc, float moved[3]);
 /* Get rotation and drift of the head, `ago` ticks before the face's clock. */

@@ -9,10 +9,11 @@
 #include "noh/face.h"
 #include "noh/low_core.h"
 
-#define SWAY 1.5f          /* slow turns of the head, as a share of the small fast ones */
-#define LIFT 0.03f         /* the head on a full breath, as a share of the distance of the eyes */
-#define BROWS 0.06f        /* mean height of brows at rest; they move from 0 to twice as much */
-#define BROWS_FOLLOW 0.15f /* how far brows go up with the lids */
+#define IDLE_RAD (0.8f * NOH_DEGREE) /* small idle motions of the head */
+#define SWAY 1.5f                    /* slow turns of the head, as a share of the small fast ones */
+#define LIFT 0.03f                   /* the head on a full breath, as a share of the distance of the eyes */
+#define BROWS 0.06f                  /* mean height of brows at rest; they move from 0 to twice as much */
+#define BROWS_FOLLOW 0.15f           /* how far brows go up with the lids */
 #define BROWS_SPEAK 0.5f
 #define NOD (3.5f * NOH_DEGREE)
 
@@ -51,15 +52,14 @@ static void turn_about(uint32_t axis, float angle, float q[4])
     q[3] = cosine;
 }
 
-void noh_face_head_rotation(const noh_face *face, const noh_face_desc *desc, float angles[3], float rotation[4])
+void noh_face_head_rotation(const noh_face *face, float angles[3], float rotation[4])
 {
     static const uint32_t periods[3] = { 62400u, 81600u, 100800u }, sways[3] = { 249600u, 297600u, 350400u };
-    const float size = noh_face_or(desc->idle_rad, 0.8f * NOH_DEGREE);
     float part[4];
     for (uint32_t i = 0; i < 3; i++) {
         angles[i] = i < 2u ? noh_face_spring_at(&face->head[i], (uint32_t)face->clock) : 0.0f;
         if (is_still(face)) continue;
-        angles[i] += size *
+        angles[i] += IDLE_RAD *
                      (wave(face, NOH_FACE_IDLE + i, periods[i]) + SWAY * wave(face, NOH_FACE_SWAY + i, sways[i]));
     }
     angles[1] -= NOD * face->speech.nod;
@@ -78,7 +78,7 @@ void noh_face_drift(const noh_face *face, const noh_face_desc *desc, float moved
     for (uint32_t i = 0; i < 3; i++) {
         moved[i] = is_still(face) ? 0.0f : shares[i] * apart * wave(face, NOH_FACE_DRIFT + i, periods[i]);
     }
-    moved[1] += LIFT * apart * noh_face_breath(face, desc);
+    moved[1] += LIFT * apart * noh_face_breath(face);
 }
 
 void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ago, float rotation[4], float moved[3])
@@ -92,7 +92,7 @@ void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ag
         if (now - then.head[i].start > UINT32_MAX / 2u) then.head[i].start = now; /* it had not begun */
     }
     if (now - then.breath_start > UINT32_MAX / 2u) then.breath_start = now;
-    noh_face_head_rotation(&then, desc, angles, rotation);
+    noh_face_head_rotation(&then, angles, rotation);
     noh_face_drift(&then, desc, moved);
 }
 
@@ -101,15 +101,13 @@ void noh_face_whole(const noh_face *face, const noh_face_desc *desc, uint32_t ag
 /* Angles of an eye to the point it looks at, in the head's space. */
 static void aim(const noh_face_desc *desc, const float rotation[4], const float point[3], int eye, float out[2])
 {
-    const float yaw_max = noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE);
     float back[4], way[3];
     noh_quat_conjugate(rotation, back);
     noh_quat_rotate(back, point, way);
     for (int i = 0; i < 3; i++) way[i] -= desc->eyes[eye][i];
-    out[0] = noh_clamped(noh_atan2(way[0], way[2]), -yaw_max, yaw_max);
-    out[1] = noh_clamped(noh_atan2(way[1], noh_sqrt(way[0] * way[0] + way[2] * way[2])),
-                         -noh_face_or(desc->down_max, 30.0f * NOH_DEGREE),
-                         noh_face_or(desc->up_max, 25.0f * NOH_DEGREE));
+    out[0] = noh_clamped(noh_atan2(way[0], way[2]), -NOH_EYE_YAW_MAX, NOH_EYE_YAW_MAX);
+    out[1] = noh_clamped(noh_atan2(way[1], noh_sqrt(way[0] * way[0] + way[2] * way[2])), -NOH_EYE_DOWN_MAX,
+                         NOH_EYE_UP_MAX);
 }
 
 static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_pose *pose)
@@ -129,14 +127,14 @@ static void aim_both(const noh_face *face, const noh_face_desc *desc, noh_face_p
 /* ---- the rest ---- */
 
 /* In for two fifths of a breath, out for three fifths. */
-float noh_face_breath(const noh_face *face, const noh_face_desc *desc)
+float noh_face_breath(const noh_face *face)
 {
     float t, sine, cosine;
-    NOH_ASSERT(face && desc);
+    NOH_ASSERT(face);
     if (face->flags & (NOH_FACE_CALM | NOH_FACE_NO_BREATH)) {
         return 0.0f;
     }
-    t = (float)((uint32_t)face->clock - face->breath_start) / (float)noh_face_breath_ticks(face, desc, face->breaths);
+    t = (float)((uint32_t)face->clock - face->breath_start) / (float)noh_face_breath_ticks(face, face->breaths);
     noh_sin_cos(3.14159265f * (t < 0.4f ? t / 0.4f : 1.0f - (t - 0.4f) / 0.6f), &sine, &cosine);
     return 0.5f - 0.5f * cosine;
 }
@@ -166,13 +164,13 @@ void noh_face_pose_of(const noh_face *face, const noh_face_desc *desc, noh_face_
     float pitch;
     NOH_ASSERT(face && desc && pose);
     memset(pose, 0, sizeof *pose);
-    noh_face_head_rotation(face, desc, pose->head_angles, pose->head);
+    noh_face_head_rotation(face, pose->head_angles, pose->head);
     aim_both(face, desc, pose);
     pitch = 0.5f * (pose->eyes[0][1] + pose->eyes[1][1]);
-    pose->lids_down = noh_clamped(-pitch / noh_face_or(desc->down_max, 30.0f * NOH_DEGREE), 0.0f, 1.0f);
-    pose->lids_up = noh_clamped(pitch / noh_face_or(desc->up_max, 25.0f * NOH_DEGREE), 0.0f, 1.0f);
+    pose->lids_down = noh_clamped(-pitch / NOH_EYE_DOWN_MAX, 0.0f, 1.0f);
+    pose->lids_up = noh_clamped(pitch / NOH_EYE_UP_MAX, 0.0f, 1.0f);
     pose->blink = noh_face_blink_at(face);
-    pose->breath = noh_face_breath(face, desc);
+    pose->breath = noh_face_breath(face);
     pose->brows = brows_at(face, pose->lids_up);
     show_emotions(face, pose->emotions);
 }

@@ -27,24 +27,21 @@ static float share(float angle, float limit)
     return unit(angle / limit);
 }
 
-static void eye_channels(const noh_face_pose *pose, const noh_face_desc *desc, float *channels)
+static void eye_channels(const noh_face_pose *pose, float *channels)
 {
-    const float yaw = noh_face_or(desc->yaw_max, 35.0f * NOH_DEGREE),
-                up = noh_face_or(desc->up_max, 25.0f * NOH_DEGREE);
-    const float down = noh_face_or(desc->down_max, 30.0f * NOH_DEGREE);
     for (int eye = 0; eye < 2; eye++) {
         const float out = eye == 0 ? pose->eyes[0][0] : -pose->eyes[1][0];
         float *c = channels + NOH_CHANNEL_EYES + 4 * eye;
-        c[0] = share(pose->eyes[eye][1], up);
-        c[1] = share(-pose->eyes[eye][1], down);
-        c[2] = share(out, yaw);
-        c[3] = share(-out, yaw);
+        c[0] = share(pose->eyes[eye][1], NOH_EYE_UP_MAX);
+        c[1] = share(-pose->eyes[eye][1], NOH_EYE_DOWN_MAX);
+        c[2] = share(out, NOH_EYE_YAW_MAX);
+        c[3] = share(-out, NOH_EYE_YAW_MAX);
     }
 }
 
-static void upper_channels(const noh_face_pose *pose, const noh_face_desc *desc, float *channels)
+static void upper_channels(const noh_face_pose *pose, float *channels)
 {
-    eye_channels(pose, desc, channels);
+    eye_channels(pose, channels);
     channels[NOH_CHANNEL_BLINK_LEFT] = channels[NOH_CHANNEL_BLINK_RIGHT] = pose->blink;
     channels[NOH_CHANNEL_LIDS_UP] = pose->lids_up * (1.0f - pose->blink);
     channels[NOH_CHANNEL_LIDS_DOWN] = pose->lids_down;
@@ -67,13 +64,12 @@ static float speech_channels(const float *visemes, float *channels)
     return unit(shut + sum);
 }
 
-void noh_face_channels(const noh_face_pose *pose, const noh_face_desc *desc, const float *visemes, noh_mouth_rule rule,
-                       float *channels)
+void noh_face_channels(const noh_face_pose *pose, const float *visemes, noh_mouth_rule rule, float *channels)
 {
     float moves = 0.0f, left, shut;
-    NOH_ASSERT((!pose || desc) && channels);
+    NOH_ASSERT(channels);
     memset(channels, 0, NOH_CHANNEL_COUNT * sizeof *channels);
-    if (pose) upper_channels(pose, desc, channels);
+    if (pose) upper_channels(pose, channels);
     if (visemes) moves = speech_channels(visemes, channels);
     shut = channels[NOH_CHANNEL_VISEMES + NOH_VISEME_PP] + channels[NOH_CHANNEL_VISEMES + NOH_VISEME_FF];
     left = rule == NOH_MOUTH_NONE    ? 1.0f

@@ -14,6 +14,8 @@
 #include "core/base/name_internal.h"
 #include "life/reach/rig_internal.h"
 
+#define HEAD_ANGLE_MAX (NOH_PI / 3.0f)
+#define HEAD_SPEED 4.0f /* radians a second */
 #define EYES_ANGLE_MAX (35.0f * NOH_PI / 180.0f)
 #define EYES_SPEED 12.0f /* radians per second */
 #define HEAD_PART 0.75f  /* share of the turn, if eyes take the rest */
@@ -272,22 +274,22 @@ static void aim_eyes(const noh_gaze *g, const noh_gaze_rig *rig, const noh_skele
 static void turn_eyes(noh_gaze *g, const noh_gaze_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
                       const float *target, float seconds, int begins)
 {
-    static const noh_ik_look_desc desc = { EYES_ANGLE_MAX, 0.0f, EYES_SPEED };
     face_now n;
     float toward[3] = { 0.0f, 0.0f, 0.0f }, unused[4];
     read_face(rig, skeleton, local, &n);
     if (begins) noh_ik_look_init(&g->eyes, n.ahead);
     if (target) noh_sub3(target, n.middle, toward);
-    noh_ik_look_step(&g->eyes, &desc, n.ahead, target && g->head.follows ? toward : NULL, seconds, unused);
+    noh_ik_look_step(&g->eyes, EYES_ANGLE_MAX, EYES_SPEED, n.ahead, target && g->head.follows ? toward : NULL, seconds,
+                     unused);
     aim_eyes(g, rig, skeleton, local, &n);
 }
 
-void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_desc *desc, const noh_skeleton *skeleton,
-                   noh_transform *local, const float *target, float seconds, int cut)
+void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
+                   const float *target, float seconds, int cut)
 {
     face_now n;
     float toward[3] = { 0.0f, 0.0f, 0.0f }, turn[4], part[4];
-    NOH_ASSERT(gaze && rig && desc && skeleton && local && seconds >= 0.0f && rig->last < skeleton->joint_count);
+    NOH_ASSERT(gaze && rig && skeleton && local && seconds >= 0.0f && rig->last < skeleton->joint_count);
     const int begins = cut || !gaze->begun, has_eyes = rig->eyes[0] != NOH_NONE;
     seconds = begins ? ENOUGH_SECONDS : seconds;
     gaze->begun = 1;
@@ -297,7 +299,7 @@ void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_de
         noh_ik_look_init(&gaze->eyes, n.ahead);
     }
     if (target) noh_sub3(target, n.middle, toward);
-    noh_ik_look_step(&gaze->head, desc, n.ahead, target ? toward : NULL, seconds, turn);
+    noh_ik_look_step(&gaze->head, HEAD_ANGLE_MAX, HEAD_SPEED, n.ahead, target ? toward : NULL, seconds, turn);
     look_near(gaze, rig->size, gaze->head.follows ? toward : NULL, seconds, begins);
     if (has_eyes) noh_ik_share(turn, HEAD_PART, turn);
     for (uint32_t i = 0; i < rig->joint_count; i++) {

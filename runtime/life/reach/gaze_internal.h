@@ -16,22 +16,21 @@ void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);
 /* Advance time and turn the look towards a target along a great circle, never beyond the cone. Targets outside the cone
  * are approached as far as the cone allows. Within 20 degrees of straight behind, the look stays over the shoulder from
  * which the target came, instead of turning from side to side with every small motion.
- * ranges   seconds >= 0
+ * ranges   angle_max, from ahead: up to a right angle; speed_max in radians a second; seconds >= 0
  * ahead    unit; of the animated pose, in the space of the head's parent
  * target   from the head, any length; NULL or 0: no target
  * rotation turns ahead to the look
  * source   Granberg 2009, chapter 11, "Look-At Inverse Kinematics" */
-void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
+void noh_ik_look_step(noh_ik_look *look, float angle_max, float speed_max, const float ahead[3], const float *target,
                       float seconds, float rotation[4]);
 
 /* Advance time, and turn a pose.
- * desc     of the head; zeros: as in body.h
  * local    [joint_count], from a clip; changes the rotations of the rig's joints and eyes
  * target   in model space, finite; NULL: ahead
  * seconds  since the last step, 0..
  * cut      1: look there immediately, as a new noh_gaze does */
-void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_ik_look_desc *desc, const noh_skeleton *skeleton,
-                   noh_transform *local, const float *target, float seconds, int cut);
+void noh_gaze_step(noh_gaze *gaze, const noh_gaze_rig *rig, const noh_skeleton *skeleton, noh_transform *local,
+                   const float *target, float seconds, int cut);
 
 /* Check a state that comes from outside.
  * returns  NULL if it may be used, else a constant message */

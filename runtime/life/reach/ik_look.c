@@ -65,9 +65,8 @@ static void keep_side(noh_ik_look *look, const float ahead[3], float target[3])
     }
 }
 
-/* Where to look: at the target, or towards it as far as the cone allows; ahead if there is none or it was released. */
-static void wanted_of(noh_ik_look *look, float angle_max, float release_max, const float ahead[3], const float *target,
-                      float wanted[3])
+/* Where to look: at the target, or towards it as far as the cone allows; ahead if there is none. */
+static void wanted_of(noh_ik_look *look, float angle_max, const float ahead[3], const float *target, float wanted[3])
 {
     float direction[3] = { 0.0f, 0.0f, 0.0f }, angle;
     if (target) memcpy(direction, target, sizeof direction);
@@ -78,11 +77,6 @@ static void wanted_of(noh_ik_look *look, float angle_max, float release_max, con
     }
     noh_normalize3(direction, ahead);
     angle = angle_between(ahead, direction);
-    if (angle > (look->follows ? release_max : angle_max) && release_max < NOH_PI) {
-        look->follows = LOOKS_AHEAD;
-        memcpy(wanted, ahead, sizeof direction);
-        return;
-    }
     if (angle > BEHIND_RAD && angle > angle_max) {
         keep_side(look, ahead, direction);
     } else {
@@ -91,42 +85,13 @@ static void wanted_of(noh_ik_look *look, float angle_max, float release_max, con
     turn_towards(ahead, direction, angle_max, wanted);
 }
 
-/* Whether the short way from one direction to another leaves a cone that is wider than a right angle: whether it comes
- * nearer to straight behind than the cone's edge. */
-static int leads_behind(const float from[3], const float to[3], const float ahead[3], float angle_max)
-{
-    float normal[3], nearest[3], a[3], b[3];
-    if (angle_max <= 0.5f * NOH_PI) return 0;
-    noh_cross3(from, to, normal);
-    if (!(noh_dot3(normal, normal) > 1e-12f)) return noh_dot3(from, to) < 0.0f;
-    noh_normalize3(normal, up);
-    noh_reject3(ahead, normal, nearest);
-    if (!(noh_dot3(nearest, nearest) > 1e-12f)) return 0;
-    noh_normalize3(nearest, ahead);
-    for (int i = 0; i < 3; i++) nearest[i] = -nearest[i];
-    noh_cross3(from, nearest, a);
-    noh_cross3(nearest, to, b);
-    return noh_dot3(a, normal) > 0.0f && noh_dot3(b, normal) > 0.0f &&
-           angle_between(ahead, nearest) > angle_max + 1e-4f;
-}
-
-void noh_ik_look_step(noh_ik_look *look, const noh_ik_look_desc *desc, const float ahead[3], const float *target,
+void noh_ik_look_step(noh_ik_look *look, float angle_max, float speed_max, const float ahead[3], const float *target,
                       float seconds, float rotation[4])
 {
-    const float angle_max = desc->angle_max > 0.0f ? desc->angle_max : NOH_PI / 3.0f;
-    const float release_max = desc->release_max > 0.0f ? desc->release_max : NOH_PI;
-    const float speed_max = desc->speed_max > 0.0f ? desc->speed_max : 4.0f;
     float wanted[3], next[3];
-    NOH_ASSERT(look && ahead && rotation && seconds >= 0.0f && angle_max <= 1.0001f * NOH_PI);
-    NOH_ASSERT(release_max >= angle_max);
-    wanted_of(look, angle_max, release_max, ahead, target, wanted);
-    if (leads_behind(look->direction, wanted, ahead, angle_max)) {
-        const float back = angle_between(look->direction, ahead), step = speed_max * seconds;
-        turn_towards(look->direction, ahead, step, next);
-        if (step > back) turn_towards(next, wanted, step - back, next);
-    } else {
-        turn_towards(look->direction, wanted, speed_max * seconds, next);
-    }
+    NOH_ASSERT(look && ahead && rotation && seconds >= 0.0f);
+    wanted_of(look, angle_max, ahead, target, wanted);
+    turn_towards(look->direction, wanted, speed_max * seconds, next);
     turn_towards(ahead, next, angle_max, look->direction); /* the direction ahead may have moved */
     noh_quat_between(ahead, look->direction, up, rotation);
 }

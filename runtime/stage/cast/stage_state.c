@@ -99,6 +99,7 @@ static int is_gone(const reader *r, const noh_stage_kind *k, uint32_t index)
     nobody.generation = a->generation;
     nobody.next_free = a->next_free;
     return memcmp(&nobody, a, sizeof nobody) == 0 &&
+           is_zero(in_copy(r, k->characters + index * k->character_bytes), k->character_bytes) &&
            is_zero(in_copy(r, k->held + index * held), held * sizeof *k->held) &&
            is_zero(in_copy(r, source->states + index * source->stride), source->stride) &&
            is_zero(in_copy(r, k->modifier_states + index * k->modifier_bytes), k->modifier_bytes);

@@ -147,6 +147,5 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
     stage->head->step_ticks = ticks;
     stage->phase = NOH_STAGE_IDLE;
     if (!NOH_PAGE) noh_stage_use_clips(stage);
-    if (stage->stats.events > stage->stats.events_high) stage->stats.events_high = stage->stats.events;
     return NOH_OK;
 }

@@ -295,7 +295,7 @@ static void move_targets(const noh_stage_kind *k, noh_stage_face *f, noh_modifie
         noh_face_four_visemes(&four, two);
         says = two;
     }
-    noh_face_channels(pose, &shared->desc, says, NOH_MOUTH_NONE, channels);
+    noh_face_channels(pose, says, NOH_MOUTH_NONE, channels);
     const int joints = turns(w, &shared->eyes[0]);
     if (joints) memset(channels + NOH_CHANNEL_EYES, 0, 8 * sizeof *channels);
     follow_with_lids(shared, joints, pose, channels);
@@ -384,7 +384,7 @@ void noh_stage_run_face(noh_modifier_work *w)
     neck_space n;
     float moved[3], turned[3] = { 0.0f, 0.0f, 0.0f };
     live(k, f, w->clock);
-    breathe(k, w, noh_face_breath(&f->face, &noh_stage_face_kind_of(k)->desc));
+    breathe(k, w, noh_face_breath(&f->face));
     neck_space_of(k, w, &n);
     look(w->stage, k, f, w, &n);
     speak(noh_stage_face_kind_of(k), f, w);

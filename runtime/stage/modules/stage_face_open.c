@@ -586,7 +586,7 @@ noh_result noh_actor_set_activity(noh_stage *stage, noh_actor actor, noh_activit
     noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if ((unsigned)activity >= NOH_ACTIVITY_COUNT) return noh_fail(error, NOH_ERR_ARG, "no such activity", activity, 0);
-    noh_face_set_activity(&f->face, &noh_stage_face_kind_of(k)->desc, activity);
+    noh_face_set_activity(&f->face, activity);
     return NOH_OK;
 }
 
@@ -612,7 +612,7 @@ noh_result noh_actor_set_face_flags(noh_stage *stage, noh_actor actor, uint32_t 
     noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
     if (!f) return result;
     if (flags > NOH_FACE_FLAGS) return noh_fail(error, NOH_ERR_ARG, "flags of a face: unknown bits", 0, 0);
-    noh_face_set_flags(&f->face, &noh_stage_face_kind_of(k)->desc, flags);
+    noh_face_set_flags(&f->face, flags);
     return NOH_OK;
 }
 
@@ -630,7 +630,7 @@ noh_result noh_actor_blink(noh_stage *stage, noh_actor actor, noh_error *error)
     noh_stage_kind *k;
     noh_result result;
     noh_stage_face *f = noh_stage_change_face(stage, actor, &k, &result, error);
-    if (f) noh_face_blink(&f->face, &noh_stage_face_kind_of(k)->desc);
+    if (f) noh_face_blink(&f->face);
     return result;
 }
 

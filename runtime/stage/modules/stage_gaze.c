@@ -33,13 +33,13 @@ static float seconds_of(const noh_modifier_work *w)
 
 static void look(noh_modifier_work *w)
 {
-    const noh_kind_gaze *shared = w->user;
+    const noh_gaze_rig *rig = w->user;
     const noh_stage_kind *k = w->kind;
     noh_gaze *g = w->state;
     float target[3];
-    if (k->modules[NOH_SLOT_FACE].type || shared->rig.last >= w->joint_count) return;
+    if (k->modules[NOH_SLOT_FACE].type || rig->last >= w->joint_count) return;
     to_model(w, g->point, target);
-    noh_gaze_step(g, &shared->rig, &shared->head, w->skeleton, w->local, g->looks ? target : NULL, seconds_of(w),
+    noh_gaze_step(g, rig, w->skeleton, w->local, g->looks ? target : NULL, seconds_of(w),
                   w->cut || w->ticks > SKIP_TICKS);
 }
 
@@ -56,14 +56,14 @@ static void shift_gaze(const void *user, void *state, const float by[3])
     noh_sub3(point, by, point);
 }
 
-noh_modifier noh_gaze_modifier(const noh_kind_gaze *gaze)
+noh_modifier noh_gaze_modifier(const noh_gaze_rig *rig)
 {
-    NOH_ASSERT(gaze);
+    NOH_ASSERT(rig);
     return (noh_modifier){ .name = "gaze",
                            .modify = look,
                            .check = check_gaze,
                            .shift = shift_gaze,
-                           .user = gaze,
+                           .user = rig,
                            .state_bytes = sizeof(noh_gaze) };
 }
 

@@ -190,11 +190,6 @@ static noh_result clip_set_check(noh_error *e)
     DESC(noh_clip_set);
     return noh_clip_set_check(&desc, e);
 }
-static noh_result skeleton_check(noh_error *e)
-{
-    DESC(noh_skeleton);
-    return noh_skeleton_check(&desc, e);
-}
 static noh_result schedule_init(noh_error *e)
 {
     noh_schedule q;
@@ -315,7 +310,6 @@ static const struct {
     ROW(clip_init, VERSION),      ROW(cache_size, ARG),
     ROW(cache_init, ARG),         ROW(set_size, ARG),
     ROW(set_init, ARG),           ROW(clip_set_check, ARG),
-    ROW(skeleton_check, ARG),     
     ROW(schedule_init, ARG),      ROW(settings_check, ARG),
     ROW(table_check, ARG),        ROW(pools_init, ARG),
     ROW(triangulate, DATA),       ROW(controller_init, ARG),

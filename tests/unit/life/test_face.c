@@ -39,7 +39,7 @@ static uint32_t blink_hour(uint32_t seed, noh_activity activity, uint32_t flags,
     noh_face face = face_of(seed, flags);
     uint32_t count = 0;
     float before = 0.0f;
-    noh_face_set_activity(&face, &desc, activity);
+    noh_face_set_activity(&face, activity);
     for (uint32_t i = 0; i < HOUR_STEPS; i++) {
         float now;
         noh_face_step(&face, &desc, STEP);
@@ -72,7 +72,7 @@ static uint32_t remembered_hour(uint32_t seed, noh_activity activity, double *st
 {
     noh_face face = face_of(seed, 0);
     uint32_t count = 0, before;
-    noh_face_set_activity(&face, &desc, activity);
+    noh_face_set_activity(&face, activity);
     before = face.blink_start;
     for (uint32_t i = 0; i < 36000u; i++) {
         noh_face_step(&face, &desc, SECOND / 10u);
@@ -253,9 +253,9 @@ static void emotions_of_four_channels_may_be_called(void **state)
     assert_true(pose.emotions[NOH_EMOTION_FEAR] == 0.5f);
     noh_face_step(&face, &desc, SECOND);
     assert_true(fabsf(pose_of(&face).emotions[NOH_EMOTION_FEAR] - 0.25f) < 1e-5f);
-    noh_face_set_flags(&face, &desc, 0);
+    noh_face_set_flags(&face, 0);
     assert_true(pose_of(&face).emotions[NOH_EMOTION_FEAR] == 0.0f);
-    noh_face_set_flags(&face, &desc, NOH_FACE_FOUR);
+    noh_face_set_flags(&face, NOH_FACE_FOUR);
     noh_face_skip(&face, &desc, 100000ll * SECOND);
     noh_face_step(&face, &desc, 2u * SECOND);
     pose = pose_of(&calm);
@@ -274,7 +274,7 @@ static void lids_shut_and_open_again(void **state)
     double shut = 0.0, down = 0.0, up = 0.0;
     float before = 0.0f;
     (void)state;
-    noh_face_blink(&face, &desc);
+    noh_face_blink(&face);
     for (uint32_t i = 0; i < 500; i++) {
         float now;
         noh_face_step(&face, &desc, SECOND / 1000u);
@@ -465,8 +465,8 @@ static noh_face play(uint32_t cut)
         if (second % 11u == 0) noh_face_look_at(&face, &desc, second % 22u ? point : NULL, NULL);
         if (second % 7u == 3u)
             noh_face_set_emotion(&face, (noh_emotion)(second % 7u), 0.7f, 0, second % 2u ? 9600 : 0, 0, NULL);
-        if (second % 17u == 5u) noh_face_set_activity(&face, &desc, (noh_activity)(second % 3u));
-        if (second % 13u == 6u) noh_face_blink(&face, &desc);
+        if (second % 17u == 5u) noh_face_set_activity(&face, (noh_activity)(second % 3u));
+        if (second % 13u == 6u) noh_face_blink(&face);
         for (uint32_t left = SECOND; left;) {
             const uint32_t ticks = cut ? (left < cut ? left : cut) : left;
             noh_face_step(&face, &desc, ticks);
@@ -566,9 +566,9 @@ static void bad_values_are_refused(void **state)
     bad.eyes[0][0] = -0.1f;
     assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);
     bad = desc;
-    bad.yaw_max = -1.0f;
+    bad.head_yaw_max = -1.0f;
     assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);
-    assert_int_equal(error.where, 6 + 5);
+    assert_int_equal(error.where, 6);
     bad = desc;
     bad.eyes[1][2] = INFINITY;
     assert_int_equal(noh_face_init(&face, &bad, 1, 0, &error), NOH_ERR_ARG);

@@ -107,9 +107,8 @@ static void point_at(const body *b, float yaw, float pitch, float sizes, float t
 
 static void step_gaze(body *b, noh_gaze *g, const float *target, float seconds)
 {
-    static const noh_ik_look_desc desc = { 0.0f, 0.0f, 0.0f };
     pose_bind(b);
-    noh_gaze_step(g, &b->gaze, &desc, &b->joints, b->pose, target, seconds, 0);
+    noh_gaze_step(g, &b->gaze, &b->joints, b->pose, target, seconds, 0);
 }
 
 /* ---- rigs ---- */

@@ -77,9 +77,8 @@ static void close_figure(figure *f)
 
 static void step(figure *f, noh_gaze *g, const float *target, int cut)
 {
-    static const noh_ik_look_desc desc = { 0.0f, 0.0f, 0.0f };
     memcpy(f->pose, f->joints.bind_pose, sizeof f->pose);
-    noh_gaze_step(g, &f->rig, &desc, &f->joints, f->pose, target, FRAME, cut);
+    noh_gaze_step(g, &f->rig, &f->joints, f->pose, target, FRAME, cut);
 }
 
 static const char *name_of(const figure *f, uint32_t joint)

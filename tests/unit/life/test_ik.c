@@ -373,15 +373,16 @@ static void a_scaled_hinge_turns_as_far_as_an_unscaled_one(void **state)
 
 /* ---- looking ---- */
 
+#define CONE (float)(60.0 * DEGREE)
+
 static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
 
 /* Where a look ends that has all the time that it needs. */
 static double look_angle(float degrees, noh_ik_look *look, float rotation[4])
 {
-    const noh_ik_look_desc desc = { 0.0f, 0.0f, 0.0f };
     const float target[3] = { (float)sin((double)degrees * DEGREE), 0.0f, (float)cos((double)degrees * DEGREE) };
     float v[3];
-    noh_ik_look_step(look, &desc, ahead, target, 10.0f, rotation);
+    noh_ik_look_step(look, CONE, 4.0f, ahead, target, 10.0f, rotation);
     noh_quat_rotate(rotation, ahead, v);
     return atan2((double)v[0], (double)v[2]) / DEGREE;
 }
@@ -400,24 +401,6 @@ static void a_look_stays_in_its_cone(void **state)
     assert_true(fabs(look_angle(58.0f, &look, q) - 58.0) < 1e-3);
 }
 
-static void a_look_lets_go_where_it_is_asked_to(void **state)
-{
-    const noh_ik_look_desc desc = { 0.0f, (float)(80.0 * DEGREE), 0.0f };
-    static const float angles[][2] = { { 79.0f, 60.0f }, { 85.0f, 0.0f }, { 70.0f, 0.0f }, { 58.0f, 58.0f } };
-    noh_ik_look look;
-    (void)state;
-    noh_ik_look_init(&look, ahead);
-    (void)look_angle(20.0f, &look, (float[4]){ 0 });
-    for (int i = 0; i < 4; i++) {
-        const double at = (double)angles[i][0] * DEGREE;
-        const float target[3] = { (float)sin(at), 0.0f, (float)cos(at) };
-        float q[4], v[3];
-        noh_ik_look_step(&look, &desc, ahead, target, 10.0f, q);
-        noh_quat_rotate(q, ahead, v);
-        assert_true(fabs(atan2((double)v[0], (double)v[2]) / DEGREE - (double)angles[i][1]) < 1e-3);
-    }
-}
-
 /* Round about: min(angle, 60 degrees), continuous where the target enters and leaves the cone; behind it stays over the
  * shoulder where it came from, and changes sides once, 20 degrees past straight behind. */
 static void a_target_goes_round_a_look(void **state)
@@ -434,27 +417,6 @@ static void a_target_goes_round_a_look(void **state)
         }
     }
     (void)state;
-}
-
-/* From one side to the other a wide cone is crossed in front, never behind, at the limited speed. */
-static void a_wide_look_changes_sides_in_front(void **state)
-{
-    const noh_ik_look_desc desc = { (float)(130.0 * DEGREE), 0.0f, 2.0f };
-    noh_ik_look look;
-    (void)state;
-    noh_ik_look_init(&look, ahead);
-    for (int n = 0; n < 1000; n++) {
-        const double at = (n < 300 ? 120.0 : -125.0) * DEGREE;
-        const float target[3] = { (float)sin(at), 0.05f, (float)cos(at) };
-        float q[4], before[3];
-        double dot = 0.0;
-        memcpy(before, look.direction, sizeof before);
-        noh_ik_look_step(&look, &desc, ahead, target, 0.01f, q);
-        for (int i = 0; i < 3; i++) dot += (double)before[i] * (double)look.direction[i];
-        assert_true(acos(fmin(dot, 1.0)) <= 0.02 + 1e-3);
-        if (n == 299 || n == 999)
-            assert_true(fabs(atan2((double)look.direction[0], (double)look.direction[2]) - at) < 1e-3);
-    }
 }
 
 /* A target that is behind and moves from side to side swings the book's head about, from one limit to the other. */
@@ -482,7 +444,6 @@ static void a_target_behind_does_not_swing_the_head(void **state)
 
 static void a_look_turns_no_faster_than_it_can(void **state)
 {
-    const noh_ik_look_desc desc = { 0.0f, 0.0f, 2.0f };
     test_random random = test_random_from(6);
     noh_ik_look look;
     (void)state;
@@ -492,7 +453,7 @@ static void a_look_turns_no_faster_than_it_can(void **state)
         double dot = 0.0, front = 0.0;
         memcpy(before, look.direction, sizeof before);
         random_direction(&random, 1.0f, target);
-        noh_ik_look_step(&look, &desc, ahead, target, 0.01f, q);
+        noh_ik_look_step(&look, CONE, 2.0f, ahead, target, 0.01f, q);
         is_unit(q);
         for (int i = 0; i < 3; i++) {
             dot += (double)before[i] * (double)look.direction[i];
@@ -506,15 +467,14 @@ static void a_look_turns_no_faster_than_it_can(void **state)
 /* One step of a second and a hundred of a hundredth end at the same place. */
 static void a_look_does_not_depend_on_steps(void **state)
 {
-    const noh_ik_look_desc desc = { 0.0f, 0.0f, 0.5f };
     const float target[3] = { 0.6f, 0.3f, 0.7f };
     noh_ik_look one, many;
     float q[4];
     (void)state;
     noh_ik_look_init(&one, ahead);
     noh_ik_look_init(&many, ahead);
-    noh_ik_look_step(&one, &desc, ahead, target, 1.0f, q);
-    for (int n = 0; n < 100; n++) noh_ik_look_step(&many, &desc, ahead, target, 0.01f, q);
+    noh_ik_look_step(&one, CONE, 0.5f, ahead, target, 1.0f, q);
+    for (int n = 0; n < 100; n++) noh_ik_look_step(&many, CONE, 0.5f, ahead, target, 0.01f, q);
     assert_true(apart(one.direction, many.direction) < 1e-4);
 }
 
@@ -526,10 +486,9 @@ static void opposite_vectors_get_an_axis(void **state)
     (void)state;
     assert_true(isnan(axis[0] / sqrtf(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2])));
     for (int n = 0; n < 2; n++) {
-        const noh_ik_look_desc desc = { 3.14159265f, 3.14159265f, 1.0f };
         float q[4], v[3];
         noh_ik_look_init(&look, ahead);
-        noh_ik_look_step(&look, &desc, ahead, n ? behind : ahead, 10.0f, q);
+        noh_ik_look_step(&look, 3.14159265f, 1.0f, ahead, n ? behind : ahead, 10.0f, q);
         is_unit(q);
         noh_quat_rotate(q, ahead, v);
         assert_true(n ? v[2] < -0.99f : v[2] > 0.9999f);
@@ -544,7 +503,6 @@ static void aligned_vectors_turn_nothing(void **state)
     int bad = 0;
     (void)state;
     for (int n = 0; n < 10000; n++) {
-        const noh_ik_look_desc desc = { 0.0f, 0.0f, 0.0f };
         noh_ik_look look;
         float v[3], q[4], length;
         random_direction(&random, 2.0f, v);
@@ -552,7 +510,7 @@ static void aligned_vectors_turn_nothing(void **state)
         for (int i = 0; i < 3; i++) v[i] /= length;
         bad += isnan(acosf(v[0] * v[0] + v[1] * v[1] + v[2] * v[2])) != 0;
         noh_ik_look_init(&look, v);
-        noh_ik_look_step(&look, &desc, v, v, 1.0f, q);
+        noh_ik_look_step(&look, CONE, 4.0f, v, v, 1.0f, q);
         is_unit(q);
         assert_true(fabs((double)q[3]) > 0.999999);
     }
@@ -590,9 +548,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(a_scaled_hinge_turns_as_far_as_an_unscaled_one),
         cmocka_unit_test(opposite_vectors_get_an_axis),
         cmocka_unit_test(a_look_stays_in_its_cone),
-        cmocka_unit_test(a_look_lets_go_where_it_is_asked_to),
         cmocka_unit_test(a_target_goes_round_a_look),
-        cmocka_unit_test(a_wide_look_changes_sides_in_front),
         cmocka_unit_test(a_target_behind_does_not_swing_the_head),
         cmocka_unit_test(a_look_turns_no_faster_than_it_can),
         cmocka_unit_test(a_look_does_not_depend_on_steps),

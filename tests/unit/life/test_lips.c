@@ -277,7 +277,6 @@ typedef struct worst {
 static void weigh(const head *h, const noh_speech *s, int64_t tick, uint32_t emotion, noh_mouth_rule rule,
                   float *weights)
 {
-    static const noh_face_desc desc = { .eyes = { { 0.03f, 0.1f, 0.1f }, { -0.03f, 0.1f, 0.1f } } };
     float visemes[NOH_VISEME_COUNT], channels[NOH_CHANNEL_COUNT];
     noh_face_pose pose;
     memset(&pose, 0, sizeof pose);
@@ -286,7 +285,7 @@ static void weigh(const head *h, const noh_speech *s, int64_t tick, uint32_t emo
     pose.breath = 1.0f;
     if (emotion < NOH_EMOTION_COUNT) pose.emotions[emotion] = 1.0f;
     noh_speech_visemes(s, tick, visemes);
-    noh_face_channels(&pose, &desc, visemes, rule, channels);
+    noh_face_channels(&pose, visemes, rule, channels);
     noh_face_apply(h->links, h->link_count, channels, weights);
 }
 

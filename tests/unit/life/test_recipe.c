@@ -11,8 +11,6 @@
 
 #define LINKS 512u
 
-static const noh_face_desc desc = { .eyes = { { 0.032f, 0.09f, 0.08f }, { -0.032f, 0.09f, 0.08f } } };
-
 static noh_face_pose at_rest(void)
 {
     noh_face_pose pose;
@@ -189,7 +187,7 @@ static void eyes_move_their_four_channels(void **state)
     pose.eyes[1][0] = 17.5f * degree;
     pose.eyes[0][1] = -15.0f * degree;
     pose.eyes[1][1] = 25.0f * degree;
-    noh_face_channels(&pose, &desc, NULL, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(&pose, NULL, NOH_MOUTH_BLEND, channels);
     assert_true(fabsf(channels[NOH_CHANNEL_EYES + 1] - 0.5f) < 1e-5f && channels[NOH_CHANNEL_EYES] == 0.0f);
     assert_true(fabsf(channels[NOH_CHANNEL_EYES + 2] - 0.5f) < 1e-5f && channels[NOH_CHANNEL_EYES + 3] == 0.0f);
     assert_true(fabsf(channels[NOH_CHANNEL_EYES + 4] - 1.0f) < 1e-5f && channels[NOH_CHANNEL_EYES + 5] == 0.0f);
@@ -205,7 +203,7 @@ static void shut_lips_win(void **state)
     visemes[NOH_VISEME_PP] = 1.0f;
     visemes[NOH_VISEME_AA] = 0.8f;
     for (int rule = NOH_MOUTH_BLEND; rule <= NOH_MOUTH_NONE; rule++) {
-        noh_face_channels(&pose, &desc, visemes, (noh_mouth_rule)rule, channels);
+        noh_face_channels(&pose, visemes, (noh_mouth_rule)rule, channels);
         assert_true(channels[NOH_CHANNEL_VISEMES + NOH_VISEME_PP] == 1.0f);
         assert_true(channels[NOH_CHANNEL_VISEMES + NOH_VISEME_AA] == 0.0f);
         assert_true(channels[NOH_CHANNEL_MOUTH + NOH_EMOTION_SURPRISE] == 0.0f);
@@ -221,13 +219,13 @@ static void speech_and_emotion_share_the_mouth_by_rule(void **state)
     (void)state;
     pose.emotions[NOH_EMOTION_JOY] = 0.8f;
     visemes[NOH_VISEME_IH] = 0.25f;
-    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(&pose, visemes, NOH_MOUTH_BLEND, channels);
     assert_true(fabsf(channels[joy] - 0.7f) < 1e-6f);
-    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_BLOCK, channels);
+    noh_face_channels(&pose, visemes, NOH_MOUTH_BLOCK, channels);
     assert_true(channels[joy] == 0.0f);
-    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_NONE, channels);
+    noh_face_channels(&pose, visemes, NOH_MOUTH_NONE, channels);
     assert_true(channels[joy] == 0.8f);
-    noh_face_channels(&pose, &desc, NULL, NOH_MOUTH_BLOCK, channels);
+    noh_face_channels(&pose, NULL, NOH_MOUTH_BLOCK, channels);
     assert_true(channels[joy] == 0.8f);
 }
 
@@ -244,7 +242,7 @@ static void share(noh_emotion emotion, float amount, const noh_face_rules *rules
     pose.lids_down = 0.5f;
     pose.eyes[0][0] = pose.eyes[1][0] = 0.3f;
     visemes[NOH_VISEME_AA] = 0.5f;
-    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_NONE, channels);
+    noh_face_channels(&pose, visemes, NOH_MOUTH_NONE, channels);
     noh_face_share(rules, moves, shut, channels);
 }
 
@@ -363,7 +361,7 @@ static void no_rule_opens_shut_lips(void **state)
             }
             pose.emotions[NOH_EMOTION_SURPRISE] = 1.0f;
             visemes[v] = 1.0f;
-            noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_NONE, channels);
+            noh_face_channels(&pose, visemes, NOH_MOUTH_NONE, channels);
             noh_face_share(&rules, 0.0f, 0.0f, channels);
             assert_true(channels[NOH_CHANNEL_VISEMES + v] == 1.0f);
             assert_true(channels[NOH_CHANNEL_MOUTH + NOH_EMOTION_SURPRISE] == 0.0f);
@@ -398,8 +396,8 @@ static void no_pose_is_a_face_at_rest(void **state)
     float channels[NOH_CHANNEL_COUNT], same[NOH_CHANNEL_COUNT], visemes[NOH_VISEME_COUNT] = { 0 };
     (void)state;
     visemes[NOH_VISEME_AA] = 0.5f;
-    noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_BLEND, channels);
-    noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, same);
+    noh_face_channels(&pose, visemes, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(NULL, visemes, NOH_MOUTH_BLEND, same);
     for (uint32_t i = 0; i < NOH_CHANNEL_COUNT; i++) assert_true(channels[i] == same[i]);
 }
 
@@ -413,7 +411,7 @@ static void mouth_shapes_are_at_most_one_together(void **state)
     for (int i = 0; i < 1000; i++) {
         float channels[NOH_CHANNEL_COUNT], visemes[NOH_VISEME_COUNT], sum = 0.0f;
         for (int v = 0; v < NOH_VISEME_COUNT; v++) visemes[v] = test_random_float(&r, -0.2f, 1.3f);
-        noh_face_channels(&pose, &desc, visemes, NOH_MOUTH_BLEND, channels);
+        noh_face_channels(&pose, visemes, NOH_MOUTH_BLEND, channels);
         for (int v = NOH_VISEME_TH; v < NOH_VISEME_COUNT; v++) {
             assert_true(channels[NOH_CHANNEL_VISEMES + v] >= 0.0f);
             sum += channels[NOH_CHANNEL_VISEMES + v];

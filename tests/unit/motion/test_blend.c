@@ -529,41 +529,6 @@ static void spaces_take_huge_coordinates(void **state)
 
 /* ---- skeleton, local to model ---- */
 
-static void bad_skeleton(const noh_skeleton *s, noh_result result, const char *what)
-{
-    noh_error error;
-    assert_int_equal(noh_skeleton_check(s, &error), result);
-    assert_non_null(strstr(error.what, what));
-}
-
-static void skeleton_fields_broken_in_turn(void **state)
-{
-    scene s;
-    noh_skeleton k;
-    float inverse[JOINTS * 12];
-    (void)state;
-    scene_open(&s);
-    memset(inverse, 0, sizeof inverse);
-    s.skeleton.inverse_bind = inverse;
-    assert_int_equal(noh_skeleton_check(&s.skeleton, NULL), NOH_OK);
-    k = s.skeleton, k.joint_count = 0;
-    bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.joint_count = NOH_JOINTS_MAX + 1u;
-    bad_skeleton(&k, NOH_ERR_ARG, "joint_count");
-    k = s.skeleton, k.parents = NULL;
-    bad_skeleton(&k, NOH_ERR_ARG, "parents");
-    k = s.skeleton, k.bind_pose = NULL;
-    bad_skeleton(&k, NOH_ERR_ARG, "bind_pose");
-    s.parents[3] = 3;
-    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "parent does not come before");
-    s.parents[3] = 1, s.bind[2].scale[0] = INFINITY;
-    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind pose is not finite");
-    s.bind[2].scale[0] = 1.0f, s.bind[2].rotation[0] = 0.5f;
-    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "bind rotation is not unit");
-    s.bind[2].rotation[0] = 0.0f, inverse[40] = NAN;
-    bad_skeleton(&s.skeleton, NOH_ERR_DATA, "inverse bind matrix is not finite");
-}
-
 /* A point of each joint, moved up the chain joint by joint in double precision. */
 static void climb(const scene *s, const noh_transform *pose, uint32_t joint, double p[3])
 {
@@ -644,7 +609,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(triangulations_are_delaunay),
         cmocka_unit_test(spaces_clamp_outside_and_where_degenerate),
         cmocka_unit_test(spaces_take_huge_coordinates),
-        cmocka_unit_test(skeleton_fields_broken_in_turn),
         cmocka_unit_test(model_is_parent_times_local),
         cmocka_unit_test(the_palette_is_model_times_inverse_bind),
         cmocka_unit_test(a_sum_covers_what_lies_below),

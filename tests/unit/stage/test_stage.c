@@ -205,6 +205,26 @@ static void a_stale_actor_is_an_error(void **state)
     cast_close(&c);
 }
 
+/* What an actor did leaves no byte in the state once it is despawned. */
+static void a_despawned_actor_leaves_nothing(void **state)
+{
+    uint64_t hashes[2];
+    (void)state;
+    for (int plays = 0; plays < 2; plays++) {
+        noh_actor actor;
+        cast c;
+        cast_open(&c);
+        cast_make(&c, NULL);
+        assert_int_equal(noh_stage_spawn(c.stage, MASKS, NULL, &actor, NULL), NOH_OK);
+        if (plays) assert_int_equal(noh_actor_play(c.stage, actor, 0, "speak", NULL, NULL), NOH_OK);
+        for (int i = 0; i < 10; i++) assert_int_equal(noh_stage_step(c.stage, CAST_STEP, NULL, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_stage_despawn(c.stage, actor, NULL), NOH_OK);
+        hashes[plays] = noh_stage_hash(c.stage);
+        cast_close(&c);
+    }
+    assert_true(hashes[0] == hashes[1]);
+}
+
 static void a_full_kind_refuses_to_spawn(void **state)
 {
     noh_actor actors[CAST_ACTORS], more;
@@ -369,7 +389,7 @@ static uint64_t bytes_of_puppets(cast *c, uint32_t first_enough, uint32_t second
 }
 
 /* Two kinds of one pack's clips, which have 30 frames a second: where half of them are enough for both, less is cached;
- * for one of them alone, each kind has clips of its own. The walk leads to the same place, but for what it is off
+ * for one of them alone, each kind has clips of its own. The walk leads to the same place, except for what it is off
  * between the frames that are left. */
 static void half_of_the_frames_may_be_enough(void **state)
 {
@@ -1286,6 +1306,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(desc_fields_broken_in_turn),
         cmocka_unit_test(a_byte_less_is_refused),
         cmocka_unit_test(a_stale_actor_is_an_error),
+        cmocka_unit_test(a_despawned_actor_leaves_nothing),
         cmocka_unit_test(a_full_kind_refuses_to_spawn),
         cmocka_unit_test(bad_places_are_refused),
         cmocka_unit_test(names_are_found),

@@ -208,7 +208,7 @@ static float ground_below(const void *user, const float from[3], float depth, fl
 typedef struct world {
     float moved[3];
     noh_kind_feet feet;
-    noh_kind_gaze gaze;
+    noh_gaze_rig gaze;
     noh_modifier parts[2];
     noh_kind_ragdoll ragdoll;
     noh_actor walks, falls, held;
@@ -228,7 +228,7 @@ static void world_open(world *w)
     assert_int_equal(noh_pack_skeleton_at(k->mesh, 0, &source.joints, NULL, NULL), NOH_OK);
     source.metres = 1.0f;
     assert_int_equal(noh_feet_rig_make(&source, &w->feet.rig, NULL), NOH_OK);
-    assert_int_equal(noh_gaze_rig_make(k->mesh, 0, &w->gaze.rig, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(k->mesh, 0, &w->gaze, NULL), NOH_OK);
     w->feet.ground.below = ground_below;
     w->feet.ground.user = w->moved;
     w->parts[0] = noh_gaze_modifier(&w->gaze);
@@ -368,7 +368,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(root_motion_goes_all_the_way), cmocka_unit_test(a_day_of_turns_adds_nothing),
         cmocka_unit_test(frames_are_the_same_anywhere), cmocka_unit_test(cameras_without_rests_are_taken),
-        cmocka_unit_test(a_shift_is_not_seen),           cmocka_unit_test(wild_views_are_refused),
+        cmocka_unit_test(a_shift_is_not_seen),          cmocka_unit_test(wild_views_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

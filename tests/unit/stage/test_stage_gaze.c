@@ -9,7 +9,7 @@
 
 typedef struct scene {
     cast cast;
-    noh_kind_gaze gaze;
+    noh_gaze_rig gaze;
     noh_reach_rig reach;
     noh_kind_face face;
     noh_modifier parts[2];
@@ -20,8 +20,8 @@ static void measure_rest(scene *s, const noh_skeleton *joints)
 {
     const noh_reach_arm *arm = &s->reach.arms[0];
     float elbow[3], hand[3], rotation[4];
-    noh_ragdoll_bind(joints, s->gaze.rig.joints[s->gaze.rig.joint_count - 1u], s->middle, rotation);
-    noh_quat_rotate(rotation, s->gaze.rig.middle, elbow);
+    noh_ragdoll_bind(joints, s->gaze.joints[s->gaze.joint_count - 1u], s->middle, rotation);
+    noh_quat_rotate(rotation, s->gaze.middle, elbow);
     for (int i = 0; i < 3; i++) s->middle[i] += elbow[i];
     noh_ragdoll_bind(joints, arm->upper, s->shoulder, rotation);
     noh_ragdoll_bind(joints, arm->fore, elbow, rotation);
@@ -40,7 +40,7 @@ static void open_scene(scene *s)
     source.pack = &s->cast.packs[0];
     source.metres = 1.0f;
     assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
-    if (noh_gaze_rig_make(source.pack, 0, &s->gaze.rig, &said) != NOH_OK) fail_msg("gaze: %s", said.what);
+    if (noh_gaze_rig_make(source.pack, 0, &s->gaze, &said) != NOH_OK) fail_msg("gaze: %s", said.what);
     if (noh_reach_rig_make(&source, &s->reach, &said) != NOH_OK) fail_msg("hands: %s", said.what);
     measure_rest(s, &source.joints);
     s->parts[0] = noh_gaze_modifier(&s->gaze);
@@ -114,11 +114,11 @@ static void measure(const scene *s, noh_actor actor, float *turned, float *off)
 {
     const noh_gaze *g = noh_actor_modifier(s->cast.stage, actor, 0);
     const noh_reach *r = noh_actor_modifier(s->cast.stage, actor, 1);
-    const uint32_t head = s->gaze.rig.joints[s->gaze.rig.joint_count - 1u];
+    const uint32_t head = s->gaze.joints[s->gaze.joint_count - 1u];
     float m[12], at[3], ahead[3], cosine = 0.0f, a = 0.0f, b = 0.0f;
     assert_int_equal(noh_actor_joint(s->cast.stage, actor, head, m, NULL), NOH_OK);
-    apply(m, s->gaze.rig.middle, 1.0f, at);
-    apply(m, s->gaze.rig.ahead, 0.0f, ahead);
+    apply(m, s->gaze.middle, 1.0f, at);
+    apply(m, s->gaze.ahead, 0.0f, ahead);
     for (int i = 0; i < 3; i++) {
         const float way = g->point[i] - at[i];
         cosine += way * ahead[i], a += way * way, b += ahead[i] * ahead[i];
@@ -134,7 +134,7 @@ static void puppets_look_and_reach(void **state)
     float worst[2] = { 0.0f, 0.0f };
     (void)state;
     open_scene(&s);
-    assert_int_equal(s.gaze.rig.eyes[0], NOH_NONE);
+    assert_int_equal(s.gaze.eyes[0], NOH_NONE);
     make_scene(&s, 3, 1);
     for (uint32_t f = 0; f < 240; f++) {
         for (uint32_t i = 0; i < 3; i++) point_actor(&s, noh_stage_actor_at(s.cast.stage, i), (float)f / 60.0f);
@@ -195,7 +195,7 @@ static void they_are_state_of_the_stage(void **state)
 
 static void head_of(const scene *s, float m[12])
 {
-    const uint32_t head = s->gaze.rig.joints[s->gaze.rig.joint_count - 1u];
+    const uint32_t head = s->gaze.joints[s->gaze.joint_count - 1u];
     assert_int_equal(noh_actor_joint(s->cast.stage, noh_stage_actor_at(s->cast.stage, 0), head, m, NULL), NOH_OK);
 }
 

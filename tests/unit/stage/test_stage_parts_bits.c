@@ -40,7 +40,7 @@ typedef struct show {
     noh_stage_plan plan;
     noh_stage *stage;
     void *memory;
-    noh_kind_gaze gaze;
+    noh_gaze_rig gaze;
     noh_kind_feet feet;
     noh_reach_rig arms;
     noh_spring_row rows[CHAINS];
@@ -126,7 +126,7 @@ static void make_parts(show *s)
     source.pack = &s->pack;
     source.metres = 1.0f;
     assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
-    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &s->gaze.rig, NULL), NOH_OK);
+    assert_int_equal(noh_gaze_rig_make(source.pack, 0, &s->gaze, NULL), NOH_OK);
     assert_int_equal(noh_feet_rig_make(&source, &s->feet.rig, NULL), NOH_OK);
     assert_int_equal(noh_reach_rig_make(&source, &s->arms, NULL), NOH_OK);
     s->feet.ground.world = &s->world;

@@ -399,7 +399,7 @@ static void modifiers_have_their_bytes(void **state)
 {
     stage_desc_file *f = read_cast("", "modifier gaze\nmodifier feet\nmodifier hands\nmodifier stand\n"
                                        "modifier hair state=528 scratch=96");
-    static const noh_kind_gaze gaze;
+    static const noh_gaze_rig gaze;
     static const noh_kind_feet feet;
     static const noh_reach_rig hands;
     const noh_modifier *m = f->kinds[0].modifiers;

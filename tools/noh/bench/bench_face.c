@@ -63,7 +63,7 @@ static void run_faces(void *self, uint32_t frame)
     for (uint32_t i = 0; i < FACES; i++) {
         noh_face_step(&b->faces[i], &b->desc, FRAME_TICKS);
         noh_face_pose_of(&b->faces[i], &b->desc, &b->pose);
-        noh_face_channels(&b->pose, &b->desc, NULL, NOH_MOUTH_NONE, b->channels);
+        noh_face_channels(&b->pose, NULL, NOH_MOUTH_NONE, b->channels);
         noh_face_share(&b->rules, 0.0f, 0.0f, b->channels);
         memset(b->weights, 0, b->target_count * sizeof *b->weights);
         noh_face_apply(b->links, b->link_count, b->channels, b->weights);

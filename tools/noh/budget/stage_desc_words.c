@@ -143,7 +143,7 @@ static void leave(noh_modifier_work *work)
 /* One of the library's by its name, or any name with state=BYTES and scratch=BYTES. */
 int desc_add_modifier(reader *r)
 {
-    static const noh_kind_gaze gaze;
+    static const noh_gaze_rig gaze;
     static const noh_kind_feet feet;
     static const noh_reach_rig hands;
     static const noh_kind_stand stand;

@@ -152,7 +152,7 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
     if (noh_pack_skeleton_at(kind->mesh, kind->skeleton, &source.joints, &header, error)) return 0;
     source.metres = (float)header->unit_cm / 100.0f;
     b->metre = 1.0f / source.metres;
-    if (b->looks && (kind->face.type || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k].rig, error) ||
+    if (b->looks && (kind->face.type || !noh_gaze_rig_make(kind->mesh, kind->skeleton, &b->gazes[k], error) ||
                      add_face(b, kind, k, error))) {
         b->parts[k][count++] = noh_gaze_modifier(&b->gazes[k]);
     }

@@ -29,7 +29,7 @@ typedef struct figure_body {
     noh_field field;
     float metre; /* in the pack's unit */
     /* of each kind */
-    noh_kind_gaze gazes[NOH_STAGE_KINDS_MAX];
+    noh_gaze_rig gazes[NOH_STAGE_KINDS_MAX];
     noh_kind_face faces[NOH_STAGE_KINDS_MAX]; /* where no joint turns: eyes that targets turn */
     int has_faces;
     noh_kind_feet feet[NOH_STAGE_KINDS_MAX];

@@ -242,7 +242,7 @@ static void fill_frame(const speech_track *t, const prosody *voice, const face_n
     const float size = QUIET + (1.0f - QUIET) * prosody_at(voice, tick_of_frame(frame)).loud;
     visemes_of(t, frame, visemes);
     for (uint32_t v = NOH_VISEME_AA; v <= NOH_VISEME_OU; v++) visemes[v] *= size;
-    noh_face_channels(NULL, NULL, visemes, NOH_MOUTH_BLEND, channels);
+    noh_face_channels(NULL, visemes, NOH_MOUTH_BLEND, channels);
     memcpy(weights, n->mesh.weights, n->mesh.header->target_count * sizeof *weights);
     noh_face_apply(n->links, n->link_count, channels, weights);
 }
