@@ -146,7 +146,7 @@ void noh_stored_weights(out float w[NOH_INFLUENCES])
     }
 }
 
-/* The weights of the joints used, but for the first, which is again 1 minus the others. */
+/* The weights of the joints used, except for the first, which is again 1 minus the others. */
 void noh_drawn_weights(out float drawn[NOH_DRAWN])
 {
     float stored[NOH_INFLUENCES], sum = 4194304.0;

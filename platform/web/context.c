@@ -36,7 +36,7 @@ static const GLubyte *GL_APIENTRY get_string_i(GLenum what, GLuint index)
     return (const GLubyte *)text;
 }
 
-/* Stands in for gl_api_load.c, which looks functions up by name and links all names. */
+/* Replaces gl_api_load.c, which looks functions up by name and links all names. */
 noh_result noh_gl_api_load(noh_gl_api *api, noh_gl_get_proc get, void *user, noh_error *error)
 {
     static const noh_gl_api table = {

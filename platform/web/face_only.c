@@ -1,4 +1,4 @@
-/* face_only.c: stands in for cast_body.c, hair.c, check_hair.c and check_springs.c in face.wasm: bodies keep the bind
+/* face_only.c: replaces cast_body.c, hair.c, check_hair.c and check_springs.c in face.wasm: bodies keep the bind
  * pose, and hair and springs of a pack are not read. */
 #include <emscripten.h>
 

@@ -1,4 +1,4 @@
-/* unclothed.c: stands in for stage_wear.c and stage_cover.c in the page's programs, whose characters wear no garments. */
+/* unclothed.c: replaces stage_wear.c and stage_cover.c in the page's programs, whose characters wear no garments. */
 #include "gl/stage/stage_gl_internal.h"
 #include "stage/cast/stage_internal.h"
 

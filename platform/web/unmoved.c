@@ -1,4 +1,4 @@
-/* unmoved.c: stands in for stage_slot.c, stage_gl_slot.c and stage_motion.c in the page's programs: all kinds stay, and
+/* unmoved.c: replaces stage_slot.c, stage_gl_slot.c and stage_motion.c in the page's programs: all kinds stay, and
  * nothing asks where vertices were. */
 #include "gl/stage/stage_gl_internal.h"
 #include "stage/cast/stage_internal.h"

@@ -1,4 +1,4 @@
-/* unread.c: stands in for check_match.c and check_terrain.c in the page's programs, which read neither chunk: they open
+/* unread.c: replaces check_match.c and check_terrain.c in the page's programs, which read neither chunk: they open
  * packs that have them, and check no more than their place and checksum. */
 #include "core/pack/check_internal.h"
 

@@ -1,4 +1,4 @@
-/* without_falls.c: stands in for cast_fall.c, push.c and vertices.c in face.wasm and body.wasm, which are smaller than
+/* without_falls.c: replaces cast_fall.c, push.c and vertices.c in face.wasm and body.wasm, which are smaller than
  * noh.wasm: figures do not fall, and no other renderer draws them. */
 #include <emscripten.h>
 

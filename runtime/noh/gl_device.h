@@ -413,7 +413,7 @@ typedef struct noh_gl {
 /* Load GL's functions through `get`, find out what the GPU can do, and set up `device` with an empty ledger. *gl must
  * stay where it is: `device` and all objects that are made with it point into it. Nothing is left on the GPU. In a
  * new context after a lost one call noh_gl_api_load for `api` instead: the ledger goes on.
- * errors  as noh_gl_api_load and noh_gl_caps_probe: *gl is then undefined, but for an empty log */
+ * errors  as noh_gl_api_load and noh_gl_caps_probe: *gl is then undefined, except for an empty log */
 noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *error);
 
 /* ======== GL programs ======== */

@@ -3,7 +3,7 @@
  * noh creates no context and links no GL. It includes no GL header and defines no GL name: include the header or loader
  * that you use, before or after this one. Make a context current, then:
  *
- *     noh_gl_api_load     fill a table of GL functions through your lookup (eglGetProcAddress and the like)
+ *     noh_gl_api_load     fill a table of GL functions through your lookup (such as eglGetProcAddress)
  *     noh_gl_caps_probe   find out what this GPU can do
  *     noh_stage_init      with noh_stage_desc.gpu = &noh_stage_on_gl
  *     noh_stage_draw      in each frame, after noh_stage_frame
@@ -14,7 +14,8 @@
  * Errors. When the driver refuses a call, the create or init that made it fails with NOH_ERR_GL, or with NOH_ERR_MEMORY
  * where the GPU is out of memory. `where` is then the GL error code, and no object is left behind.
  *
- * State. Render state is yours: noh reads it and restores it. Bindings are left empty. gl_device.h has the table.
+ * State. Render state is yours: noh reads it and restores it. Bindings that noh used are left at 0. gl_device.h has
+ * the table.
  *
  * Threads. All calls are made on the thread of the context that the objects were made in.
  *
@@ -64,7 +65,7 @@ typedef struct noh_lighting {
     noh_light rest;         /* world space, without the key light */
     float key_direction[3]; /* unit, towards it, world */
     float key[3];           /* its light reflected by a white matte surface facing it; zeros: none */
-    float key_gloss; /* its share of specular light: 0 if the reflection already contains it, 1 for your own lamp */
+    float key_gloss; /* its share of highlights: 0 if the reflection already contains it, 1 for a lamp of yours */
     float turn[9];   /* rows: world to the reflection's space */
     float exposure;  /* factor before the tone map; for faces: noh_light_exposure */
     noh_tonemap tonemap;
@@ -318,11 +319,12 @@ typedef struct noh_gl_mesh {
  * texels and textures of a pack once: a stage takes what another one has, without an upload, where the bytes of the
  * pack in memory are the same and, for meshes, the finest level and whether a transfer is used; for delta texels also
  * the finest level with slots, and a path that orders them alike (gather and direct, or the blended paths). The last
- * stage that lets an object go deletes it, in whatever order stages end and kinds leave their slots. A kind that comes
- * into a slot takes what is there, also from its own stage, and lends it once it is drawn. Each stage has its own
- * meshes with levels that are loaded later (`finer`), covers, light and programs. Pictures and states are the same as
- * without. After a lost context count noh_gl_ledger.contexts first, then restore each stage. Once all are restored, the
- * ledger is as before, but for kinds in slots, which may share more or less then, and textures that were coming.
+ * stage that uses an object deletes it, whatever the order in which stages end and kinds leave their slots. A kind that
+ * is put into a slot uses objects that exist, also of its own stage; others can use its own once it is drawn. A stage
+ * has its own meshes with levels that are loaded later (`finer`), covers, light and programs. Pictures and states are
+ * the same as without sharing. After a lost context count noh_gl_ledger.contexts first, then restore each stage. Once
+ * all are restored, the ledger is as before, except that kinds in slots may share more or less, and that textures that
+ * were being loaded start again.
  *
  * Threads: the context's own thread. */
 
@@ -445,7 +447,7 @@ typedef struct noh_backdrop {
 } noh_backdrop;
 
 /* encode_srgb  as in noh_stage_desc
- * errors       DATA, GL, MEMORY as noh_gl_program_create. It then has no GL objects */
+ * errors       DATA, GL, MEMORY as noh_gl_program_create. `out` then has no GL objects */
 noh_result noh_backdrop_create(const noh_gl_device *device, int encode_srgb, noh_backdrop *out, noh_error *error);
 void noh_backdrop_delete(noh_backdrop *backdrop);
 
@@ -477,7 +479,7 @@ typedef struct noh_stage_blob {
     uint32_t draws; /* draw calls so far */
 } noh_stage_blob;
 
-/* errors  DATA, GL, MEMORY as noh_gl_program_create. It then has no GL objects */
+/* errors  DATA, GL, MEMORY as noh_gl_program_create. `out` then has no GL objects */
 noh_result noh_stage_blob_create(const noh_gl_device *device, noh_stage_blob *out, noh_error *error);
 void noh_stage_blob_delete(noh_stage_blob *blob);
 
@@ -538,7 +540,7 @@ size_t noh_stage_decals_size(const noh_stage *stage);
  * device   the one that the stage was created with
  * picture  NULL: round spots. Its texture must outlive the decals
  * out      must stay where it is: the shaders refer to it
- * errors   ARG, MEMORY, DATA, GL as noh_stage_shader_create and noh_gl_texture_create. It then has no GL objects */
+ * errors   ARG, MEMORY, DATA, GL as noh_stage_shader_create and noh_gl_texture_create. `out` then has no GL objects */
 noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device, void *memory, size_t bytes,
                                    const noh_decal_picture *picture, noh_stage_decals *out, noh_error *error);
 void noh_stage_decals_delete(noh_stage_decals *decals);
@@ -575,7 +577,7 @@ typedef struct noh_stage_floor {
 } noh_stage_floor;
 
 /* encode_srgb  as in noh_stage_desc
- * errors       DATA, GL, MEMORY as noh_gl_program_create. It then has no GL objects */
+ * errors       DATA, GL, MEMORY as noh_gl_program_create. `out` then has no GL objects */
 noh_result noh_stage_floor_create(const noh_gl_device *device, int encode_srgb, noh_stage_floor *out, noh_error *error);
 void noh_stage_floor_delete(noh_stage_floor *shadow);
 
@@ -645,7 +647,7 @@ uint64_t noh_stage_hair_bytes(const noh_actor_hair_desc *desc);
  * lit          1: the stage has a light
  * encode_srgb  as in noh_stage_desc
  * errors       ARG memory is NULL or misaligned; MEMORY `bytes` is too small; DATA, GL, MEMORY as noh_gl_program_create
- *              and noh_gl_texture_create. It then has no GL objects */
+ *              and noh_gl_texture_create. `out` then has no GL objects */
 noh_result noh_stage_hair_create(const noh_gl_device *device, const noh_actor_hair *hair, void *memory, size_t bytes,
                                  int lit, int encode_srgb, noh_stage_hair *out, noh_error *error);
 void noh_stage_hair_delete(noh_stage_hair *hair);
@@ -723,7 +725,7 @@ size_t noh_stage_patches_size(uint32_t capacity, uint32_t triangles);
  * capacity   of the largest ring that is drawn; 0: NOH_DECALS_MAX
  * triangles  of all decals together at one level, up to 2^20; 0: NOH_DECAL_TRIANGLES for each decal
  * memory     [bytes] at least noh_stage_patches_size, aligned to NOH_MEMORY_ALIGN; the patches keep it
- * errors     ARG, MEMORY as any init; MEMORY, GL as noh_gl_buffer_create. It then has no GL objects */
+ * errors     ARG, MEMORY as any init; MEMORY, GL as noh_gl_buffer_create. `out` then has no GL objects */
 noh_result noh_stage_patches_create(noh_stage_decals *decals, uint32_t capacity, uint32_t triangles, void *memory,
                                     size_t bytes, noh_stage_patches *out, noh_error *error);
 void noh_stage_patches_delete(noh_stage_patches *patches);
@@ -773,7 +775,7 @@ uint64_t noh_stage_terrain_bytes(const noh_field *field);
  * memory   [bytes] at least noh_stage_terrain_size, aligned to NOH_MEMORY_ALIGN; the terrain keeps it
  * errors   ARG memory is NULL or misaligned, or the field has fewer than 2 x 2 heights; LIMIT a side of the field has
  *          more heights than the largest texture of device->caps has texels; MEMORY `bytes` is too small; DATA, GL,
- *          MEMORY as noh_gl_program_create and noh_gl_texture_create. It then has no GL objects */
+ *          MEMORY as noh_gl_program_create and noh_gl_texture_create. `out` then has no GL objects */
 noh_result noh_stage_terrain_create(const noh_gl_device *device, const noh_field *field,
                                     const noh_stage_terrain_desc *desc, void *memory, size_t bytes,
                                     noh_stage_terrain *out, noh_error *error);

@@ -43,7 +43,7 @@ for path in layered mrt per-layer cpu; do
     fi
     expect 0 "render --path $path"
     if [ $path = cpu ]; then
-        check 'the picture of --path gather, but for a rounding' "$build/tests/gl/picture_diff" "$work/path.png" "$work/gather.png" 0.02 0
+        check 'the picture of --path gather, except for a rounding' "$build/tests/gl/picture_diff" "$work/path.png" "$work/gather.png" 0.02 0
     else
         check 'the picture of --path gather' cmp "$work/path.png" "$work/gather.png"
     fi

@@ -1,4 +1,4 @@
-/* model_clips.c: stands in for the C++ side of the converter: no model has clips here, and no file curves. Tests that
+/* model_clips.c: replaces the C++ side of the converter: no model has clips here, and no file curves. Tests that
  * need one are left out. */
 #include <stdio.h>
 #include <stdlib.h>

@@ -536,7 +536,7 @@ static void without_float_targets(void **state)
     assert_int_equal(said(output, "gl_error"), 0);
 }
 
-/* Mesa renders RGBA16F whatever it lists, so a table that lies stands in for phones
+/* Mesa renders RGBA16F whatever it lists, so a table that lies represents phones
  * without any float format. */
 static PFNGLTEXSTORAGE3DPROC real_storage;
 

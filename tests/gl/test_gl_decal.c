@@ -175,7 +175,7 @@ static void a_mark_is_as_large_as_asked(void **state)
     close_shot(&s);
 }
 
-/* At the coarsest level a mark is where it was, but for that level's error. */
+/* At the coarsest level a mark is where it was, except for that level's error. */
 static void a_mark_stays_where_it_is_when_the_level_changes(void **state)
 {
     noh_decal_desc look = { .color = { 0, 200, 0, 255 } };

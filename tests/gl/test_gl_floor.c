@@ -133,7 +133,7 @@ static void check_pixels(int is_soft)
     assert_memory_equal(first, again, sizeof first);
     picture(&s, 1.0f, &above, 1.0f, again); /* the light comes through */
     expect(&s, again, 0);
-    s.lighting.has_floor = 1; /* where it stands in for what was not drawn, the light comes through, too */
+    s.lighting.has_floor = 1; /* where it replaces what was not drawn, the light comes through, too */
     picture(&s, 1.0f, &above, 1.0f, again);
     expect(&s, again, 0);
     close_scene(&s);

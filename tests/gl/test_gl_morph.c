@@ -823,7 +823,7 @@ static noh_gl_morph_costs costs_of(const char *renderer, const noh_mesh *meshes,
     return plan.costs;
 }
 
-/* Twice the meshes cost twice as much, but for the passes of a GPU, which all instances of an update share; and each
+/* Twice the meshes cost twice as much, except for the passes of a GPU, which all instances of an update share; and each
  * path costs more with more active targets. */
 static void costs_add_up(void **state)
 {

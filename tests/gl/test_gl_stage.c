@@ -112,7 +112,7 @@ static void the_plan_is_what_is_used(void **state)
 
 /* ---- pictures ---- */
 
-/* A mask alone, at rest but for a smile: the stage's picture is the one that its parts draw, pixel by pixel. */
+/* A mask alone, at rest except for a smile: the stage's picture is the one that its parts draw, pixel by pixel. */
 static void the_picture_is_that_of_the_parts(void **state)
 {
     static uint32_t by_stage[PIXELS], by_hand[PIXELS];
@@ -467,7 +467,7 @@ static void open_crowd(cast *c, gpu *g, uint32_t visible_max)
     }
 }
 
-/* No culled actor stands nearer than the farthest drawn one, but for the quarter that keeps equals from taking turns.
+/* No culled actor is nearer than the farthest drawn one, except for the quarter that keeps equals from taking turns.
  */
 static void expect_the_nearest(const cast *c, const noh_stage_view *view)
 {

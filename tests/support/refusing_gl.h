@@ -1,5 +1,5 @@
 /* refusing_gl.h: a real driver that fails at a call of our choice: the functions of an API are replaced by ones that
- * call the driver's, but for one call, which it never sees and after which glGetError says so. What makes names makes
+ * call the driver's, except one call, which it never sees and after which glGetError says so. What makes names makes
  * none, what links or compiles does not. The platform "null" does the same without a driver (platform/null.h). */
 #ifndef NOH_TESTS_SUPPORT_REFUSING_GL_H
 #define NOH_TESTS_SUPPORT_REFUSING_GL_H

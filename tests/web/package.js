@@ -1,4 +1,4 @@
-// package.js FOLDER CHROMIUM OUT PROJECT: the package as it was installed in PROJECT, an empty one but for its packs: the
+// package.js FOLDER CHROMIUM OUT PROJECT: the package as it was installed in PROJECT, one with only its packs: the
 // page of the package's README, two elements at once, what goes when one is removed, attributes, keys, words, reduced
 // motion, a lost context, minutes without growth. Prints its checks as TAP.
 'use strict';

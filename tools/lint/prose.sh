@@ -49,4 +49,10 @@ goes by\b -> uses, follows
 go(es)? on as\b -> continues as
 (lest|whither|thereof|therein|thereby|whereof|whereby|nought|betimes|erst)\b -> modern English
 upon\b -> on
+but for (a|an|the|its|their|what|one|that|those|these|`)\b -> except for
+stands? in for\b -> replaces
+the like\b -> such as
+what there is\b -> what is available, the files that exist
+(hence|thus)\b -> so, therefore
+(anything|something) of\b -> any part of
 END

@@ -149,7 +149,7 @@ $(BUILD)/plain/tests/%: $(BUILD)/tests/unit/%.o $(TEST_OWN) $(BUILD)/plain/libno
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(QUICK_LD) $^ -o $@ -lcmocka $(TOOL_LIBS)
 
 # The library's CPU tests, those that need neither C++ nor GL nor the tool, for another processor: tests/cross.sh
-# calls this with CC, AR and CROSS=NAME. tests/cross/ stands in for the libraries that it has no package of, and
+# calls this with CC, AR and CROSS=NAME. tests/cross/ replaces the libraries that it has no package of, and
 # tests/cross/NAME for a system.
 CROSS       ?=
 CROSS_OWN   := $(wildcard tests/cross/$(CROSS)/*.[ch])

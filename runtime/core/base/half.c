@@ -35,7 +35,7 @@ static uint32_t half_magnitude(uint32_t magnitude, noh_half_mode mode)
 }
 
 /* A half has 5 bits of exponent (bias 15) and 10 of mantissa, a float 8 (bias 127) and 23. In the normal range both are
- * the same bits but for the bias and 13 mantissa bits, which are rounded off; a carry out of the mantissa increments
+ * the same bits except for the bias and 13 mantissa bits, which are rounded off; a carry out of the mantissa increments
  * the exponent, which is the next half. Below 2^-14 the mantissa, its hidden bit made visible, is shifted to the fixed
  * exponent of denormals. What lies above the largest half stops there (RTZ) or becomes infinity (RNE). */
 uint16_t noh_half_from_float(float value, noh_half_mode mode)

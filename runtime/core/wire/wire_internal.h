@@ -61,7 +61,7 @@ static inline int noh_wire_item(noh_wire_coder *coder)
 
 /* A symbol below 16; when writing, the one that is given. */
 uint32_t noh_wire_symbol(noh_wire_coder *coder, noh_wire_model *model, uint32_t symbol);
-/* Bits that no model knows anything of, 0..32. */
+/* Bits that no model predicts, 0..32. */
 uint32_t noh_wire_bits(noh_wire_coder *coder, uint32_t value, uint32_t bits);
 /* A number; smaller magnitudes take fewer bits. model[1] codes large numbers. */
 int32_t noh_wire_value(noh_wire_coder *coder, noh_wire_model *model, noh_wire_model *large, int32_t value);

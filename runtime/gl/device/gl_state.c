@@ -173,7 +173,7 @@ void noh_gl_blend_end(const noh_gl_api *gl, const noh_gl_raster *r)
     gl->DepthMask(r->depth_mask);
 }
 
-/* Changes the blend functions even if the caller has blending on, hence NOH_KEEP_FUNCTIONS. */
+/* Changes the blend functions even if the caller has blending on, so it sets NOH_KEEP_FUNCTIONS. */
 void noh_gl_multiply_begin(const noh_gl_api *gl, noh_gl_raster *r)
 {
     noh_gl_tests_begin(gl, r);

@@ -41,7 +41,7 @@ static uint64_t index_count(const noh_mesh_header *h, uint32_t end)
     return count;
 }
 
-/* The bytes of a mesh's indices in one cover; 0: no garment hides anything of it. */
+/* The bytes of a mesh's indices in one cover; 0: no garment hides any part of it. */
 static uint64_t bytes_of(const noh_stage_desc *desc, const noh_stage_plan *plan, noh_gl_site site)
 {
     const noh_mesh drawn = noh_gl_site_mesh(desc, plan, site), mesh = whole_mesh(desc, site);

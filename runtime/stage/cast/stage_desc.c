@@ -183,7 +183,7 @@ static const char *bad_texture_sets(const noh_kind_desc *d)
     for (uint32_t i = 1; i <= d->texture_set_count; i++) {
         if (replaces_nothing(d, i)) return "a texture set of a kind replaces no texture of its mesh: see the names";
         if (is_laid_out_otherwise(d, i))
-            return "a texture of a set has other parts trimmed than the one it stands in for: build their packs with "
+            return "a texture of a set has other parts trimmed than the one it replaces: build their packs with "
                    "--whole-textures";
     }
     return NULL;

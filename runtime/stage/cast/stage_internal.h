@@ -575,7 +575,7 @@ int noh_stage_can_wear(const noh_stage_kind *garment, uint32_t wearer_kind);
 int noh_stage_fits(const noh_stage *s, const noh_stage_kind *garment, const noh_stage_kind *wearer);
 /* What a garment's pack hides of a mesh, which has all levels of its pack; NULL: nothing. */
 const noh_pack_cover_header *noh_stage_cover_of(const noh_pack *garment, const noh_mesh *mesh);
-/* The kinds of the garments that are seen on an actor and may hide something of it. */
+/* The kinds of the garments that are seen on an actor and may hide a part of it. */
 uint32_t noh_stage_garments_on(const noh_stage *s, uint32_t index);
 /* Before places are given: list the garments of each wearer that are posed or shown. */
 void noh_stage_link_worn(noh_stage *s);

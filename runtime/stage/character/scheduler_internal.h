@@ -14,7 +14,7 @@
  * The wait is bounded. Let V be NOH_VISIBILITY_MAX, N the number of instances, k the fewest that a frame serves, and D
  * the longest frame. Suppose an instance has waited W ticks. Any instance served before it has waited at least
  * (W + D) / V - D, because visibility scales lateness by at most V. So within the last (W + D) / V - D ticks no
- * instance was served twice, and these ticks contain at most (N - 1) / k full frames. Hence
+ * instance was served twice, and these ticks contain at most (N - 1) / k full frames. So
  *   W < V * D * ((N - 1) / k + 2)
  * which noh_schedule_wait_max returns in frames.
  *

@@ -78,7 +78,7 @@ static void what_waits_for_the_end_of_a_loop_is_warned_of(void **state)
     warns("graph a\nclip walk\nclip run paused=yes\nmachine m walk run\nfrom run to walk when ending\n", 0,
           "a.graph:5: `from run to walk when ending` is never true: 'run' is paused, so it never ends: remove "
           "paused=yes\n");
-    /* from any state: one that ends is enough, but for the one that it leads to */
+    /* from any state: one that ends is enough, except for the one that it leads to */
     warns("graph a\nclip walk\nclip run\nclip w walk\nmachine m walk run w\nfrom any to w when ending\n", 0, "");
     warns("graph a\nclip walk\nclip run\nmachine m walk run\nfrom any to run when ending\n", 0,
           "a.graph:5: `from any to run when ending` is never true: 'walk' loops, so it never ends: give the clip "

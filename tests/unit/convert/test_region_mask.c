@@ -282,7 +282,7 @@ static void gamma_is_found(void **state)
         }
         const mask_findings found = examine(&damaged);
         assert_int_equal(found.damage, MASK_GAMMA);
-        /* without ramps a power of 2.2 and sRGB leave the same three codes but for a rounding */
+        /* without ramps a power of 2.2 and sRGB leave the same three codes except for a rounding */
         if (k < 4) assert_memory_equal(found.gamma, names[k], strlen(names[k]));
         check_repair(found.gamma, &clean, &damaged, 0.3f, 0.99);
         region_mask_free(&clean);

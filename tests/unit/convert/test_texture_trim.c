@@ -295,7 +295,7 @@ static void materials_that_share_lose_the_same(void **state)
     model_free(m);
 }
 
-/* A set for actors to wear goes with the texture that it stands in for; what nothing reads else is whole. */
+/* A set for actors to wear goes with the texture that it replaces; what nothing reads else is whole. */
 static void sets_go_with_their_namesakes(void **state)
 {
     static const quad quads[1] = { { { 0.1f, 0.1f }, { 0.2f, 0.2f }, 0 } };

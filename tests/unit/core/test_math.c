@@ -1,4 +1,4 @@
-/* The plain C that stands in for builtins gives their bits; interpolated quaternions are unit. */
+/* The plain C that replaces builtins gives their bits; interpolated quaternions are unit. */
 #include "support/support.h"
 
 #include <math.h>

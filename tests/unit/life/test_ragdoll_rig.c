@@ -123,7 +123,7 @@ static void scales_of_joints_count(void **state)
     skin_asset_close(&a);
 }
 
-/* Left and right are each other's mirror, but for the skin's asymmetry. */
+/* Left and right are each other's mirror, except for the skin's asymmetry. */
 static void sides_are_alike(void **state)
 {
     skin_asset a;

@@ -77,7 +77,7 @@ static void efforts(void **state)
     effort_is_never_larger(fixture_swing(12, 40, 1, 12.0f, 0.8, 0.3), "at 30 Hz");
 }
 
-/* Still, but for a strike of `length` frames in the middle. */
+/* Still, except for a strike of `length` frames in the middle. */
 static raw_set *strikes(uint32_t frames, uint32_t length)
 {
     raw_set *set = fixture_swing(12, frames, 1, 40.0f, 3.0, 0.0);

@@ -498,7 +498,7 @@ static void a_fork_goes_on(void **state)
     for (int k = 0; k < 2; k++) close_swingers(&c[k]);
 }
 
-/* At any rate of frames sleeves are where they are at 60 Hz, but for the arms' way between two poses. Frames longer
+/* At any rate of frames sleeves are where they are at 60 Hz, except for the arms' way between two poses. Frames longer
  * than an eighth of a second once restarted all of them. */
 static void seldom_frames_swing_alike(void **state)
 {

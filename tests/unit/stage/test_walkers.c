@@ -910,7 +910,7 @@ static void who_falls_far_away_goes_on(void **state)
     close_street(&s);
 }
 
-/* From its clips to the ground and back to its clips: no joint leaps, but for what it falls and gets up by. */
+/* From its clips to the ground and back to its clips: no joint leaps, except for what it falls and gets up by. */
 static void it_gets_up_where_it_lies(void **state)
 {
     static const float at[2] = { 0.0f, -3.0f }, goal[2] = { 0.0f, 30.0f };

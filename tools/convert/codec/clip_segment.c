@@ -2,7 +2,7 @@
  *
  * Joints are coded parents first, each against its parents as they will be decoded: the target of a rotation is the raw
  * object-space rotation seen from the decoded parent, the target of a translation the raw position seen from there. A
- * parent's error thus becomes part of its child's target and is corrected instead of added to. Lossy codecs do the same
+ * parent's error becomes part of its child's target and is corrected instead of added to. Lossy codecs do the same
  * in time when they predict from decoded values (DPCM, video); here it is done along the skeleton. A rotation's target
  * is also turned a little (`correct`), so that the points it carries compensate the error of its own position, which it
  * cannot change.

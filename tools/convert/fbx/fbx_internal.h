@@ -73,7 +73,7 @@ std::vector<double> finite_list(job &j, const node &parent, const char *child);
 int add_view(job &j, const void *bytes, size_t size);
 int add_floats(job &j, std::vector<float> values, int type);
 int add_positions(job &j, std::vector<float> values); /* with their bounds */
-/* Of `count` values, zero but for these. */
+/* Of `count` values, zero except for these. */
 int add_sparse(job &j, const std::vector<uint32_t> &places, const std::vector<float> &values, size_t count);
 int add_u16(job &j, const std::vector<uint16_t> &values, int type);
 int add_u32(job &j, const std::vector<uint32_t> &values);

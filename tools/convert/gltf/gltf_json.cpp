@@ -454,7 +454,7 @@ static const char *const named_arrays[][2] = { { "materials", "material" },
                                                { "bufferViews", "buffer view" },
                                                { "buffers", "buffer" } };
 
-/* After repair_top_level: these are arrays. The document's own "extensions" (lists of lights and the like) are used by
+/* After repair_top_level: these are arrays. The document's own "extensions" (such as lists of lights) are used by
  * the objects searched here; an extension that no object has is noted without a name. */
 static void find_unsupported(file &f, const json &document)
 {

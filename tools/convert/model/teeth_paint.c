@@ -66,7 +66,7 @@ static void find_middles(const jaws *j, const uint32_t *island, float *room, flo
     for (uint32_t v = first; v < end; v++) middle[v] = 0.5f * (room[v] + middle[v]);
 }
 
-/* Two jaws have one height and one width, by a factor of ALIKE, and lie over one another but for an overbite; teeth
+/* Two jaws have one height and one width, by a factor of ALIKE, and lie over one another except for an overbite; teeth
  * and a gum of one jaw, as islands of their own, do not, and no target parts them.
  * box  of the lower islands, of the upper: least and greatest x, least and greatest y */
 static int are_jaws(float box[2][4], int are_parted)

@@ -331,7 +331,7 @@ static void count_one_rect(encoder *c, uint32_t *texels)
     e->texels_one_rect = sum > UINT32_MAX ? UINT32_MAX : (uint32_t)sum;
 }
 
-/* Where the order has put what stands in for texture coordinates. */
+/* Where the order has put what replaces texture coordinates. */
 static int find_uv_texels(encoder *c, uint32_t count)
 {
     morph_encoding *e = c->e;
@@ -379,7 +379,7 @@ static int start(encoder *c)
     return e->order && e->targets && e->level_touched && e->parts ? 0 : no_memory(c);
 }
 
-/* The mesh with what stands in for its texture coordinates. */
+/* The mesh with what replaces its texture coordinates. */
 static int encode_with_uvs(encoder *c)
 {
     const uint32_t count = c->mesh->vertex_count;

@@ -55,7 +55,7 @@ typedef struct morph_encoding {
     uint32_t touched_count; /* the first touched_count vertices of the new order are in the texture, those in coarse
                                levels first */
     uint32_t *order;        /* [vertex_count] new index -> old index; untouched ones in the source's order. From the
-                               mesh's vertex_count on, what stands in for texture coordinates */
+                               mesh's vertex_count on, what replaces texture coordinates */
     uint32_t *uv_texel;     /* [the mesh's vertex_count] the texel of its texture coordinates, MODEL_NONE: they do not
                                move; NULL: none move */
     float uv_per_unit;      /* noh_mesh_header.uv_per_unit */

@@ -56,7 +56,7 @@ int region_maps_make(const region_mask *mask, uint8_t *maps[REGION_MAP_COUNT]);
 
 /* The mask of three such maps, [height][width][4] each: the code whose weight is the nearest, of the region of each
  * channel that weighs most. Decoded again it gives the same maps where no two regions of a channel meet, to half a step
- * of 0.014, and a mask of what was decoded gives the same codes but for a full weight, which is 75. Returns 0, or 1: out
+ * of 0.014, and a mask of what was decoded gives the same codes except a full weight, which is 75. Returns 0, or 1: out
  * of memory. */
 int region_mask_make(uint8_t *const maps[REGION_MAP_COUNT], uint32_t width, uint32_t height, region_mask *mask);
 

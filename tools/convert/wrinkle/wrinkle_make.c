@@ -195,7 +195,7 @@ static int decode_mask(const wrinkle_field *f, wrinkles *w)
     return !w->matrix;
 }
 
-/* Paint what there is a file for, generate the rest. */
+/* Paint the regions that have a file, generate the rest. */
 static int fill(const wrinkle_field *f, const wrinkle_folds *folds, const wrinkle_raster *r,
                 const wrinkle_settings *settings, wrinkles *w, model_error *error)
 {

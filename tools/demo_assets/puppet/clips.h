@@ -38,7 +38,7 @@ const Clip *get_up_number(int number);
 const Clip *roam_number(int number);
 
 /* A frame of the clip, with sleeves that trail behind the hands. The last frame of a loop equals the first to the bit,
- * but for the root displacement. */
+ * except for the root displacement. */
 Posed clip_frame(const Clip *clip, int frame);
 
 /* --- for the clips --- */

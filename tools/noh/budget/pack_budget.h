@@ -17,7 +17,7 @@ typedef struct level_cost {
 typedef struct pack_budget {
     figure planned;
     uint64_t cpu_bytes, gpu_bytes; /* of all parts */
-    noh_gl_morph_plan morph;       /* zeros but for `reason` where nothing is drawn */
+    noh_gl_morph_plan morph;       /* zeros except for `reason` where nothing is drawn */
     noh_stage_bytes *parts;        /* [part_count] */
     uint32_t part_count;
     uint32_t cached_segment_count, segment_count; /* of all clips: held decoded at once; in all */

@@ -15,7 +15,7 @@ const session_form session_forms[SESSION_WHATS] = {
     { "rise", 0, 0 },      { "kill", 0, 0 },    { "revive", 0, 0 }, { "view", 0, 3 }, { "ticks", 0, 1 },
 };
 
-/* A number of ticks, layers or the like from a file; other values are clamped to the nearest. */
+/* A whole number, as of ticks or layers, from a file; other values are clamped to the nearest. */
 static uint32_t whole(float value, float most)
 {
     return value >= 0.0f ? (uint32_t)(value < most ? value : most) : 0u;

@@ -33,7 +33,7 @@ const char *view_lights_shown(const view_lights *l)
     return l->name[0] ? l->name : view_lights_file(l);
 }
 
-/* As the light before it, but for its name. */
+/* As the light before it, except for its name. */
 static int open_as(lighting *l, const char *name, const lighting *before)
 {
     static const char *const backgrounds[] = { "plain", "gradient", "light" };

@@ -413,7 +413,7 @@ void view_model_draw_bones(view_model *m, const noh_gl_camera *camera)
     }
 }
 
-/* The surface, or what stands in for it. */
+/* The surface, or what replaces it. */
 static int draw_surface(view_model *m, overlay *o, const view_over *over, const noh_gl_camera *camera)
 {
     switch (over->skin) {
