@@ -598,13 +598,13 @@ static void materials_and_pictures(void **state)
     model_free(m);
 }
 
-/* A picture is known by its bytes: its name may end in anything. */
+/* A picture is known by its bytes: its name may end in anything, and have another case than in the file. */
 static void pictures_have_any_name(void **state)
 {
     static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
-    static const char *const names[3] = { "a.tga", "A.PNG", "picture" };
+    static const char *const names[4] = { "a.tga", "A.PNG", "picture", "Other.TGA" };
     (void)state;
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < 4; i++) {
         char line[64];
         begin();
         add_triangle(1, "");
@@ -613,7 +613,7 @@ static void pictures_have_any_name(void **state)
         (void)snprintf(line, sizeof line, "\t\tRelativeFilename: \"%s\"\n", names[i]);
         add_object("Texture", 4, "outside", "", "", line);
         links(OO(2, 0) OO(1, 2) OO(3, 2) OP(4, 3, "DiffuseColor"));
-        test_write_file(test_path(names[i]), tga, sizeof tga);
+        test_write_file(test_path(i == 3 ? "oTHER.tga" : names[i]), tga, sizeof tga);
         model *m = load();
         assert_true(m->texture_count == 1 && m->textures[0].width == 1);
         assert_true(m->textures[0].rgba[0] == 10 && m->textures[0].rgba[2] == 30);

@@ -218,6 +218,19 @@ static void nothing_is_invisible(void **state)
     model_free(m);
 }
 
+/* A .mtl file from Windows names a picture in another case. */
+static void names_differ_in_case(void **state)
+{
+    static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
+    (void)state;
+    test_write_file(test_path("skin_case.TGA"), tga, sizeof tga);
+    save("face.mtl", "newmtl a\nmap_Kd C:\\art\\Skin_Case.tga\nnewmtl b\nmap_Kd SKIN_CASE.tga\n");
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    assert_int_equal(m->texture_count, 2);
+    assert_true(m->textures[0].rgba[0] == 10 && m->textures[1].rgba[0] == 10);
+    model_free(m);
+}
+
 /* What an image would take is counted before it is decoded: a few bytes cannot take gigabytes by many names. */
 static void large_images_are_counted_first(void **state)
 {
@@ -434,6 +447,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(corners_become_vertices),
     cmocka_unit_test(materials_are_submeshes),
     cmocka_unit_test(nothing_is_invisible),
+    cmocka_unit_test(names_differ_in_case),
     cmocka_unit_test(large_images_are_counted_first),
     cmocka_unit_test(missing_materials_are_told),
     cmocka_unit_test(colours_of_positions),

@@ -1,5 +1,6 @@
 #include "input_file.h"
 
+#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,6 +108,43 @@ const char *input_next_held(const char *folder, uint32_t *at)
         if (strcmp(wanted, own) == 0) return slash ? slash + 1 : path;
     }
     return NULL;
+}
+
+static int lower(int c)
+{
+    return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
+}
+
+static int is_same_but_case(const char *a, const char *b)
+{
+    while (*a && lower(*a) == lower(*b)) a++, b++;
+    return *a == *b;
+}
+
+static int is_better(const char *own, const char *best, const char *name)
+{
+    return !best[0] || strcmp(own, name) == 0 || (strcmp(best, name) != 0 && strcmp(own, best) < 0);
+}
+
+int input_find_any_case(const char *path, char *found, size_t size)
+{
+    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *own;
+    char folder[PATH_BYTES], best[256] = "";
+    uint32_t at = 0;
+    DIR *open = NULL;
+    (void)snprintf(folder, sizeof folder, "%.*s", (int)(name - path), path);
+    if (!held) open = opendir(slash ? folder : ".");
+    do {
+        const struct dirent *entry = open ? readdir(open) : NULL;
+        if (held && slash) folder[slash - path] = '\0';
+        own = held ? input_next_held(folder, &at) : entry ? entry->d_name : NULL;
+        if (own && strlen(own) < sizeof best && is_same_but_case(own, name) && is_better(own, best, name)) {
+            memcpy(best, own, strlen(own) + 1u);
+        }
+    } while (own);
+    if (open) (void)closedir(open);
+    (void)snprintf(found, size, "%.*s%s", (int)(name - path), path, best);
+    return best[0] != '\0';
 }
 
 int input_map(const char *path, const void **bytes, size_t *count, const char **what)

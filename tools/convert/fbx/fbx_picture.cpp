@@ -78,6 +78,20 @@ static std::string embedded(const scene &s, size_t texture, const std::string &n
 
 /* --- in the folder --- */
 
+/* The name of a picture that is there, from the model's folder; empty: there is none. */
+static std::string name_there(const std::filesystem::path &folder, const std::string &name, bool any_case)
+{
+    std::error_code ignored;
+    const std::string picture = (folder / name).string();
+    char other[4096];
+    if (any_case && !input_find_any_case(picture.c_str(), other, sizeof other)) return std::string();
+    const char *path = any_case ? other : picture.c_str();
+    const bool found = inputs_are_held() ? input_find_held(path) != nullptr
+                                         : std::filesystem::is_regular_file(path, ignored);
+    inputs_note(path, found);
+    return !found ? std::string() : any_case ? name.substr(0, name.find_last_of('/') + 1) + base_name(other) : name;
+}
+
 /* Paths are from the author's machine: the picture is looked up by its name, where exporters put it. */
 static std::string beside(const job &j, const std::string &path)
 {
@@ -85,18 +99,20 @@ static std::string beside(const job &j, const std::string &path)
     const std::string name = base_name(path);
     std::string as_given = path;
     std::replace(as_given.begin(), as_given.end(), '\\', '/');
-    std::error_code ignored;
-    for (const std::string &try_at : { as_given, name, file.stem().string() + ".fbm/" + name, "textures/" + name,
-                                       "Textures/" + name, "../textures/" + name, "../Textures/" + name }) {
-        const bool local = !try_at.empty() && try_at[0] != '/' && try_at.find(':') == std::string::npos &&
-                           try_at.find('\0') == std::string::npos;
-        if (!local) continue;
-        const std::filesystem::path picture = file.parent_path() / try_at;
-        const bool found = inputs_are_held() ? input_find_held(picture.c_str()) != nullptr
-                                             : std::filesystem::is_regular_file(picture, ignored);
-        inputs_note(picture.c_str(), found);
-        if (found) return try_at;
-    }
+    const std::string tries[] = { as_given,
+                                  name,
+                                  file.stem().string() + ".fbm/" + name,
+                                  "textures/" + name,
+                                  "Textures/" + name,
+                                  "../textures/" + name,
+                                  "../Textures/" + name };
+    for (bool any_case : { false, true })
+        for (const std::string &try_at : tries) {
+            const bool local = !try_at.empty() && try_at[0] != '/' && try_at.find(':') == std::string::npos &&
+                               try_at.find('\0') == std::string::npos;
+            const std::string found = local ? name_there(file.parent_path(), try_at, any_case) : std::string();
+            if (!found.empty()) return found;
+        }
     return std::string();
 }
 

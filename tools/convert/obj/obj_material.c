@@ -7,6 +7,7 @@
 
 #include "convert/base/image_file.h"
 #include "convert/base/input_file.h"
+#include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
 
@@ -61,7 +62,7 @@ static model_material *material_of(model *m, text_word name)
 /* Exporters may write a path from another machine: then the file of that name in the model's folder is used. */
 static int read_image(library *l, const char *name, image_file *image, model_error *error)
 {
-    char path[4096];
+    char path[4096], own[4096], found[4096];
     const char *last = name;
     const int absolute = name[0] == '/' || strchr(name, ':') != NULL || strstr(name, "..") != NULL;
     for (const char *c = name; *c; c++) {
@@ -69,9 +70,10 @@ static int read_image(library *l, const char *name, image_file *image, model_err
     }
     (void)snprintf(path, sizeof path, "%s%s", l->folder, name);
     if (!absolute && image_read_next(path, &l->pixels_left, image, error) == 0) return 0;
-    if (last == name && !absolute) return 1;
-    (void)snprintf(path, sizeof path, "%s%s", l->folder, last);
-    return image_read_next(path, &l->pixels_left, image, error);
+    (void)snprintf(own, sizeof own, "%s%s", l->folder, last);
+    if (!input_find_any_case(own, found, sizeof found)) memcpy(found, own, sizeof found);
+    if (!absolute && strcmp(found, path) == 0) return 1;
+    return image_read_next(found, &l->pixels_left, image, error);
 }
 
 static uint32_t find_texture(const model *m, const char *name)
