@@ -47,6 +47,13 @@ a\ b/skin.png:
 a\ b/face.recipe:
 END
 check 'it has every file that was read' diff expected packs/0.d
+mkdir cases
+bin 'cases/Data $#0.BIN' 200
+cp 'a b/skin.png' cases/SKIN.png
+cp 'a b/0.gltf' cases/0.gltf
+noh build cases/0.gltf -o packs/cases.noh --depfile packs/0.d --warnings
+check 'files whose names differ in case are found' sh -c '! grep -q "does not exist" "$1/err"' - "$work"
+check 'and named as they are there' grep -q 'cases/SKIN.png' packs/0.d
 mv 'a b/skin.png' kept.png
 noh build 'a b/0.gltf' -o packs/0.noh --depfile packs/0.d --warnings
 expect 0 'without the texture'

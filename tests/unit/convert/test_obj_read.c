@@ -218,14 +218,14 @@ static void nothing_is_invisible(void **state)
     model_free(m);
 }
 
-/* A .mtl file from Windows names a picture in another case. */
+/* Files from Windows name their materials and pictures in another case. */
 static void names_differ_in_case(void **state)
 {
     static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
     (void)state;
     test_write_file(test_path("skin_case.TGA"), tga, sizeof tga);
     save("face.mtl", "newmtl a\nmap_Kd C:\\art\\Skin_Case.tga\nnewmtl b\nmap_Kd SKIN_CASE.tga\n");
-    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    model *m = load("mtllib Face.MTL\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
     assert_int_equal(m->texture_count, 2);
     assert_true(m->textures[0].rgba[0] == 10 && m->textures[1].rgba[0] == 10);
     model_free(m);

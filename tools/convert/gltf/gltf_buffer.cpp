@@ -99,7 +99,9 @@ static std::string path_of(const file &f, const std::string &uri, const std::str
     if (path != uri && !inputs_are_held() && !std::filesystem::exists(f.directory + path, ignored) &&
         std::filesystem::exists(f.directory + uri, ignored))
         path = uri;
-    return f.directory + path;
+    char found[4096];
+    path.insert(0, f.directory);
+    return input_find_any_case(path.c_str(), found, sizeof found) ? found : path;
 }
 
 bytes read_uri(file &f, const std::string &uri, const std::string &where)

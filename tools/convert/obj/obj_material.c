@@ -203,7 +203,7 @@ static int read_library(library *l, const char *text, size_t bytes)
 
 int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
 {
-    char folder[4096], path[8192];
+    char folder[4096], path[8192], found[8192];
     const char *slash = strrchr(obj_path, '/');
     library l = { .folder = folder, .m = m, .pixels_left = IMAGE_PIXELS };
     model_error error = { "", "" };
@@ -214,7 +214,7 @@ int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
     if (!o->library || m->material_count == 0) return 0;
     (void)snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - obj_path + 1) : 0, obj_path);
     (void)snprintf(path, sizeof path, "%s%s", folder, o->library);
-    text = input_read_text(path, &bytes, &error);
+    text = input_read_text(input_find_any_case(path, found, sizeof found) ? found : path, &bytes, &error);
     if (!text) return model_warn(m, "the materials of %.80s were left out: %s", o->library, error.what);
     failed = read_library(&l, text, bytes);
     free(text);
