@@ -76,6 +76,15 @@ expect 0 'build a take alone'
 noh info "$work/alone.noh"
 check 'which has its scalars' grep -q "clip 'seconds': 0.080 s, 0 joints, 2 floats" "$work/out"
 
+# One shape under two names moves once, as does one whose motion another target has, too.
+model twice '"eyeBlinkLeft","Eye_Blink_L","TongueOut"'
+sed 's/{"POSITION":2}/{"POSITION":1}/' "$work/twice.gltf" >"$work/alike.gltf"
+printf 'Time,EyeBlinkLeft,TongueOut\n0,0,0\n1,1,1\n' >"$work/wink.csv"
+build alike wink
+shows wink 1 '1.00 0.00 1.00'
+build twice wink # targets that move differently add up
+shows wink 1 '1.00 1.00 1.00'
+
 # A long silence is said.
 printf 'Time,JawOpen\n0,0\n0.1,0\n0.2,0\n1.2,1\n' >"$work/gap.csv"
 build jaw gap

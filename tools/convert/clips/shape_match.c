@@ -8,6 +8,7 @@
 #include "convert/base/names.h"
 #include "convert/base/recipe_read.h"
 #include "convert/model/model_build.h"
+#include "convert/model/recipe_whole.h"
 #include "raw_set.h"
 
 /* The scalar that means the same as a name with a side behind it. */
@@ -85,37 +86,53 @@ static void fill(const raw_clip *clip, const uint32_t from[2], float standing, r
     }
 }
 
+/* Whether another target of the mesh has the same sources and stands for this one, too. */
+static int is_held(const model *m, const model_mesh *mesh, uint32_t (*from)[2], uint32_t t)
+{
+    for (uint32_t u = 0; from[t][0] != MODEL_NONE && u < mesh->target_count; u++) {
+        const int is_same = u != t && memcmp(from[u], from[t], sizeof from[t]) == 0;
+        if (is_same && target_is_held(m, mesh->targets[t].name, mesh->targets[u].name, u < t)) return 1;
+    }
+    return 0;
+}
+
 /* The weights of one node, behind the clip's `count` scalars; left out where none of its targets is named. */
 static int add_node(const model *m, uint32_t node, uint32_t count, const recipe_text *recipe, raw_clip *clip,
                     uint8_t *taken)
 {
-    const uint32_t mesh = m->nodes[node].mesh, targets = mesh == MODEL_NONE ? 0 : m->meshes[mesh].target_count;
+    const uint32_t at = m->nodes[node].mesh;
+    const model_mesh *mesh = at == MODEL_NONE ? NULL : &m->meshes[at];
+    const uint32_t none[2] = { MODEL_NONE, MODEL_NONE }, targets = mesh ? mesh->target_count : 0;
     const float *own = m->nodes[node].weights;
     raw_floats *out = &clip->floats[clip->float_count];
-    int any = 0;
-    if (!targets) return 0;
+    uint32_t(*from)[2] = targets ? model_zeros(targets, sizeof *from) : NULL;
+    int any = 0, failed = targets && !from;
+    if (!from) return failed;
     memset(out, 0, sizeof *out);
-    if (raw_floats_alloc(out, clip->frame_count, targets)) return 1;
-    out->node = node;
-    out->name = model_string(m->nodes[node].name);
-    out->radius = model_zeros(targets, sizeof *out->radius);
-    clip->float_count++;
-    if (!out->name || !out->radius) return 1;
-    for (uint32_t t = 0; t < targets; t++) {
-        uint32_t from[2];
-        out->radius[t] = reach_cm(m, mesh, t);
-        if (fill_by_recipe(recipe, clip, count, m->meshes[mesh].targets[t].name, out, t, taken)) {
+    failed = raw_floats_alloc(out, clip->frame_count, targets);
+    if (!failed) {
+        out->node = node;
+        out->name = model_string(m->nodes[node].name);
+        out->radius = model_zeros(targets, sizeof *out->radius);
+        clip->float_count++;
+        failed = !out->name || !out->radius;
+    }
+    for (uint32_t t = 0; !failed && t < targets; t++) sources_of(clip, count, mesh->targets[t].name, from[t]);
+    for (uint32_t t = 0; !failed && t < targets; t++) {
+        out->radius[t] = reach_cm(m, at, t);
+        if (fill_by_recipe(recipe, clip, count, mesh->targets[t].name, out, t, taken)) {
             any = 1;
             continue;
         }
-        sources_of(clip, count, m->meshes[mesh].targets[t].name, from);
-        fill(clip, from, own ? own[t] : m->meshes[mesh].weights[t], out, t);
-        if (from[0] == MODEL_NONE) continue;
-        taken[from[0]] = taken[from[1]] = 1;
+        const uint32_t *source = is_held(m, mesh, from, t) ? none : from[t];
+        fill(clip, source, own ? own[t] : mesh->weights[t], out, t);
+        if (source[0] == MODEL_NONE) continue;
+        taken[source[0]] = taken[source[1]] = 1;
         any = 1;
     }
-    if (!any) raw_floats_clear(&clip->floats[--clip->float_count]);
-    return 0;
+    if (!failed && !any) raw_floats_clear(&clip->floats[--clip->float_count]);
+    free(from);
+    return failed;
 }
 
 static int warn(model *m, const char *path, const raw_clip *clip, uint32_t count, const uint8_t *taken)
