@@ -21,8 +21,8 @@ extern "C" {
  *
  *   noh_crowd_size, noh_crowd_init   a crowd in one block
  *   noh_crowd_add, noh_crowd_remove  add and remove agents
- *   noh_crowd_set_goal, noh_crowd_set_speed    set its goal and speed; noh_crowd_move: its position
- *   noh_crowd_field_aim, noh_crowd_follow   a goal that many agents share, and the paths to it around walls
+ *   noh_crowd_set_goal, noh_crowd_set_speed   set its goal and speed; noh_crowd_move: its position
+ *   noh_crowd_field_aim, noh_crowd_follow     a goal that many agents share, and the paths to it around walls
  *   noh_crowd_step                   advance time
  *   noh_crowd_begin, noh_crowd_jobs, noh_crowd_job   the same on several threads
  *   noh_crowd_agent_at               an agent as shown; noh_crowd_agent_stepped: as of the last step
@@ -304,7 +304,7 @@ int noh_walkers_is_down(const noh_walkers *walkers, uint32_t index);
  *
  *   noh_smart_size, noh_smart_init      objects and their agents, in one block
  *   noh_smart_enter, noh_smart_leave    add and remove an agent
- *   noh_smart_request                       request the best free slot for a need
+ *   noh_smart_request                   request the best free slot for a need
  *   noh_smart_arrive                    the agent has reached its slot
  *   noh_smart_release                   cancel a request or a use
  *   noh_smart_step                      advance time: needs grow, uses end, free slots are assigned

@@ -358,8 +358,8 @@ const noh_gl_api *noh_gl_lost_api(void);
 typedef struct noh_gl_ledger {
     uint64_t buffer_bytes, texture_bytes, renderbuffer_bytes;
     uint32_t buffers, textures, renderbuffers, framebuffers, programs;
-    /* With stages that share (noh_stage_desc.share): the number of the context. After a lost one add 1, before anything
-     * is made or restored in the new one */
+    /* With stages that share (noh_stage_desc.share): the number of the context. After a lost context add 1 before you
+     * make or restore objects in the new one */
     uint32_t contexts;
     struct noh_gl_sharing *sharing; /* private: these stages */
 } noh_gl_ledger;
@@ -380,8 +380,8 @@ typedef struct noh_gl_texture {
 /* The context for making objects. The struct is not kept; the table and the ledger must outlive the objects. */
 typedef struct noh_gl_device {
     const noh_gl_api *api;
-    /* The same for all that is drawn together, since shadows are soft by its render_f16. NULL: they are not; then no
-     * noh_gl_morph_init, noh_gl_skin_init and stages. */
+    /* The same for all that is drawn together: render_f16 decides whether shadows are soft. NULL: they are hard, and
+     * the device is of no use to noh_gl_morph_init, noh_gl_skin_init and noh_stage_init */
     const noh_gl_caps *caps;
     noh_gl_ledger *ledger;
     char *log; /* [log_bytes] receives compile errors of shaders, as in noh_gl_program_create; NULL: no log */
@@ -411,8 +411,8 @@ typedef struct noh_gl {
 } noh_gl;
 
 /* Load GL's functions through `get`, find out what the GPU can do, and set up `device` with an empty ledger. *gl must
- * stay where it is: `device` and all objects that are made with it point into it. Nothing is left on the GPU. In a
- * new context after a lost one call noh_gl_api_load for `api` instead: the ledger goes on.
+ * stay where it is: `device` and all objects that are made with it point into it. No object stays on the
+ * GPU. After a lost context call only noh_gl_api_load for `api`: the ledger keeps its counts.
  * errors  as noh_gl_api_load and noh_gl_caps_probe: *gl is then undefined, except for an empty log */
 noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *error);
 
@@ -470,7 +470,7 @@ const char *noh_gl_shader_text(const char *name);
  *   noh_gl_state_restore  restore it
  *
  * Render state is yours. Each call sets the state it needs and restores it; it reads only the state it changes, a dozen
- * glGet per frame. Bindings are left empty. On entry only the state in the column "uses yours" matters:
+ * glGet per frame. Bindings that noh used are left at 0. On entry only the state in the column "uses yours" matters:
  *
  *   call                          uses yours                      sets and puts back            leaves
  *   noh_stage_draw,               draw framebuffer, viewport,     depth test (on), culling,     (1)
@@ -509,7 +509,7 @@ const char *noh_gl_shader_text(const char *name);
  * (4) With GL_SAMPLE_ALPHA_TO_COVERAGE on, edges of alpha-cut materials are as smooth as the target's samples, and
  *     dithered in a target of one sample; all but opaque passes turn it off. The alpha of smooth edges is written, too:
  *     where a page is seen through the target's alpha, turn off alpha's colour mask, or leave this off. Leave it off
- *     after NOH_PASS_DEPTH: the depth of such an edge is there already, and the background would show through it.
+ *     after NOH_PASS_DEPTH: the depth of such an edge is written already, and the background would show through it.
  *
  * No transform feedback may be active. On desktop GL, polygons must be filled (glPolygonMode).
  *

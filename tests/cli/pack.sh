@@ -63,7 +63,7 @@ says 'checksum of a block of the wire form is wrong'
 { cat "$work/mask.nohz"; echo more; } >"$work/longer.nohz"
 noh info "$work/longer.nohz"
 expect 1 'bytes behind the end'
-says 'behind the end'
+says 'follow the end'
 noh pack "$pack" -o "$work/no.nohz" --error-um -1
 expect 2 'a bound below 0'
 says '--error-um must be'

@@ -133,7 +133,7 @@ static int choose_eyes(model *m, const face_moves *moves, FILE *report, model_er
     if (moves->looks) return 0;
     if (strncmp(own.what, asked, sizeof asked - 1u) == 0) what += sizeof asked - 1u;
     return model_warn(m, "eyes get no joints, and %s: %s%s%s", turn, own.where, own.where[0] ? ": " : "", what)
-               ? model_fail(error, "", "out of memory")
+               ? model_fail_memory(error)
                : 0;
 }
 

@@ -30,11 +30,6 @@
 
 #define BONES_RATIO 2.0 /* a larger ratio of bone lengths means another unit, not another person */
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 /* ---- reading ---- */
 
 static int resample_set(raw_set *set, double sample_rate_hz, model_error *error)
@@ -90,12 +85,12 @@ static int read_clip_file(const char *path, file_reader reader, const source_opt
     s->m = model_new();
     s->sets = malloc(sizeof *s->sets);
     if (!s->m || !s->sets) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     s->sets[0] = s->single;
     s->set_count = 1;
     if (turn(s->single, options, error)) return 1;
-    if (clean_set(s->single, options->clean, options->skin.report)) return out_of_memory(error);
+    if (clean_set(s->single, options->clean, options->skin.report)) return model_fail_memory(error);
     return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 
@@ -133,7 +128,7 @@ static int add_lips(model *m, FILE *report, model_error *error)
 {
     char why[LIP_WHY_BYTES];
     if (lip_target_add(m, report, why, error)) return 1;
-    return why[0] && model_warn(m, "--lips: %s; f and v use its recipe", why) ? out_of_memory(error) : 0;
+    return why[0] && model_warn(m, "--lips: %s; f and v use its recipe", why) ? model_fail_memory(error) : 0;
 }
 
 static int read_model_file(const char *path, const source_options *options, source *s, model_error *error)
@@ -154,7 +149,7 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
         return 1;
     }
-    if (meshes_upright(s->m)) return out_of_memory(error);
+    if (meshes_upright(s->m)) return model_fail_memory(error);
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }
@@ -165,17 +160,17 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (seams_close(s->m, options->seam, options->skin.report, error)) {
         return 1;
     }
-    if (options->skin.rigid_faces && skins_of_faces(s->m)) return out_of_memory(error);
+    if (options->skin.rigid_faces && skins_of_faces(s->m)) return model_fail_memory(error);
     if (clips_from_model(s->m, &sampling, &s->made, error) || skins_bind(s->m, s->made, &options->skin, error)) {
         return 1;
     }
     s->sets = malloc(((size_t)s->made->set_count + 1u) * sizeof *s->sets); /* with room for `single` */
     if (!s->sets) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     s->set_count = s->made->set_count;
     for (uint32_t i = 0; i < s->set_count; i++) {
-        if (clean_set(s->made->sets[i], options->clean, options->skin.report)) return out_of_memory(error);
+        if (clean_set(s->made->sets[i], options->clean, options->skin.report)) return model_fail_memory(error);
     }
     if (s->set_count) memcpy(s->sets, s->made->sets, s->set_count * sizeof *s->sets);
     return 0;
@@ -207,7 +202,7 @@ int source_read(const char *path, const source_options *options, source *s, mode
                                            : read_model_file(path, options, s, error))
         return 1;
     for (uint32_t i = 0; i < s->set_count; i++) {
-        if (warn_of_joint_names(s, &s->sets[i]->skeleton)) return out_of_memory(error);
+        if (warn_of_joint_names(s, &s->sets[i]->skeleton)) return model_fail_memory(error);
     }
     return 0;
 }
@@ -301,7 +296,7 @@ static int any_set(source *base, raw_set **to, model_error *error)
     if (base->set_count == 0) {
         base->single = raw_set_new(0, 0);
         if (!base->single) {
-            return out_of_memory(error);
+            return model_fail_memory(error);
         }
         base->single->skeleton.unit_cm = 100.0;
         base->sets[0] = base->single;
@@ -340,7 +335,7 @@ static int bind_weights(source *base, const char *base_path, raw_clip *clip, mod
             free(floats.values);
             free(floats.radius);
             memset(&clip->floats[i], 0, sizeof floats);
-            if (failed) return out_of_memory(error);
+            if (failed) return model_fail_memory(error);
             continue;
         }
         floats.node = node;
@@ -368,7 +363,7 @@ static int rename_clip(raw_clip *clip, const char *path, model_error *error)
     size_t length = dot ? (size_t)(dot - stem) : strlen(stem), bytes = length + strlen(clip->name) + 2;
     char *name = malloc(bytes);
     if (!name) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     snprintf(name, bytes, "%.*s/%s", (int)length, stem, clip->name);
     free(clip->name);
@@ -382,12 +377,12 @@ static int number_clip(source *base, const raw_set *to, raw_clip *clip, model_er
     const size_t bytes = strlen(clip->name) + 16u;
     char *wanted = clip->name, *name = malloc(bytes);
     int failed;
-    if (!name) return out_of_memory(error);
+    if (!name) return model_fail_memory(error);
     for (uint32_t n = 2; n == 2 || has_clip(to, name); n++) snprintf(name, bytes, "%s_%u", wanted, (unsigned)n);
     clip->name = name;
     failed = model_warn(base->m, "two clips are named '%.80s': the second is clip '%.80s'", wanted, name);
     free(wanted);
-    return failed ? out_of_memory(error) : 0;
+    return failed ? model_fail_memory(error) : 0;
 }
 
 static void scale_translations(raw_clip *clip, double scale)
@@ -403,7 +398,7 @@ static int move_clip(raw_clip *clip, raw_set *to, model_error *error)
     raw_clip *grown = realloc(to->clips, ((size_t)to->clip_count + 1u) * sizeof *grown);
     clip->source = NULL; /* its nodes are another file's */
     if (!grown) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     to->clips = grown;
     to->clips[to->clip_count++] = *clip;
@@ -420,7 +415,7 @@ static int join_clip(source *base, const char *base_path, raw_set *from, raw_cli
     }
     if (base->m->mesh_count && clip->float_count && clip->floats[0].node == MODEL_NONE &&
         shapes_match(base->m, base_path, clip)) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     if (bind_weights(base, base_path, clip, error) || (has_clip(to, clip->name) && rename_clip(clip, path, error))) {
         return 1;
@@ -460,7 +455,7 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
         match = joint_match_set(from, &base->sets[i]->skeleton, options, &report, error);
         failed = report && match == JOINTS_MATCHED && model_warn(base->m, "%s: %s", path, report);
         free(report);
-        if (failed) return out_of_memory(error);
+        if (failed) return model_fail_memory(error);
     }
     return match == JOINTS_FAILED;
 }
@@ -526,7 +521,7 @@ int source_join(source *base, const char *base_path, source *other, const char *
             return 1;
         }
     }
-    if (keep_warnings(base, base_path, other, other_path)) return out_of_memory(error);
+    if (keep_warnings(base, base_path, other, other_path)) return model_fail_memory(error);
     for (uint32_t i = 0; i < other->set_count; i++) {
         for (uint32_t c = 0; c < other->sets[i]->clip_count; c++) {
             if (join_clip(base, base_path, other->sets[i], &other->sets[i]->clips[c], other_path, &joined, error)) {
@@ -539,7 +534,7 @@ int source_join(source *base, const char *base_path, source *other, const char *
     }
     if (other->m->mesh_count &&
         model_warn(base->m, "%s: only its clips were used: the meshes come from %s", other_path, base_path)) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     return 0;
 }

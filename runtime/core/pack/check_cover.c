@@ -32,7 +32,7 @@ noh_result noh_check_cover(noh_check *check)
         const uint32_t *bits = (const uint32_t *)(const void *)(check->bytes + h->bits_offset);
         const uint32_t rest = h->triangle_count % 32u;
         if ((rest && bits[words - 1u] >> rest) || count_bits(bits, words) != h->hidden_count) {
-            return noh_check_fail(check, "bits of a cover are not as many as it counts", h->bits_offset);
+            return noh_check_fail(check, "a cover has more or fewer bits than its count", h->bits_offset);
         }
     }
     return result ? result : noh_check_end(check);

@@ -190,7 +190,7 @@ static noh_result check_space(const graph_view *g, const noh_pack_graph_node *n)
                       too_long(s->first_triangle, s->triangle_count, g->h->triangle_count)),
         };
         result = CHECK(ranges,
-                       "blend space has not one point for each child, or points or triangles that are not in the "
+                       "blend space does not have one point for each child, or its points or triangles are not in the "
                        "chunk",
                        s);
     }

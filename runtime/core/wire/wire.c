@@ -255,7 +255,7 @@ noh_result noh_wire_push(noh_wire *w, const void *bytes, size_t byte_count, noh_
         if (w->phase == WIRE_FAILED) return fail_here(w, "the wire form was refused before", error);
         if (w->phase == WIRE_WHOLE) {
             w->phase = WIRE_FAILED;
-            return fail_here(w, "bytes go on behind the end of the wire form", error);
+            return fail_here(w, "bytes follow the end of the wire form", error);
         }
         memcpy(to + w->have, from, now);
         from += now;

@@ -511,8 +511,8 @@ static noh_result attach(const noh_stage *stage, noh_stage_actor *a, noh_actor p
     uint32_t depth;
     if (noh_stage_steps_to(stage, p, a) != NOH_NONE) {
         return noh_fail(error, NOH_ERR_ARG,
-                        "an actor would be attached to itself: the parent is the actor, or is attached to it; let that "
-                        "go first",
+                        "an actor would be attached to itself: the parent is the actor, or is attached to it; detach "
+                        "that first",
                         index, 0);
     }
     depth = noh_stage_steps_to(stage, p, noh_stage_root_of(stage, p)) + 1u + steps_below(stage, a);

@@ -17,6 +17,11 @@ int model_fail(model_error *error, const char *where, const char *format, ...)
     return 1;
 }
 
+int model_fail_memory(model_error *error)
+{
+    return model_fail(error, "", "out of memory");
+}
+
 void *model_zeros(size_t count, size_t element_size)
 {
     if (element_size == 0 || count > SIZE_MAX / element_size) return NULL;

@@ -19,6 +19,7 @@ typedef struct model_error {
 __attribute__((format(printf, 3, 4)))
 #endif
 int model_fail(model_error *error, const char *where, const char *format, ...);
+int model_fail_memory(model_error *error); /* "out of memory" */
 
 /* A zeroed array, or NULL: out of memory, or its size overflows. 0 elements get a block too. */
 void *model_zeros(size_t count, size_t element_size);

@@ -52,7 +52,7 @@ static int decode(const unsigned char *bytes, size_t count, image_file *image, m
 static int append_end(char **bytes, size_t *count, image_file *image, model_error *error)
 {
     char *grown = realloc(*bytes, *count + 2u);
-    if (!grown) return model_fail(error, "", "out of memory");
+    if (!grown) return model_fail_memory(error);
     for (size_t i = 0; i < 2u; i++) grown[*count + i] = IMAGE_END[i];
     *bytes = grown;
     *count += 2u;

@@ -397,7 +397,7 @@ static int cover_all(const convert_options *options, const cloth *c, cover *worn
     for (uint32_t i = 0; i < worn->count; i++) {
         covered_mesh *m = &worn->meshes[i];
         depth d;
-        if (cover_mesh(c, m)) return model_fail(&failure->error, "", "out of memory");
+        if (cover_mesh(c, m)) return model_fail_memory(&failure->error);
         if (!options->report || !m->pin_count) continue;
         memset(&d, 0, sizeof d);
         if (measure_clips(c, worn, m, &d, &error)) return model_fail(&failure->error, "", "%s", error.what);
@@ -416,7 +416,7 @@ static int open_wearer(const char *path, cover *worn, cloth *c, convert_failure 
         return model_fail(&failure->error, "", "%s: --wear takes the pack of the wearer", error.what);
     }
     worn->meshes = calloc(worn->pack.runs[NOH_CHUNK_MESH].count + 1u, sizeof *worn->meshes);
-    if (!worn->meshes) return model_fail(&failure->error, "", "out of memory");
+    if (!worn->meshes) return model_fail_memory(&failure->error);
     for (uint32_t i = 0; i < worn->pack.runs[NOH_CHUNK_MESH].count; i++) {
         covered_mesh *m = &worn->meshes[worn->count];
         if (noh_pack_mesh_at(&worn->pack, i, &m->mesh, NULL) || m->mesh.header->skin == NOH_NONE) continue;
@@ -434,10 +434,10 @@ static int read_cover(const convert_options *options, const source *s, void **ma
     if (!options->texts[NOH_CHUNK_COVER] || options->only == CONVERT_CLIPS) return 0;
     failure->file = options->texts[NOH_CHUNK_COVER];
     *made = worn = calloc(1, sizeof *worn);
-    if (!worn) return model_fail(&failure->error, "", "out of memory");
+    if (!worn) return model_fail_memory(&failure->error);
     memset(&c, 0, sizeof c);
     failed = open_wearer(failure->file, worn, &c, failure);
-    if (!failed && cloth_make(s->m, &c)) failed = model_fail(&failure->error, "", "out of memory");
+    if (!failed && cloth_make(s->m, &c)) failed = model_fail_memory(&failure->error);
     failed = failed || cover_all(options, &c, worn, failure);
     ray_tree_free(&c.tree);
     free(c.triangles);

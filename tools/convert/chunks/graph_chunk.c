@@ -14,7 +14,7 @@ static int read_graphs(const convert_options *options, const source *s, void **m
     *made = graphs;
     if (!failed && graph_text_warn(graphs, s->sets, s->set_count, options->clip.check_loops,
                                    options->texts[NOH_CHUNK_GRAPH], s->m)) {
-        return model_fail(&failure->error, "", "out of memory");
+        return model_fail_memory(&failure->error);
     }
     return failed;
 }

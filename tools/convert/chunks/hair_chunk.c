@@ -17,13 +17,13 @@ static int read_hair(const convert_options *options, const source *s, void **mad
     haircut *cut;
     if (!options->texts[NOH_CHUNK_HAIR] || options->only == CONVERT_CLIPS) return 0;
     *made = cut = calloc(1, sizeof *cut);
-    if (!cut) return model_fail(&failure->error, "", "out of memory");
+    if (!cut) return model_fail_memory(&failure->error);
     failure->file = options->texts[NOH_CHUNK_HAIR];
     if (hair_read(options->texts[NOH_CHUNK_HAIR], &cut->text, &failure->line, &failure->error)) return 1;
     if (cut->text->joint && !source_has_joint(s, cut->text->joint)) {
         return model_fail(&failure->error, "", "no skeleton has the joint '%s'", cut->text->joint);
     }
-    return hair_grow(cut->text, &cut->grown) ? model_fail(&failure->error, "", "out of memory") : 0;
+    return hair_grow(cut->text, &cut->grown) ? model_fail_memory(&failure->error) : 0;
 }
 
 static void free_hair(void *made)

@@ -154,7 +154,7 @@ static int find_clips(const source *s, match_table *t, uint32_t *line, model_err
             t->raws[t->clip_count++] = &set->clips[c];
         }
     }
-    if (failed) failed = model_fail(error, "", "out of memory");
+    if (failed) failed = model_fail_memory(error);
     for (uint32_t k = 0; k < t->line_count && !failed; k++) {
         if (is_used[k]) continue;
         *line = t->lines[k].line;
@@ -371,7 +371,7 @@ static int find_rows(match_table *t, int all_loop, model_error *error)
         double(*grown)[FEATURES] = realloc(t->features, t->row_count * sizeof *grown);
         if (grown) t->features = grown;
         failed = !grown || open_sampler(t, t->raws[c], loops, &s);
-        if (failed) failed = model_fail(error, "", "out of memory");
+        if (failed) failed = model_fail_memory(error);
         for (uint32_t r = 0; r < t->clips[c].row_count && !failed; r++) {
             find_features(&s, r * row_s, t->features[t->clips[c].first_row + r]);
         }
@@ -597,13 +597,13 @@ static int read_match(const convert_options *options, const source *s, void **ma
     if (!options->texts[NOH_CHUNK_MATCH] || options->only == CONVERT_MESH) return 0;
     failure->file = options->texts[NOH_CHUNK_MATCH];
     *made = t = calloc(1, sizeof *t);
-    if (!t) return model_fail(&failure->error, "", "out of memory");
+    if (!t) return model_fail_memory(&failure->error);
     t->rate = ROWS_A_SECOND;
     failed = read_text(failure->file, t, &failure->line, &failure->error);
     if (!failed) failure->line = 0;
     failed = failed || find_clips(s, t, &failure->line, &failure->error) ||
              find_rows(t, options->clip.check_loops, &failure->error);
-    if (!failed && (make_numbers(t) || make_order(t))) failed = model_fail(&failure->error, "", "out of memory");
+    if (!failed && (make_numbers(t) || make_order(t))) failed = model_fail_memory(&failure->error);
     if (!failed && options->report) report(options->report, t);
     return failed;
 }

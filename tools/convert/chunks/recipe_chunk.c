@@ -38,19 +38,19 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
         const int is_there = is_joint ? source_has_joint(s, row->target) : has_target(s->m, row->target);
         if (!is_there && model_warn(s->m, "%s:%u: no %s '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
                                     is_joint ? "skeleton has the joint" : "mesh has the target", row->target)) {
-            return model_fail(&failure->error, "", "out of memory");
+            return model_fail_memory(&failure->error);
         }
         if ((row->channel[0] == '+' || row->channel[0] == ':') && !has_target(s->m, row->channel + 1) &&
             model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
                        row->channel + 1)) {
-            return model_fail(&failure->error, "", "out of memory");
+            return model_fail_memory(&failure->error);
         }
     }
     for (uint32_t i = 0; i < (*out)->wrinkle_count; i++) {
         const wrinkle_row *row = &(*out)->wrinkles[i];
         if (!has_target(s->m, row->target) && model_warn(s->m, "%s:%u: no mesh has the target '%s'",
                                                          options->texts[NOH_CHUNK_RECIPE], row->line, row->target)) {
-            return model_fail(&failure->error, "", "out of memory");
+            return model_fail_memory(&failure->error);
         }
     }
     failure->line = 0;

@@ -39,7 +39,7 @@ static int bind_own_springs(const source *s, set_springs *out, convert_failure *
     memset(&failure->error, 0, sizeof failure->error);
     if (failed || springs_bind_nodes(s->m, s->sets, s->set_count, out)) {
         springs_text_free(text);
-        return model_fail(&failure->error, "", "out of memory");
+        return model_fail_memory(&failure->error);
     }
     failed = springs_bind_text(text, s->m, s->sets, s->set_count, 1, out, &line, &failure->error);
     springs_text_free(text);
@@ -63,7 +63,7 @@ static int bind_given_springs(const convert_options *options, const source *s, s
                               convert_failure *failure)
 {
     springs_text *text = springs_text_new();
-    int failed = text ? read_given_springs(options, text, failure) : model_fail(&failure->error, "", "out of memory");
+    int failed = text ? read_given_springs(options, text, failure) : model_fail_memory(&failure->error);
     if (!failed && springs_bind_text(text, s->m, s->sets, s->set_count, 0, out, &failure->line, &failure->error)) {
         failure->file = failure->line ? options->texts[NOH_CHUNK_SPRINGS] : "--spring";
         failed = 1;
@@ -84,12 +84,12 @@ static int read_springs(const convert_options *options, const source *s, void **
     if (options->only == CONVERT_CLIPS) return 0;
     *made = all = calloc(1, sizeof *all);
     if (all) all->sets = calloc(s->set_count + 1u, sizeof *all->sets);
-    if (!all || !all->sets) return model_fail(&failure->error, "", "out of memory");
+    if (!all || !all->sets) return model_fail_memory(&failure->error);
     all->set_count = s->set_count;
     failed = options->texts[NOH_CHUNK_SPRINGS] || options->spring_line_count
                  ? bind_given_springs(options, s, all->sets, failure)
                  : bind_own_springs(s, all->sets, failure);
-    return failed || (springs_sort(all->sets, s->set_count) && model_fail(&failure->error, "", "out of memory"));
+    return failed || (springs_sort(all->sets, s->set_count) && model_fail_memory(&failure->error));
 }
 
 static void free_springs(void *made)

@@ -10,7 +10,7 @@ static int read_ground(const convert_options *options, const source *s, void **m
     (void)s;
     if (!options->texts[NOH_CHUNK_TERRAIN]) return 0;
     *made = read = calloc(1, sizeof *read);
-    if (!read) return model_fail(&failure->error, "", "out of memory");
+    if (!read) return model_fail_memory(&failure->error);
     failure->file = options->texts[NOH_CHUNK_TERRAIN];
     if (terrain_read(options->texts[NOH_CHUNK_TERRAIN], &options->ground, read, &failure->error)) return 1;
     if (options->report) {

@@ -329,7 +329,7 @@ int face_csv_read(const char *path, raw_set **out, model_error *error)
     char *bytes = f ? input_read_text(path, &size, error) : NULL;
     int failed = !bytes;
     *out = NULL;
-    if (!f) return model_fail(error, "", "out of memory");
+    if (!f) return model_fail_memory(error);
     if (!failed) {
         text_start(&f->text, bytes, size, error);
         failed = read_columns(f);

@@ -62,7 +62,7 @@ static int pair_line(matcher *m, text_scan *scan, text_word word)
     theirs = text_copy(word);
     ours = text_copy(other);
     if (!theirs || !ours) {
-        failed = model_fail(scan->error, "", "out of memory");
+        failed = model_fail_memory(scan->error);
     } else {
         a = find_joint(&m->set->skeleton, theirs);
         b = find_joint(m->to, ours);
@@ -355,16 +355,16 @@ static joint_match fit(matcher *m, const joint_match_options *options, char **re
 {
     if (options->names && pair_by_file(m, options->names, error)) return JOINTS_FAILED;
     pair_by_name(m);
-    if (!is_whole(m) && pair_by_meaning(m)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+    if (!is_whole(m) && pair_by_meaning(m)) return (void)model_fail_memory(error), JOINTS_FAILED;
     if (!is_whole(m) &&
         !(options->partial && (2u * m->found >= m->to->joint_count || 2u * m->found >= m->set->skeleton.joint_count)))
         return JOINTS_DIFFER;
     *report = write_report(m);
-    if (!*report) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+    if (!*report) return (void)model_fail_memory(error), JOINTS_FAILED;
     for (uint32_t c = 0; c < m->set->clip_count; c++) {
-        if (refit_clip(m, &m->set->clips[c])) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+        if (refit_clip(m, &m->set->clips[c])) return (void)model_fail_memory(error), JOINTS_FAILED;
     }
-    if (raw_skeleton_take(&m->set->skeleton, m->to)) return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+    if (raw_skeleton_take(&m->set->skeleton, m->to)) return (void)model_fail_memory(error), JOINTS_FAILED;
     return JOINTS_MATCHED;
 }
 
@@ -379,7 +379,7 @@ joint_match joint_match_set(raw_set *set, const raw_skeleton *to, const joint_ma
     if (!m.counterpart || !m.taken) {
         free(m.counterpart);
         free(m.taken);
-        return (void)model_fail(error, "", "out of memory"), JOINTS_FAILED;
+        return (void)model_fail_memory(error), JOINTS_FAILED;
     }
     for (uint32_t j = 0; j < to->joint_count; j++) m.counterpart[j] = MODEL_NONE;
     result = to->joint_count && set->skeleton.joint_count ? fit(&m, options, report, error) : JOINTS_DIFFER;

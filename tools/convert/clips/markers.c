@@ -10,11 +10,6 @@
 #include "convert/model/model_build.h"
 #include "raw_set.h"
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 int markers_alloc(markers *m, model_error *error)
 {
     const uint64_t joints = (uint64_t)m->count + 1u;
@@ -26,7 +21,7 @@ int markers_alloc(markers *m, model_error *error)
     }
     m->names = model_zeros(m->count, sizeof *m->names);
     m->places = model_zeros((size_t)m->count * m->frame_count, 3 * sizeof *m->places);
-    return m->names && m->places ? 0 : out_of_memory(error);
+    return m->names && m->places ? 0 : model_fail_memory(error);
 }
 
 void markers_free(markers *m)
@@ -172,7 +167,7 @@ int markers_set(markers *m, const char *path, raw_set **out, model_error *error)
     if (!(m->rate_hz >= 1e-3 && m->rate_hz <= 1e6)) {
         failed = model_fail(error, "", "a rate of %g frames a second: it must be 0.001 to 1000000", m->rate_hz);
     } else {
-        failed = (!kept || set_of(m, path, kept, &text, out)) && out_of_memory(error);
+        failed = (!kept || set_of(m, path, kept, &text, out)) && model_fail_memory(error);
     }
     if (failed) {
         raw_set_free(*out);

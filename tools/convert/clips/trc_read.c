@@ -134,7 +134,7 @@ static int fill(trc_file *f, const byte_buffer *names, model_error *error)
     if (!f->damaged) return 0;
     (void)snprintf(text, sizeof text, "%u fields are not numbers (line %u)", f->damaged, f->damaged_line);
     f->m.warning = model_string(text);
-    return f->m.warning ? 0 : model_fail(error, "", "out of memory");
+    return f->m.warning ? 0 : model_fail_memory(error);
 }
 
 int trc_read(const char *path, double unit_cm, raw_set **out, model_error *error)

@@ -262,7 +262,7 @@ int clip_errors_measure(const raw_skeleton *skeleton, const raw_clip *raw, const
              measure_update_rates(&p, raw->joint_count && at->joint_radius ? at->points : NULL, out->update_rate);
     close_player(&p);
     if (failed) {
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     if (!settle(out->joint, out->level_count) || !settle(out->update_rate, NOH_CLIP_UPDATE_RATES)) {
         return model_fail(error, "", "clip '%.80s': its joints move farther than a float can hold", raw->name);

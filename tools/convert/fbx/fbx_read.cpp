@@ -70,7 +70,7 @@ static int read(const char *path, const fbx_options &options, model **out, model
         if (model_warn(*out, "%s", said.c_str())) {
             model_free(*out);
             *out = nullptr;
-            return model_fail(error, "", "out of memory");
+            return model_fail_memory(error);
         }
     return 0;
 }

@@ -1,5 +1,6 @@
 /* gltf_scene.cpp: the node hierarchy. */
 #include "gltf_internal.h"
+#include "convert/base/quat.h"
 
 #include "noh/base.h"
 
@@ -166,24 +167,10 @@ static void normalize_rotation(file &f, double *q, const std::string &where)
     for (int i = 0; i < 4; ++i) q[i] /= length;
 }
 
-static void matrix_of_rotation(const double *q, double *m) /* [3][3], columns */
-{
-    double x = q[0], y = q[1], z = q[2], w = q[3];
-    m[0] = 1.0 - 2.0 * (y * y + z * z);
-    m[1] = 2.0 * (x * y + z * w);
-    m[2] = 2.0 * (x * z - y * w);
-    m[3] = 2.0 * (x * y - z * w);
-    m[4] = 1.0 - 2.0 * (x * x + z * z);
-    m[5] = 2.0 * (y * z + x * w);
-    m[6] = 2.0 * (x * z + y * w);
-    m[7] = 2.0 * (y * z - x * w);
-    m[8] = 1.0 - 2.0 * (x * x + y * y);
-}
-
 static void compose(transform &t)
 {
     double r[9];
-    matrix_of_rotation(t.rotation, r);
+    quat_columns(t.rotation, r);
     for (int column = 0; column < 3; ++column) {
         for (int row = 0; row < 3; ++row) t.matrix[column * 4 + row] = r[column * 3 + row] * t.scale[column];
         t.matrix[column * 4 + 3] = 0.0;

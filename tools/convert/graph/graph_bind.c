@@ -65,7 +65,7 @@ int graph_text_bind(const graph_file *file, raw_set *const *sets, uint32_t set_c
     graph_reader *r = calloc(1, sizeof *r);
     int failed = !r || list_names(sets, set_count, 0, &clips) || list_names(sets, set_count, 1, &joints);
     *line = 0;
-    if (failed) (void)model_fail(error, "", "out of memory");
+    if (failed) (void)model_fail_memory(error);
     if (r) {
         r->error = error;
         r->line = line;

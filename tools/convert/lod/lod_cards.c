@@ -10,19 +10,12 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 
 #define CARD_AREA 0.875
 #define CARD_TRIANGLES 512u /* an open sheet of more is no card */
 #define CARD_LEAST 2u       /* triangles */
-
-static uint32_t root_of(uint32_t *parent, uint32_t i)
-{
-    while (parent[i] != i) {
-        i = parent[i] = parent[parent[i]];
-    }
-    return i;
-}
 
 static double area_at_rest(const lod_surface *s, uint32_t corner, uint32_t point)
 {
@@ -45,8 +38,7 @@ static void join(const lod_surface *s, uint32_t *parent)
     }
     for (uint32_t c = 0; c < s->triangle_count * 3u; c++) {
         if (!s->dead[c / 3u]) {
-            uint32_t a = root_of(parent, lod_point(s, c)), b = root_of(parent, lod_point(s, lod_next(c)));
-            parent[a < b ? b : a] = a < b ? a : b;
+            islands_join(parent, lod_point(s, c), lod_point(s, lod_next(c)));
         }
     }
 }
@@ -65,20 +57,20 @@ static void count_islands(const lod_surface *s, const uint8_t *border, uint32_t 
 {
     for (uint32_t p = 0; p < s->mesh->vertex_count; p++) {
         if (s->first[p] != LOD_NONE) {
-            island_count *c = &counts[root_of(parent, p)];
+            island_count *c = &counts[islands_root(parent, p)];
             c->points++;
             c->border += border[p];
         }
     }
     for (uint32_t t = 0; t < s->triangle_count; t++) {
-        if (!s->dead[t]) counts[root_of(parent, lod_point(s, t * 3u))].triangles++;
+        if (!s->dead[t]) counts[islands_root(parent, lod_point(s, t * 3u))].triangles++;
     }
 }
 
 static void number_cards(lod_surface *s, uint32_t *parent, island_count *counts)
 {
     for (uint32_t p = 0; p < s->mesh->vertex_count; p++) {
-        const uint32_t root = root_of(parent, p);
+        const uint32_t root = islands_root(parent, p);
         if (p == root && is_card(&counts[p])) {
             counts[p].points = s->card_count++;
         } else if (p == root) {

@@ -45,14 +45,6 @@ typedef struct ranked {
 
 /* ---- samples ---- */
 
-static double random_unit(uint64_t *state)
-{
-    *state ^= *state >> 12;
-    *state ^= *state << 25;
-    *state ^= *state >> 27;
-    return (double)((*state * UINT64_C(0x2545f4914f6cdd1d)) >> 40) / 16777216.0;
-}
-
 static float edge_length(const float *a, const float *b)
 {
     float d[3] = { a[0] - b[0], a[1] - b[1], a[2] - b[2] };
@@ -103,7 +95,7 @@ static void sample_triangle(way *w, uint32_t triangle, uint32_t steps, float are
 {
     uint32_t inner = 2u + (steps - 1u) * (steps - 2u) / 2u;
     float share = area / (float)inner, third = 1.0f / 3.0f;
-    float u = (float)random_unit(random), v = (float)random_unit(random);
+    float u = (float)lod_random(random), v = (float)lod_random(random);
     for (uint32_t i = 0; i <= steps; i++) {
         for (uint32_t j = 0; i + j <= steps; j++) {
             uint32_t k = steps - i - j;

@@ -4,21 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/model/islands.h"
+
 int lod_level_alloc(lod_level *level, uint32_t submesh_count)
 {
     level->indices = calloc((size_t)level->index_count + 1u, sizeof *level->indices);
     level->submesh_first = calloc((size_t)submesh_count * 2u + 1u, sizeof *level->submesh_first);
     level->submesh_count = level->submesh_first ? level->submesh_first + submesh_count : NULL;
     return !level->indices || !level->submesh_first;
-}
-
-/* The vertex in place of a removed one: the end of its chain, which is shortened on the way. */
-static uint32_t end_of(uint32_t *to, uint32_t vertex)
-{
-    while (to[vertex] != vertex) {
-        vertex = to[vertex] = to[to[vertex]];
-    }
-    return vertex;
 }
 
 static int cut(const model_mesh *mesh, const lod *l, uint32_t collapses, uint32_t *to, uint8_t *used, lod_level *out)
@@ -36,7 +29,7 @@ static int cut(const model_mesh *mesh, const lod *l, uint32_t collapses, uint32_
         out->submesh_first[i] = at;
         for (uint32_t c = sub->first_index; c < sub->first_index + sub->index_count; c++) {
             if (l->gone[c / 3u] > collapses) {
-                out->indices[at] = end_of(to, mesh->indices[c]);
+                out->indices[at] = islands_root(to, mesh->indices[c]); /* what removed vertices became */
                 out->vertex_count += !used[out->indices[at]];
                 used[out->indices[at++]] = 1;
             }

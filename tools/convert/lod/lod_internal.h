@@ -112,6 +112,14 @@ static inline uint32_t lod_point(const lod_surface *s, uint32_t corner)
 {
     return s->point_of[s->corner[corner]];
 }
+/* xorshift64*: a number in 0..1, below 1. */
+static inline double lod_random(uint64_t *state)
+{
+    *state ^= *state >> 12;
+    *state ^= *state << 25;
+    *state ^= *state >> 27;
+    return (double)((*state * UINT64_C(0x2545f4914f6cdd1d)) >> 40) / 16777216.0;
+}
 static inline uint32_t lod_next(uint32_t corner)
 {
     return corner % 3u == 2u ? corner - 2u : corner + 1u;

@@ -146,7 +146,7 @@ static int certify(const model_mesh *mesh, const pose_list *poses, uint32_t firs
 {
     lod_distance *distances = model_zeros((size_t)mesh->submesh_count * (1u + mesh->target_count + poses->count),
                                           sizeof *distances);
-    int failed = !distances && model_fail(error, "", "out of memory");
+    int failed = !distances && model_fail_memory(error);
     for (uint32_t k = first; k < end && !failed; k++) {
         failed = lod_certify(mesh, &out->built->levels[out->which[k]], (const float *const *)poses->poses, poses->count,
                              distances, error);
@@ -240,7 +240,7 @@ static int rank_vertices(const model_mesh *mesh, mesh_levels *out, model_error *
             out->rank[level->indices[i]] = (uint8_t)k;
         }
     }
-    return out->rank ? 0 : model_fail(error, "", "out of memory");
+    return out->rank ? 0 : model_fail_memory(error);
 }
 
 /* ---- vertices of their own ---- */
@@ -369,7 +369,7 @@ int mesh_levels_finish(model *m, uint32_t index, const lod_settings *settings, l
     int failed = 0;
     if (out->built) {
         choose_levels(mesh, out);
-        failed = (poses_make(mesh, frames, &poses) && model_fail(error, "", "out of memory")) ||
+        failed = (poses_make(mesh, frames, &poses) && model_fail_memory(error)) ||
                  certify(mesh, &poses, 1, out->count, out, error) ||
                  own_vertices(m, index, settings, frames, out, error) ||
                  bake_targets(m, index, settings, full_count, frames, out, error) || rank_vertices(mesh, out, error);

@@ -8,20 +8,11 @@
 #define DENSE_SHARE 0.5
 #define DEFAULT_SEED UINT64_C(0x6e6f68206d697865)
 
-/* xorshift64* */
-static double random_unit(uint64_t *state)
-{
-    *state ^= *state >> 12;
-    *state ^= *state << 25;
-    *state ^= *state >> 27;
-    return (double)((*state * UINT64_C(0x2545f4914f6cdd1d)) >> 40) / 16777216.0;
-}
-
 /* For each mix, a random share of the targets at weights from 0 to 1. */
 static void mix_weights(uint64_t *state, float *weights, uint32_t count, double share)
 {
     for (uint32_t t = 0; t < count; t++) {
-        double chosen = random_unit(state), weight = random_unit(state);
+        double chosen = lod_random(state), weight = lod_random(state);
         weights[t] = chosen < share ? (float)weight : 0.0f;
     }
 }

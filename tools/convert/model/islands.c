@@ -14,7 +14,7 @@ uint32_t islands_root(uint32_t *parent, uint32_t v)
     return v;
 }
 
-static void unite(uint32_t *parent, uint32_t a, uint32_t b)
+void islands_join(uint32_t *parent, uint32_t a, uint32_t b)
 {
     a = islands_root(parent, a);
     b = islands_root(parent, b);
@@ -37,11 +37,11 @@ void islands_find(const model_mesh *mesh, uint32_t *island, uint32_t *work)
     qsort(work, mesh->vertex_count, sizeof *work, by_position);
     for (uint32_t i = 1; i < mesh->vertex_count; i++) {
         const uint32_t a = work[i - 1], b = work[i];
-        if (memcmp(mesh->position + 3 * (size_t)a, mesh->position + 3 * (size_t)b, 12) == 0) unite(island, a, b);
+        if (memcmp(mesh->position + 3 * (size_t)a, mesh->position + 3 * (size_t)b, 12) == 0) islands_join(island, a, b);
     }
     for (uint32_t i = 0; i + 2 < mesh->index_count; i += 3) {
-        unite(island, mesh->indices[i], mesh->indices[i + 1]);
-        unite(island, mesh->indices[i], mesh->indices[i + 2]);
+        islands_join(island, mesh->indices[i], mesh->indices[i + 1]);
+        islands_join(island, mesh->indices[i], mesh->indices[i + 2]);
     }
     for (uint32_t v = 0; v < mesh->vertex_count; v++) island[v] = islands_root(island, v);
 }

@@ -1,4 +1,4 @@
-/* islands.h: which vertices of a mesh hang together. */
+/* islands.h: which vertices of a mesh are connected. */
 #ifndef NOH_CONVERT_MODEL_ISLANDS_H
 #define NOH_CONVERT_MODEL_ISLANDS_H
 
@@ -27,5 +27,6 @@ void islands_close(mesh_islands *islands);
 
 /* The root of a vertex in a union-find; what is passed on the way moves nearer to it. */
 uint32_t islands_root(uint32_t *parent, uint32_t v);
+void islands_join(uint32_t *parent, uint32_t a, uint32_t b); /* the smaller root stays */
 
 #endif

@@ -9,11 +9,6 @@
 #include "core/base/name_internal.h"
 #include "model_build.h"
 
-static int fail_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 /* ---- nodes ---- */
 
 static const char *plain_name(const char *name)
@@ -224,7 +219,7 @@ static int hang_all(model *m, uint32_t before, int is_skinned, const char *joint
                        "%s: no joint moves it, as none of the model's joints has 'head' in its name: name one with "
                        "--attach-joint",
                        path) &&
-                   fail_memory(error);
+                   model_fail_memory(error);
         }
     }
     return 0;
@@ -264,7 +259,7 @@ int model_attach(model *m, model *other, const char *joint, const char *path, mo
     map = model_zeros(other->node_count, sizeof *map);
     if (!map || move_nodes(m, other, map)) {
         free(map);
-        return fail_memory(error);
+        return model_fail_memory(error);
     }
     if (!shares_joint(other, map, before)) {
         free(map);
@@ -274,5 +269,5 @@ int model_attach(model *m, model *other, const char *joint, const char *path, mo
     free(map);
     if (hang_all(m, before, is_skinned, joint, path, error)) return 1;
     failed = move_arrays(m, other) || tell(m, other, path);
-    return failed ? fail_memory(error) : 0;
+    return failed ? model_fail_memory(error) : 0;
 }

@@ -6,6 +6,7 @@
  * an edge below the crease angle. A mesh that splits vertices at its hard edges keeps these hard, and seams in smooth
  * surfaces do not show. Triangles are weighted by their angle at the vertex, which makes the normal independent of the
  * triangulation (Thürmer and Wüthrich, "Computing Vertex Normals from Polygonal Facets", 1998). */
+#include "islands.h"
 #include "model_build.h"
 
 #include <math.h>
@@ -48,26 +49,6 @@ static double face_corner_angle(const face *f, size_t k)
     double back[3];
     for (size_t i = 0; i < 3; ++i) back[i] = -f->edge[(k + 2) % 3][i];
     return vec_angle(f->edge[k], back);
-}
-
-/* Union-find over corners; the smallest corner of a set is its root. */
-static uint32_t corner_root(uint32_t *parent, uint32_t corner)
-{
-    while (parent[corner] != corner) {
-        parent[corner] = parent[parent[corner]];
-        corner = parent[corner];
-    }
-    return corner;
-}
-
-static void corner_join(uint32_t *parent, uint32_t a, uint32_t b)
-{
-    a = corner_root(parent, a);
-    b = corner_root(parent, b);
-    if (a < b)
-        parent[b] = a;
-    else
-        parent[a] = b;
 }
 
 /* An edge of the welded surface and the triangles found at it so far. More than two are kept because doubled cards
@@ -123,8 +104,8 @@ static void join_across(fan_builder *b, uint32_t from_0, uint32_t from_1)
         from_1 = to_1;
         to_1 = swap;
     }
-    corner_join(b->parent, from_0, from_1);
-    corner_join(b->parent, to_0, to_1);
+    islands_join(b->parent, from_0, from_1);
+    islands_join(b->parent, to_0, to_1);
 }
 
 static void add_edge(fan_builder *b, uint32_t corner)
@@ -150,7 +131,7 @@ static void join_vertices(fan_builder *b, uint32_t *first_corner)
         if (*first == MODEL_NONE)
             *first = c;
         else
-            corner_join(b->parent, *first, c);
+            islands_join(b->parent, *first, c);
     }
 }
 
@@ -168,7 +149,7 @@ static void join_smooth_edges(fan_builder *b)
 static void number_fans(fan_builder *b, normal_fans *out)
 {
     for (uint32_t c = 0; c < out->corner_count; ++c) {
-        uint32_t root = corner_root(b->parent, c);
+        uint32_t root = islands_root(b->parent, c);
         out->corner_fan[c] = root == c ? out->fan_count++ : out->corner_fan[root];
     }
     /* until here vertex_fan held each vertex's first corner */

@@ -408,5 +408,5 @@ int surface_shapes_find(model *m, FILE *report, model_error *error)
             return model_fail(error, material->name, "out of memory");
         }
     }
-    return mouth_shape_find(m) ? model_fail(error, "", "out of memory") : 0;
+    return mouth_shape_find(m) ? model_fail_memory(error) : 0;
 }

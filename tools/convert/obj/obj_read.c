@@ -15,11 +15,6 @@ typedef struct vertices {
     uint32_t count, first, slot_count;
 } vertices;
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 /* ---- corners to vertices ---- */
 
 static uint32_t hash_of(const obj_corner *c)
@@ -202,16 +197,16 @@ static int fill_model(const char *path, const obj_text *o, vertices *v, const ob
     uint32_t *source;
     uint64_t corners;
     int failed;
-    if (start_vertices(o, v, &corners) || add_mesh(path, m)) return out_of_memory(error);
+    if (start_vertices(o, v, &corners) || add_mesh(path, m)) return model_fail_memory(error);
     mesh = &m->meshes[0];
     if (index_parts(o, v, corners, mesh) || fill_vertices(o, v, unit_cm / 100.0, mesh) ||
         obj_materials_read(path, o, m) || (options->unit_cm <= 0.0 && take_unit(m, &unit_cm)) ||
         warn_of_size(mesh, unit_cm, m) || warn_of_losses(o, m)) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     if (!options->targets) return 0;
     source = model_zeros(mesh->vertex_count, sizeof *source);
-    if (!source) return out_of_memory(error);
+    if (!source) return model_fail_memory(error);
     for (uint32_t i = 0; i < mesh->vertex_count; i++) source[i] = v->corners[i].position;
     failed = obj_targets_read(options->targets, path, o, source, unit_cm / 100.0, m, error);
     free(source);
@@ -225,7 +220,7 @@ int obj_read(const char *path, const obj_options *options, model **out, model_er
     model *m = model_new();
     int failed = obj_text_read(path, 0, &o, error);
     *out = NULL;
-    if (!failed) failed = m ? fill_model(path, &o, &v, options, m, error) : out_of_memory(error);
+    if (!failed) failed = m ? fill_model(path, &o, &v, options, m, error) : model_fail_memory(error);
     if (!failed) failed = model_complete(m, error);
     obj_text_free(&o);
     free(v.corners);

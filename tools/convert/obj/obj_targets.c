@@ -64,7 +64,7 @@ static int list_names(const char *folder, const char *model_file, byte_buffer *n
         if (is_obj(name) && strcmp(name, file_name(model_file)) != 0) failed = add_name(name, names);
     }
     if (open) (void)closedir(open);
-    return failed ? model_fail(error, "", "out of memory") : 0;
+    return failed ? model_fail_memory(error) : 0;
 }
 
 /* The targets of a folder, by name. */
@@ -109,8 +109,7 @@ static int read_target(const char *path, const obj_text *base, const uint32_t *s
     }
     if (!failed) {
         t->name = input_stem(path);
-        failed = !t->name || fill_target(base, &moved, source, scale, mesh, t) ? model_fail(error, "", "out of memory")
-                                                                               : 0;
+        failed = !t->name || fill_target(base, &moved, source, scale, mesh, t) ? model_fail_memory(error) : 0;
     }
     obj_text_free(&moved);
     return failed;
@@ -135,7 +134,7 @@ int obj_targets_read(const char *folder, const char *obj_path, const obj_text *o
     const size_t count = names.count / sizeof(char *);
     mesh->targets = failed ? NULL : model_zeros(count, sizeof *mesh->targets);
     mesh->weights = failed ? NULL : model_zeros(count, sizeof *mesh->weights);
-    if (!failed && (!mesh->targets || !mesh->weights)) failed = model_fail(error, "", "out of memory");
+    if (!failed && (!mesh->targets || !mesh->weights)) failed = model_fail_memory(error);
     for (size_t i = 0; i < count && !failed; i++) {
         const char *name = ((char **)(void *)names.bytes)[i];
         const int length = snprintf(path, sizeof path, "%s/%s", folder, name);

@@ -51,7 +51,7 @@ void obj_text_free(obj_text *o)
 
 static int out_of_memory(reader *r)
 {
-    return model_fail(r->scan.error, "", "out of memory");
+    return model_fail_memory(r->scan.error);
 }
 
 /* ---- numbers ---- */

@@ -173,7 +173,7 @@ static int add_parts(layout_job *j, uint32_t level, model_error *error)
                                   "palettes of %u joints cut it into more than %u draws: raise --palette",
                                   j->deal.limit, j->submesh_capacity);
             }
-            if (add_part(j, level, s, p)) return model_fail(error, "", "out of memory");
+            if (add_part(j, level, s, p)) return model_fail_memory(error);
         }
     }
     l->index_count = j->out->index_count - l->first_index;
@@ -316,7 +316,7 @@ static int make(layout_job *j, model_error *error)
 {
     mesh_layout *out = j->out;
     if (allocate(j)) {
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     place_vertices(j);
     for (uint32_t k = 0; k < out->level_count; k++) {
@@ -324,14 +324,13 @@ static int make(layout_job *j, model_error *error)
             return 1;
         }
     }
-    if (is_skinned(j->mesh) &&
-        (deal_loose_vertices(j, error) || (store_palettes(j) && model_fail(error, "", "out of memory")))) {
+    if (is_skinned(j->mesh) && (deal_loose_vertices(j, error) || (store_palettes(j) && model_fail_memory(error)))) {
         return 1;
     }
     out->levels[0].vertex_count = out->vertex_count;
     out->texel_references = out->palette_count > 1;
     if (out->level_count > 1 && sort_by_level(j)) {
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     if (out->level_count > 1 || j->e->uv_texel) set_texels(out, j->e->touched_count);
     out->texel_references |= j->e->uv_texel != NULL;

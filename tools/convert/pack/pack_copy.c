@@ -46,7 +46,7 @@ int pack_copy(const noh_pack *pack, pack_copy_chunk *chunk, void *context, byte_
     if (!chunks || out->failed) {
         free(chunks);
         buffer_free(out);
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     write_table(pack, chunks, out);
     free(chunks);

@@ -438,7 +438,7 @@ int pack_order(const noh_pack *pack, byte_buffer *out, model_error *error)
     for (uint32_t i = 0; !failed && i < pack->runs[NOH_CHUNK_MESH].count; i++) failed = order_mesh(&copy, i);
     if (failed) {
         buffer_free(out);
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     chunks = (noh_pack_chunk *)(void *)(out->bytes + sizeof h);
     for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {

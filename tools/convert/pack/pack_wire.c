@@ -491,7 +491,7 @@ int pack_wire(const noh_pack *packs, uint32_t pack_count, const wire_steps *step
     free(costs);
     if (failed) {
         buffer_free(out);
-        return model_fail(error, "", "out of memory");
+        return model_fail_memory(error);
     }
     seal(out);
     return 0;

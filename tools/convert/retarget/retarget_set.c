@@ -24,11 +24,6 @@ typedef struct retargeting {
     noh_transform *poses[2];
 } retargeting;
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 int retarget_same(const raw_skeleton *a, const raw_skeleton *b)
 {
     double size = 0.0;
@@ -93,7 +88,7 @@ static int open_retargeting(retargeting *r, raw_set *set, const raw_skeleton *to
     }
     r->joints = malloc((size_t)to->joint_count * sizeof *r->joints);
     for (int i = 0; i < 2; i++) {
-        if (!r->joints || open_skeleton(r->raw[i], &r->skeletons[i], &r->poses[i])) return out_of_memory(error);
+        if (!r->joints || open_skeleton(r->raw[i], &r->skeletons[i], &r->poses[i])) return model_fail_memory(error);
         r->rigs[i].skeleton = &r->skeletons[i];
     }
     if (noh_retarget_init(&r->map, &r->rigs[SOURCE], &r->rigs[TARGET], NOH_RETARGET_FEET | NOH_RETARGET_HANDS,
@@ -209,10 +204,10 @@ int retarget_set(raw_set *set, const raw_skeleton *to, const char *map, FILE *re
     failed = open_retargeting(&r, set, to, map, error);
     for (uint32_t c = 0; c < set->clip_count && !failed; c++) {
         set->clips[c].source = NULL; /* its curves are of the other skeleton */
-        failed = retarget_clip(&r, &set->clips[c], report) && out_of_memory(error);
+        failed = retarget_clip(&r, &set->clips[c], report) && model_fail_memory(error);
     }
     close_retargeting(&r);
     if (failed) return 1;
     set->skeleton.unit_cm = to->unit_cm;
-    return raw_skeleton_take(&set->skeleton, to) ? out_of_memory(error) : 0;
+    return raw_skeleton_take(&set->skeleton, to) ? model_fail_memory(error) : 0;
 }

@@ -425,11 +425,11 @@ int eyes_split(model *m, FILE *report, model_error *error)
     split *s = calloc(1, sizeof *s);
     int done = 0;
     for (uint32_t i = 0; s && i < m->mesh_count && !done; i++) {
-        done = islands_open(&m->meshes[i], &s->islands) ? (model_fail(error, "", "out of memory"), -1)
+        done = islands_open(&m->meshes[i], &s->islands) ? (model_fail_memory(error), -1)
                                                         : try_mesh(m, i, s, report, error);
         islands_close(&s->islands);
     }
-    if (!s) return model_fail(error, "", "out of memory");
+    if (!s) return model_fail_memory(error);
     free(s);
     if (!done) {
         return model_fail(error, "",

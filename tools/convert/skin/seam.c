@@ -307,5 +307,5 @@ int seams_close(model *m, seam_mode mode, FILE *report, model_error *error)
                             gave_up ? "; there are too many borders to compare all of them" : "");
     }
     free(all);
-    return failed ? model_fail(error, "", "out of memory") : 0;
+    return failed ? model_fail_memory(error) : 0;
 }

@@ -10,11 +10,6 @@
 #include "skin_mirror.h"
 #include "skin_rigid.h"
 
-static int fail_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 static int bind_skeletons(model *m, model_clips *made)
 {
     for (uint32_t s = 0; s < m->skin_count; s++) {
@@ -144,12 +139,12 @@ int skins_bind(model *m, model_clips *made, const skin_options *options, model_e
     const uint32_t limit = options->influences ? options->influences : NOH_INFLUENCES_MAX;
     if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report) ||
         skins_mirror(m)) {
-        return fail_memory(error);
+        return model_fail_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         m->meshes[i].palette_limit = options->palette;
         if (m->meshes[i].bound && limit_influences(m, &m->meshes[i], limit)) {
-            return fail_memory(error);
+            return model_fail_memory(error);
         }
     }
     for (uint32_t i = 0; i < options->dual_quaternion_count; i++) {

@@ -244,7 +244,7 @@ int springs_bind_text(const springs_text *text, model *m, raw_set *const *sets, 
     binding *all = calloc(set_count + 1u, sizeof *all);
     uint32_t *joints = calloc((size_t)(set_count + 1u) * NOH_SPRING_COLLIDERS_MAX, sizeof *joints);
     int failed = !all || !joints;
-    if (failed) (void)model_fail(error, "", "out of memory");
+    if (failed) (void)model_fail_memory(error);
     for (uint32_t i = 0; i < set_count && !failed; i++) {
         all[i] = (binding){ m, &sets[i]->skeleton, i, &out[i], joints + (size_t)i * NOH_SPRING_COLLIDERS_MAX };
         for (uint32_t k = 0; k < out[i].collider_count; k++) all[i].collider_joints[k] = out[i].colliders[k].joint;

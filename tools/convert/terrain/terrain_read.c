@@ -76,7 +76,7 @@ static int surface_of(const model *m, surface *s, model_error *error)
     s->count = count_triangles(m);
     if (!s->count) return model_fail(error, "", "the model has no mesh to make a terrain from");
     s->corners = model_zeros(9u * s->count, sizeof *s->corners);
-    if (!s->corners) return model_fail(error, "", "out of memory");
+    if (!s->corners) return model_fail_memory(error);
     for (uint32_t i = 0; i < m->node_count; i++) {
         if (m->nodes[i].mesh == MODEL_NONE) continue;
         const model_mesh *mesh = &m->meshes[m->nodes[i].mesh];
@@ -174,7 +174,7 @@ static int quantise(terrain *t, const double *heights, model_error *error)
     }
     if (!(low <= high)) return model_fail(error, "", "the model has no surface that is visible from above");
     t->heights = model_zeros(count, sizeof *t->heights);
-    if (!t->heights) return model_fail(error, "", "out of memory");
+    if (!t->heights) return model_fail_memory(error);
     const double step = (high - low) / 65535.0;
     for (size_t i = 0; i < count; i++) {
         const int is_hole = heights[i] == -HUGE_VAL;
@@ -190,7 +190,7 @@ static int rasterise(const surface *s, double factor, terrain *t, model_error *e
 {
     const size_t count = (size_t)t->width * t->depth;
     double *heights = model_zeros(count, sizeof *heights);
-    if (!heights) return model_fail(error, "", "out of memory");
+    if (!heights) return model_fail_memory(error);
     for (size_t i = 0; i < count; i++) heights[i] = -HUGE_VAL;
     for (size_t i = 0; i < s->count; i++) {
         double c[9];

@@ -10,11 +10,6 @@
 #include "noh/format.h"
 #include "wrinkle_make.h"
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory");
-}
-
 /* ---- the map ---- */
 
 /* The alpha of a file without one covers nothing; where no row uses it, it is 255, which takes no bytes. */
@@ -173,7 +168,7 @@ int colors_make(model *m, const color_settings *settings, model_error *error)
     int failed;
     if (!settings->map) {
         return has_rows && model_warn(m, "the recipe's color rows have no effect without --color-map") &&
-               out_of_memory(error);
+               model_fail_memory(error);
     }
     if (!has_rows) {
         return model_fail(error, settings->map,
@@ -182,7 +177,7 @@ int colors_make(model *m, const color_settings *settings, model_error *error)
     }
     failed = check_tints(settings, error) || read_map(settings, &image, error);
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
-        failed = make_mesh(m, &m->meshes[i], settings, &image, &texture) && out_of_memory(error);
+        failed = make_mesh(m, &m->meshes[i], settings, &image, &texture) && model_fail_memory(error);
     }
     if (!failed && texture == MODEL_NONE) {
         failed = model_fail(error, settings->map, "no mesh can have its colours: %s",

@@ -352,8 +352,7 @@ static int against_full(bench_job *job, gpu *g, uint32_t actors)
     return status < 0 ? 0 : status;
 }
 
-/* A mesh with joints and levels, and clips for it. */
-static int has_cast(const noh_pack *pack)
+int bench_has_cast(const noh_pack *pack)
 {
     int found = 0;
     for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
@@ -370,7 +369,7 @@ int bench_cast(bench_job *job)
     const size_t steps = job->quick ? 2u : 3u; /* for tests: few actors */
     gpu g;
     int status;
-    if (!has_cast(&job->files[0].pack)) {
+    if (!bench_has_cast(&job->files[0].pack)) {
         return 0;
     }
     status = gpu_open(&g, "null");

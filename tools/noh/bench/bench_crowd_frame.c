@@ -218,24 +218,12 @@ static int measure_gpu(fair *f, const double *cpu)
     return status;
 }
 
-/* A mesh with joints and levels, and clips for it. */
-static int has_crowd(const noh_pack *pack)
-{
-    int found = 0;
-    for (uint32_t i = 0; i < pack->runs[NOH_CHUNK_MESH].count; i++) {
-        noh_mesh mesh;
-        noh_pack_mesh_at(pack, i, &mesh, NULL);
-        found |= mesh.header->skin != NOH_NONE && mesh.header->level_count > 1u;
-    }
-    return found && pack->runs[NOH_CHUNK_CLIP].count;
-}
-
 int bench_crowd_frame(bench_job *job)
 {
     double cpu[VARIANTS];
     fair *f;
     int status;
-    if (!has_crowd(&job->files[0].pack)) {
+    if (!bench_has_cast(&job->files[0].pack)) {
         return 0;
     }
     f = calloc(1, sizeof *f);

@@ -232,11 +232,12 @@ int bench_crowd(bench_job *job);
 int bench_cpu(bench_job *job);
 int bench_ear(bench_job *job);
 int bench_clip_rows(bench_job *job); /* none where no pack has clips */
-int bench_match(bench_job *job); /* none where no pack has a table */
+int bench_match(bench_job *job);     /* none where no pack has a table */
 int bench_crowd_pose(bench_job *job);
 int bench_crowd_frame(bench_job *job);
-int bench_face(bench_job *job); /* with the targets of the mesh */
-int bench_cast(bench_job *job); /* none where no mesh has joints and levels, or there are no clips */
+int bench_face(bench_job *job);           /* with the targets of the mesh */
+int bench_has_cast(const noh_pack *pack); /* a mesh with joints and levels, and clips for it */
+int bench_cast(bench_job *job);           /* none where no mesh has joints and levels, or there are no clips */
 int bench_look(bench_job *job);
 /* The skinned mesh of the most vertices; no rows where the pack has none. */
 int bench_skin_gpu(bench_job *job);

@@ -364,7 +364,7 @@ int place_parse(const char *text, size_t size, place_file **out, uint32_t *line,
         if (!status) status = check(r);
         *line = r->line;
     } else {
-        model_fail(error, "", "out of memory");
+        model_fail_memory(error);
     }
     free(r);
     if (status) {

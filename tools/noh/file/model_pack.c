@@ -55,8 +55,7 @@ static int build(const model_pack_desc *desc, input_list *inputs, byte_buffer *p
     o.warnings = open_memstream(&warnings, &size);
     o.progress = desc->progress;
     o.inputs = inputs;
-    failed = o.warnings ? convert_files(&desc->path, 1, &o, pack, failure)
-                        : model_fail(&failure->error, "", "out of memory");
+    failed = o.warnings ? convert_files(&desc->path, 1, &o, pack, failure) : model_fail_memory(&failure->error);
     if (o.warnings) fclose(o.warnings);
     if (warnings) print_warnings(desc->path, warnings);
     free(warnings);

@@ -47,7 +47,7 @@ int session_write(const session *s, byte_buffer *out, size_t *input_bytes, model
     }
     *input_bytes = out->count - before;
     if (s->hashes) write_hashes(s, out);
-    return out->failed ? model_fail(error, "", "out of memory") : 0;
+    return out->failed ? model_fail_memory(error) : 0;
 }
 
 /* ---- reading ---- */
