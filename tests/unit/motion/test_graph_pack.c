@@ -524,7 +524,7 @@ static noh_pack_graph_node *kind(forged *f, uint32_t which)
     X(kind(&f, NOH_PACK_NODE_SPACE_2D)->first_item = 1, "blend space that is not there")                  \
     X(f.points[1] = -1.0f, "do not rise")                                                                 \
     X(f.points[3] = INFINITY, "point of a blend space is not finite")                                     \
-    X(f.spaces[0].point_count = 2, "not one point for each child")                                        \
+    X(f.spaces[0].point_count = 2, "not have one point for each child")                                   \
     X(f.spaces[0].triangle_count = 2, "points or triangles")                                              \
     X(f.triangles[2] = 3, "triangle of a blend space names a point")                                      \
     X(f.transitions[0].to = 3, "not between two states")                                                  \

@@ -324,8 +324,8 @@ static void meshes_are_off_and_on(void **state)
 /* What the coat hides is known for the mesh that it was built over, and for no other; lies about it are refused. */
 static void lies_about_what_it_hides_are_refused(void **state)
 {
-    static const char *const what[] = { "count of a cover", "count of a cover", "bits of a cover", "name and its hash",
-                                        "reserved field" };
+    static const char *const what[] = { "count of a cover", "count of a cover", "more or fewer bits",
+                                        "name and its hash", "reserved field" };
     cast c;
     noh_mesh mesh;
     uint32_t found = 0;
