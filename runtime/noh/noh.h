@@ -446,9 +446,9 @@ typedef struct noh_stage_stats {
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
-    uint32_t textures_coarser;             /* textures shown coarser than needed: finer levels are being loaded, or
-                                * texture_reserve is too small */
-    uint32_t wanted_count;                 /* clips that were needed while they were absent, and are still absent */
+    /* textures shown coarser than needed: finer levels are being loaded, or texture_reserve is too small */
+    uint32_t textures_coarser;
+    uint32_t wanted_count; /* clips that were needed while they were absent, and are still absent */
     /* [wanted_count] the longest wanted first; a full list drops its first. noh_stage_load_clip removes the clip that
      * it loads, and the clips after it move down: walk the list from its end */
     const noh_wanted_clip *wanted;
