@@ -37,11 +37,13 @@ done
 
 # as many nodes as a stage holds share a mesh: planning compares them in pairs, once
 nodes() {
-    awk -v n="$1" 'BEGIN {
+    awk -v n="$1" -v targets="${2:-0}" 'BEGIN {
         printf "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"data:;base64,"
         printf "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
         printf "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"min\":[0,0,0],"
-        printf "\"max\":[1,1,0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],\"nodes\":["
+        printf "\"max\":[1,1,0]}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}"
+        for (i = 0; i < targets; i++) printf "%s{\"POSITION\":0}", i ? "," : ",\"targets\":["
+        printf "%s}]}],\"nodes\":[", targets ? "]" : ""
         for (i = 0; i < n; i++) printf "%s{\"mesh\":0,\"translation\":[%d,%d,0]}", i ? "," : "", i % 32, i / 32
         print "]}"
     }'
@@ -55,6 +57,18 @@ expect 0 '512 nodes with one mesh'
 noh render too_many.gltf -o x.png $small
 expect 1 '513 are too many'
 says 'join them'
+noh build many.gltf -o many.noh --warnings
+expect 0 'a build of 512'
+check 'which does not warn of a stage' sh -c '! grep -q stage "$1"' - "$work/err"
+noh build too_many.gltf -o too_many.noh --warnings
+expect 0 'a build of 513'
+check 'which warns that no stage draws them' \
+    grep -q '^warning: its 513 drawn meshes take 17 kinds.*at most 16: join meshes' "$work/err"
+nodes 5 820 >weights.gltf
+noh build weights.gltf -o weights.noh --warnings
+expect 0 'a build of 4100 morph targets'
+check 'which warns that no stage plays clips with them' \
+    grep -q '^warning: morph targets.*take 4100 floats.*at most 4096: .*remove targets' "$work/err"
 
 # a sheet frames what moves, as a picture of the clip does
 tiles='--tiles 2 --tile 64'

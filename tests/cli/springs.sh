@@ -55,4 +55,29 @@ noh build "$puppet" -o "$work/x.noh" --plain --springs $text --only anim
 expect 2 'clips alone have none'
 noh build "$puppet" -o "$work/x.noh" --plain --wrinkles face --springs $text --only mesh --quiet
 expect 0 'meshes alone have them'
+
+# 1100 chains that may touch 32 colliders each: 1060 bytes for each chain of an actor
+awk -v n=1100 -v weights=AACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAAAA 'BEGIN {
+    printf "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":96,\"uri\":\"data:;base64,"
+    printf "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAAAA%s\"}],", weights
+    printf "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,\"byteOffset\":36,\"byteLength\":12},"
+    printf "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":48}],\"accessors\":["
+    printf "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+    printf "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\"},"
+    printf "{\"bufferView\":2,\"componentType\":5126,\"count\":3,\"type\":\"VEC4\"}],\"meshes\":[{\"primitives\":["
+    printf "{\"attributes\":{\"POSITION\":0,\"JOINTS_0\":1,\"WEIGHTS_0\":2}}]}],\"skins\":[{\"joints\":[0"
+    for (i = 1; i <= 2 * n; i++) printf ",%d", i
+    printf "]}],\"nodes\":[{\"name\":\"root\",\"children\":[1"
+    for (i = 2; i <= n; i++) printf ",%d", i
+    printf "]}"
+    for (i = 1; i <= n; i++) printf ",{\"name\":\"j%d\",\"translation\":[0,1,0],\"children\":[%d]}", i, n + i
+    for (i = 1; i <= n; i++) printf ",{\"name\":\"e%d\",\"translation\":[0,1,0]}", i
+    print ",{\"mesh\":0,\"skin\":0}]}"
+}' >"$work/many.gltf"
+awk 'BEGIN { print "chain j*"; for (i = 1; i <= 32; i++) print "collider e" i " 0.1" }' >"$work/many.springs"
+noh build "$work/many.gltf" -o "$work/many.noh" --springs "$work/many.springs" --warnings
+expect 0 'more springs than a stage takes'
+check 'with a warning' grep -q '^warning: springs of a skeleton take .* at most 1048576: give it fewer' "$work/err"
+noh render "$work/many.noh" -o "$work/x.png" --size 64x64
+expect 1 'which a picture refuses'
 finish

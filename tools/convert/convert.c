@@ -24,6 +24,7 @@
 #include "convert/model/priority.h"
 #include "convert/model/tint.h"
 #include "convert/pack/size_warn.h"
+#include "convert/pack/stage_warn.h"
 #include "convert/skin/skin_mirror.h"
 #include "convert/texture/texture_astc.h"
 #include "convert/texture/texture_trim.h"
@@ -163,8 +164,10 @@ static int check_chunks(const noh_pack *pack, model_error *error)
 }
 
 /* Open the pack with the library's own reader: a pack that it refuses is never written. */
-static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
+static int check_own_pack(byte_buffer *out, const convert_options *options, model_error *error)
 {
+    FILE *report = options ? options->report : NULL,
+         *warnings = options && options->warnings ? options->warnings : report;
     noh_pack pack;
     noh_error refusal = { NOH_OK, "", 0, 0 };
     if (noh_pack_open(out->bytes, out->count, &pack, &refusal)) {
@@ -178,6 +181,10 @@ static int check_own_pack(byte_buffer *out, FILE *report, model_error *error)
     if (check_chunks(&pack, error)) {
         buffer_free(out);
         return 1;
+    }
+    if (warnings && stage_warn(&pack, warnings)) {
+        buffer_free(out);
+        return out_of_memory(error);
     }
     if (report) {
         convert_report_textures(report, &pack);
@@ -308,7 +315,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
         failed = clips_encode(s->sets, s->set_count, &settings, &made, error);
         made.chunks = chunks;
         failed = failed || pack_write(m, meshes.levels, meshes.morphs, &made, out, error) ||
-                 check_own_pack(out, options->report, error) || add_transfers(out, options, error) ||
+                 check_own_pack(out, options, error) || add_transfers(out, options, error) ||
                  strip(out, &options->lod_from, error);
         clips_free(&made);
     }
