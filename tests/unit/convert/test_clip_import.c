@@ -628,7 +628,8 @@ static void missing_targets_are_a_warning(void **state)
     loaded_free(&l);
     s = scene_new("{}");
     add_move(s, 7, "LINEAR", two_times, 2, two_moves, 6);
-    refused(s, 0.0, "nothing to convert; was skipped: its target node does not exist", "animation 'act' channel 0");
+    refused(s, 0.0, "nothing to convert; a part was skipped: its target node does not exist",
+            "animation 'act' channel 0");
 }
 
 /* --- rates --- */

@@ -640,7 +640,7 @@ static void a_missing_picture_leaves_white(void **state)
 
 /* ---- what is left out, and what is refused ---- */
 
-/* Hidden nodes hide those below that inherit it. What a take moves is not hidden. */
+/* A hidden node hides those below that inherit it, and no others. What a take moves is not hidden. */
 static void hidden_nodes_are_not_drawn(void **state)
 {
     model *m;
@@ -651,15 +651,17 @@ static void hidden_nodes_are_not_drawn(void **state)
     add_object("Model", 3, "hidden", "Mesh", P1("Visibility", "0"), "");
     add_object("Model", 4, "below", "Mesh", "", "");
     add_object("Model", 5, "own", "Mesh", P1("Visibility Inheritance", "0"), "");
+    add_object("Model", 7, "lower", "Mesh", "", "");
     add_object("Model", 6, "blinks", "Mesh", P1("Visibility", "0"), "");
     add_take(10, "take", "46186158000");
     add("\tAnimationLayer: 11, \"AnimLayer::a\", \"\" {\n\t}\n\tAnimationCurveNode: 12, \"AnimCurveNode::v\", \"\" {\n"
         "\t\tProperties70:  {\n" P1("d|Visibility", "0") "\t\t}\n\t}\n");
-    links(OO(2, 0) OO(3, 0) OO(4, 3) OO(5, 3) OO(6, 0) OO(1, 2) OO(1, 3) OO(1, 4) OO(1, 5) OO(1, 6) OO(11, 10)
-              OO(12, 11) OP(12, 6, "Visibility"));
+    links(OO(2, 0) OO(3, 0) OO(4, 3) OO(5, 3) OO(6, 0) OO(7, 5) OO(1, 7) OO(1, 2) OO(1, 3) OO(1, 4) OO(1, 5) OO(1, 6)
+              OO(11, 10) OO(12, 11) OP(12, 6, "Visibility"));
     m = load();
     assert_true(node_of(m, "shown")->mesh != MODEL_NONE && node_of(m, "hidden")->mesh == MODEL_NONE);
-    assert_true(node_of(m, "below")->mesh == MODEL_NONE && node_of(m, "blinks")->mesh != MODEL_NONE);
+    assert_true(node_of(m, "below")->mesh == MODEL_NONE && node_of(m, "own")->mesh != MODEL_NONE);
+    assert_true(node_of(m, "lower")->mesh != MODEL_NONE && node_of(m, "blinks")->mesh != MODEL_NONE);
     assert_true(has_warning(m, "node 'hidden' is hidden in the file and is not drawn"));
     model_free(m);
 }

@@ -1354,10 +1354,9 @@ static void vrm_rules_are_told(void **state)
 static void vrm_animations_are_for_any_body(void **state)
 {
     (void)state;
-    model *m = load(
-        vrm_scene("\"VRMC_vrm_animation\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{"
-                  "\"node\":1}}},\"expressions\":{\"preset\":{\"happy\":{\"node\":2},\"aa\":{\"node\":9}}},"
-                  "\"lookAt\":{\"node\":2}}"));
+    model *m = load(vrm_scene("\"VRMC_vrm_animation\":{\"specVersion\":\"1.0\",\"humanoid\":{\"humanBones\":{\"hips\":{"
+                              "\"node\":1}}},\"expressions\":{\"preset\":{\"happy\":{\"node\":2},\"aa\":{\"node\":9}}},"
+                              "\"lookAt\":{\"node\":2}}"));
     assert_true(m->for_any_body);
     assert_string_equal(m->nodes[1].name, "hips");
     assert_string_equal(m->nodes[2].expression, "joy-upper");
@@ -1389,7 +1388,9 @@ static void damaged_vrm_is_ignored(void **state)
 {
     (void)state;
     static const char *const all[] = {
-        "\"VRMC_vrm\":[]", "\"VRM\":7", "\"VRMC_vrm\":{\"humanoid\":[],\"expressions\":{\"preset\":[1]}}",
+        "\"VRMC_vrm\":[]",
+        "\"VRM\":7",
+        "\"VRMC_vrm\":{\"humanoid\":[],\"expressions\":{\"preset\":[1]}}",
         "\"VRM\":{\"humanoid\":{\"humanBones\":[1,{\"bone\":2,\"node\":\"x\"}]},\"blendShapeMaster\":{"
         "\"blendShapeGroups\":[3,{\"presetName\":\"joy\",\"binds\":[{\"mesh\":-1},{\"mesh\":0,\"index\":0},7]}]}}",
         "\"VRMC_vrm\":{\"expressions\":{\"preset\":{\"happy\":{\"morphTargetBinds\":[{\"node\":2,\"index\":0,"
@@ -1776,11 +1777,12 @@ static void large_images_are_counted_first(void **state)
 {
     (void)state;
     scene *s = triangle("", ",\"material\":0");
-    APPEND(s->rest,
-           ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}},"
-           "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}}],\"textures\":[{\"source\":0},{\"source\":0}],"
-           "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
-           "iVBORw0KGgoAAAANSUhEUgAAIAAAACAAAQAAAAAAAAAAAAAAAElFTkQAAAAA"); /* 8192 x 8192, without a pixel */
+    APPEND(
+        s->rest,
+        ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}}},"
+        "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}}}],\"textures\":[{\"source\":0},{\"source\":0}],"
+        "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
+        "iVBORw0KGgoAAAANSUhEUgAAIAAAACAAAQAAAAAAAAAAAAAAAElFTkQAAAAA"); /* 8192 x 8192, without a pixel */
     model *m = load(s);
     assert_true(has_warning(m, "the PNG file has no pixels, only a header: save or copy it again (texture 0 image 0)"));
     assert_true(has_warning(m, "cannot honestly hold (texture 1 image 0)"));
@@ -1823,8 +1825,9 @@ static void factors_stay_within_0_and_1(void **state)
 {
     (void)state;
     scene *s = triangle("", ",\"material\":0");
-    APPEND(s->rest, ",\"materials\":[{\"name\":\"neon\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[9,-1,0.5,1.00001],"
-                    "\"metallicFactor\":-4,\"roughnessFactor\":5}}]");
+    APPEND(s->rest,
+           ",\"materials\":[{\"name\":\"neon\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[9,-1,0.5,1.00001],"
+           "\"metallicFactor\":-4,\"roughnessFactor\":5}}]");
     model *m = load(s);
     const model_material *a = &m->materials[0];
     const float color[4] = { 1.0f, 0.0f, 0.5f, 1.0f };
@@ -2028,7 +2031,7 @@ static void not_gltf_is_refused(void **state)
     write_text("test.gltf", "{\"hello\":1}");
     file_refused("there is nothing to convert; there is no 'asset' object", "glTF JSON");
     write_text("test.gltf", "{\"asset\":{\"version\":\"1.0\"}}");
-    file_refused("glTF version '1.0'", "asset");
+    file_refused("glTF version '1.0', and only version 2 is read: convert version 1 with gltf-pipeline", "asset");
     snprintf(file_path, sizeof file_path, "%s/nothing.glb", folder);
     file_refused("does not exist", "");
     snprintf(file_path, sizeof file_path, "%s", folder);
@@ -2144,7 +2147,8 @@ static void triangles_of_missing_vertices_are_left_out(void **state)
     model_free(m);
     s = triangle("", ",\"indices\":1");
     add_array(s, index, 6, U16, 3, "SCALAR");
-    refused(s, "nothing to convert; was left out: the primitive has no such vertex", "mesh 'm' primitive 0 triangle 0");
+    refused(s, "nothing to convert; a part was left out: the primitive has no such vertex",
+            "mesh 'm' primitive 0 triangle 0");
 }
 
 static void half_a_triangle_is_left_out(void **state)
@@ -2533,7 +2537,7 @@ static void zero_vertices_are_refused(void **state)
     scene *s = scene_new();
     add_accessor(s, F32, 0, "VEC3", "");
     APPEND(s->primitives, "{\"attributes\":{\"POSITION\":0}}");
-    refused(s, "nothing to convert; was skipped: it has no vertices", "mesh 'm' primitive 0");
+    refused(s, "nothing to convert; a part was skipped: it has no vertices", "mesh 'm' primitive 0");
 }
 
 static void check_sparse_indices(uint16_t first, uint16_t second, const char *what)
@@ -2627,7 +2631,7 @@ static void bad_references(void **state)
     scene *s = triangle("", "");
     APPEND(s->rest, ",\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":2}}}]");
     check_lost(s, "material 'material_0': it does not exist: the file has 0 (texture 2); the texture was left out");
-    refused(triangle("", ",\"mode\":9"), "was skipped: its mode is unknown", "mesh 'm' primitive 0");
+    refused(triangle("", ",\"mode\":9"), "; a part was skipped: its mode is unknown", "mesh 'm' primitive 0");
     s = triangle("", "");
     APPEND(s->rest, ",\"scenes\":[{\"nodes\":[0]}]");
     check_lost(s, "scene 0: node 0 was left out: it does not exist");
@@ -2894,7 +2898,7 @@ int main(void)
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(large_images_are_counted_first),
-    cmocka_unit_test(mtoon_has_textures),
+        cmocka_unit_test(mtoon_has_textures),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

@@ -86,7 +86,7 @@ static bool blinks(const scene &s, size_t model)
     return false;
 }
 
-/* What a take moves is seen at some time. Only meshes are marked: glTF's mark hides all that is below it. */
+/* What a take moves is seen at some time. Without inheritance a node is shown whatever its parent is. */
 static std::vector<bool> hidden_models(const scene &s)
 {
     std::vector<bool> hidden(s.models.size());
@@ -98,9 +98,11 @@ static std::vector<bool> hidden_models(const scene &s)
     return hidden;
 }
 
+/* glTF's mark would hide all that is below it, too. */
 static tinygltf::Value not_visible()
 {
-    return tinygltf::Value(tinygltf::Value::Object{ { "visible", tinygltf::Value(false) } });
+    const tinygltf::Value alone(tinygltf::Value::Object{ { "alone", tinygltf::Value(true) } });
+    return tinygltf::Value(tinygltf::Value::Object{ { "visible", tinygltf::Value(false) }, { "extras", alone } });
 }
 
 void write_nodes(job &j)

@@ -102,7 +102,7 @@ void read_curves(file &f, const bytes &data, curve_list &out)
     if (curves.empty()) {
         const std::string nothing = "the file has no curves: export them as lines";
         if (f.losses.empty()) fail("glTF JSON", nothing);
-        fail(f.losses.back().first, nothing + f.losses.back().what); /* behind what is said of meshes */
+        fail(f.losses.back().first, nothing + "; " + clause_of(f.losses.back())); /* behind what is said of meshes */
     }
     store(curves, out);
 }

@@ -75,6 +75,17 @@ void leave_out(file &f, const std::string &where, const std::string &what)
     ++f.losses[known.first->second].count;
 }
 
+std::string clause_of(const left_out &loss)
+{
+    return loss.what[0] == ' ' ? "a part" + loss.what : loss.what.substr(loss.what[0] == ':' ? 2 : 0);
+}
+
+std::string old_version(const std::string &version)
+{
+    return "this is glTF version '" + printable(version) +
+           "', and only version 2 is read: convert version 1 with gltf-pipeline (gltf-pipeline -i OLD -o NEW)";
+}
+
 void warn_left_out(file &f)
 {
     for (const left_out &loss : f.losses) {

@@ -114,6 +114,10 @@ template <class... Arguments> void warn(file &f, const char *format, Arguments..
  * ...", ": the normal texture was left out"). After the file has been read there is one warning for each `what`, which
  * names the first place and counts the others: a file of a thousand nodes cannot bury other warnings. */
 void leave_out(file &f, const std::string &where, const std::string &what);
+/* `what` of a loss as a clause of its own, for a message that says where at its end: "a part was skipped: ...". */
+std::string clause_of(const left_out &loss);
+/* Why a version is refused, and what reads it. */
+std::string old_version(const std::string &version);
 /* Read a part that the model can do without: where it fails, note why and `lost` ("; its channel was left out"). */
 template <class Reader> bool attempt(file &f, const char *lost, Reader reader)
 {

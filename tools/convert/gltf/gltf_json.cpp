@@ -246,8 +246,7 @@ static void check_asset(file &f, const json &document)
     const bool has_asset = asset != document.end() && asset->is_object();
     const std::string version = has_asset ? string_member(*asset, "version") : "",
                       minimum = has_asset ? string_member(*asset, "minVersion") : "";
-    if (is_first || version.compare(0, 2, "1.") == 0)
-        fail("glTF JSON/asset", "this is glTF version '" + printable(version) + "'; only version 2 is read");
+    if (is_first || version.compare(0, 2, "1.") == 0) fail("glTF JSON/asset", old_version(version));
     if (version.compare(0, 2, "2.") != 0)
         leave_out(f, "glTF JSON",
                   has_asset ? ": this is glTF version '" + printable(version) + "'; it was read as version 2"

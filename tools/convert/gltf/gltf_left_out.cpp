@@ -78,21 +78,23 @@ static void find_in_scene(file &f)
                       " was left out: it is not in the default scene");
 }
 
-/* KHR_node_visibility: a node and what is below it. A file that shows nothing is drawn whole. */
+/* KHR_node_visibility: a node and what is below it; of FBX, where a node below may be shown, it alone (fbx_nodes.cpp). A
+ * file that shows nothing is drawn whole. */
 void hide_nodes(file &f)
 {
-    std::vector<bool> hidden(f.out->node_count);
+    std::vector<bool> hidden(f.out->node_count), below(f.out->node_count);
     bool any_shown = false;
     for (size_t i = 0; i < f.json.nodes.size(); ++i) {
         const auto said = f.json.nodes[i].extensions.find("KHR_node_visibility");
         if (f.node_of[i] == MODEL_NONE || said == f.json.nodes[i].extensions.end() || !said->second.IsObject())
             continue;
-        const tinygltf::Value &visible = said->second.Get("visible");
+        const tinygltf::Value &visible = said->second.Get("visible"), &extras = said->second.Get("extras");
         hidden[f.node_of[i]] = visible.IsBool() && !visible.Get<bool>();
+        below[f.node_of[i]] = hidden[f.node_of[i]] && !(extras.IsObject() && extras.Has("alone"));
     }
     for (size_t i = 0; i < hidden.size(); ++i) { /* parents first */
         const model_node &node = f.out->nodes[i];
-        if (node.parent != MODEL_NONE && hidden[node.parent]) hidden[i] = true;
+        if (node.parent != MODEL_NONE && below[node.parent]) hidden[i] = below[i] = true;
         any_shown |= node.mesh != MODEL_NONE && !hidden[i];
     }
     for (size_t i = 0; i < hidden.size(); ++i) {

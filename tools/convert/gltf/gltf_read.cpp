@@ -47,7 +47,7 @@ static void check_header(file &f, const bytes &data)
     const uint32_t version = read_u32(data, 4), length = read_u32(data, 8);
     if (!is_chunk(data, 12, "JSON"))
         fail("GLB header",
-             version != 2 ? text("this is glTF version %u; only version 2 is read", version)
+             version != 2 ? old_version(std::to_string(version))
                           : std::string("the first chunk must be JSON: the file is damaged, export or copy it again"));
     if (version != 2) leave_out(f, "GLB header", text(": this is glTF version %u; it was read as version 2", version));
     if (length > data.size())
@@ -135,7 +135,7 @@ static void read_model(file &f, const bytes &data)
         const std::string nothing = "the file has no triangle meshes and no animations: there is nothing to convert";
         for (const left_out &loss : f.losses) /* nodes and cameras are no reason */
             if (loss.first.compare(0, 6, "node '") != 0 && loss.first.compare(0, 8, "camera '") != 0)
-                fail(loss.first, nothing + "; " + loss.what.substr(loss.what.find(' ') + 1));
+                fail(loss.first, nothing + "; " + clause_of(loss));
         fail("glTF JSON", nothing);
     }
 }
