@@ -146,6 +146,8 @@ assert len(keys) == 5" "$work/out"
 noh build "$work/sides.bvh" -o "$work/x.noh" --clean contact-keys
 expect 0 'none to be found'
 check 'is a warning' grep -q "^warning: clip 'sides'" "$work/out"
+noh build "$work/sides.bvh" -o "$work/x.noh" --clean contact-keys --warnings
+check 'which --warnings prints, too' grep -q "^warning: clip 'sides'" "$work/err"
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >"$work/flat.obj"
 noh build "$work/flat.obj" -o "$work/x.noh" --clean contact-keys
 expect 1 'footsteps without a clip'

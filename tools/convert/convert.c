@@ -163,11 +163,15 @@ static int check_chunks(const noh_pack *pack, model_error *error)
     return failed;
 }
 
+FILE *convert_warnings(const convert_options *options)
+{
+    return options->warnings ? options->warnings : options->report;
+}
+
 /* Open the pack with the library's own reader: a pack that it refuses is never written. */
 static int check_own_pack(byte_buffer *out, const convert_options *options, model_error *error)
 {
-    FILE *report = options ? options->report : NULL,
-         *warnings = options && options->warnings ? options->warnings : report;
+    FILE *report = options ? options->report : NULL, *warnings = options ? convert_warnings(options) : NULL;
     noh_pack pack;
     noh_error refusal = { NOH_OK, "", 0, 0 };
     if (noh_pack_open(out->bytes, out->count, &pack, &refusal)) {
@@ -295,6 +299,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
         return out_of_memory(error);
     }
     settings.report = options->report;
+    settings.warnings = convert_warnings(options);
     settings.progress = options->progress;
     settings.skeletons_only = options->only == CONVERT_MESH;
     settings.m = s->m;
@@ -306,9 +311,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
          clips_mirror_warn(s->m, s->sets, s->set_count))) {
         failed = out_of_memory(error);
     }
-    if (options->warnings || options->report) {
-        report_warnings(options->warnings ? options->warnings : options->report, s);
-    }
+    if (settings.warnings) report_warnings(settings.warnings, s);
     failed = failed || pack_check_model(m, error) || encode_meshes(s, m, options, &meshes, error) ||
              trim_textures(s->m, meshes.levels, options, error);
     if (!failed) {
@@ -339,6 +342,7 @@ static int read_all(const char *const *inputs, int count, const convert_options 
 {
     source_options reading = options->source;
     reading.skin.report = options->report;
+    reading.warnings = convert_warnings(options);
     for (int i = 0; i < count; i++) {
         failure->file = inputs[i];
         if (source_read(inputs[i], &reading, &all[i], &failure->error)) {

@@ -47,7 +47,7 @@ typedef struct convert_options {
     int no_correctives;     /* 1: names of targets do not make correctives */
     strip_levels lod_from;  /* count 0: all levels stay */
     FILE *report;           /* NULL: quiet */
-    FILE *warnings;         /* NULL: with the report */
+    FILE *warnings;         /* NULL: with the report (convert_warnings) */
     input_list *inputs;     /* receives the files that were read or looked for; NULL: not wanted */
     FILE *progress;         /* a terminal, for progress; NULL: none */
 } convert_options;
@@ -63,6 +63,9 @@ typedef struct convert_failure {
  * on every machine. */
 int convert_files(const char *const *inputs, int input_count, const convert_options *options, byte_buffer *out,
                   convert_failure *failure);
+
+/* Where warnings go: NULL: nowhere. */
+FILE *convert_warnings(const convert_options *options);
 
 /* Report one encoded mesh: counts, bits, and its bytes compared with other engines' layouts. scale: model_mesh_scale,
  * so that errors are printed in world units. */

@@ -90,7 +90,7 @@ static int read_clip_file(const char *path, file_reader reader, const source_opt
     s->sets[0] = s->single;
     s->set_count = 1;
     if (turn(s->single, options, error)) return 1;
-    if (clean_set(s->single, options->clean, options->skin.report)) return model_fail_memory(error);
+    if (clean_set(s->single, options->clean, options->skin.report, options->warnings)) return model_fail_memory(error);
     return options->sample_rate_hz > 0.0 ? resample_set(s->single, options->sample_rate_hz, error) : 0;
 }
 
@@ -170,7 +170,8 @@ static int read_model_file(const char *path, const source_options *options, sour
     }
     s->set_count = s->made->set_count;
     for (uint32_t i = 0; i < s->set_count; i++) {
-        if (clean_set(s->made->sets[i], options->clean, options->skin.report)) return model_fail_memory(error);
+        if (clean_set(s->made->sets[i], options->clean, options->skin.report, options->warnings))
+            return model_fail_memory(error);
     }
     if (s->set_count) memcpy(s->sets, s->made->sets, s->set_count * sizeof *s->sets);
     return 0;

@@ -38,7 +38,8 @@ typedef struct source_options {
     seam_mode seam;
     turn_options turn;
     extra_list extras; /* extra attributes of vertices that stay, of glTF and FBX */
-    unsigned clean; /* bits of mocap/clean.h */
+    unsigned clean;    /* bits of mocap/clean.h */
+    FILE *warnings;    /* filled in by convert_files; NULL: none */
 } source_options;
 
 /* 0, or 1 and *error; free in both cases. */

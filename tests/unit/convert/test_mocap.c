@@ -131,7 +131,7 @@ static void a_root_is_made_of_contacts(void **state)
         assert_true(fabsf(t[0]) < 0.001f && fabsf(t[1] - 0.95f) < 0.001f);
     }
     contacts_free(c);
-    assert_int_equal(clean_set(set, CLEAN_ROOT | CLEAN_CONTACTS, NULL), 0); /* a second time: it goes already */
+    assert_int_equal(clean_set(set, CLEAN_ROOT | CLEAN_CONTACTS, NULL, NULL), 0); /* a second time: it goes already */
     assert_true(fabs((double)clip->translations[(size_t)(FRAMES - 1) * JOINTS * 3 + 2] - 7.2) < 0.15);
     assert_in_range(clip->event_count, 10, 12);
     const raw_event *first = clip->events + (strcmp(clip->events[0].name, "foot_l") == 0); /* at the loop's seam */
@@ -153,7 +153,7 @@ static void steps_get_callback_keys(void **state)
         raw_set *set = walker_from(begin < 60u, from_s);
         raw_clip *clip = &set->clips[0];
         uint32_t counts[2] = { 0, 0 };
-        assert_int_equal(clean_set(set, CLEAN_KEYS | CLEAN_CONTACTS, NULL), 0);
+        assert_int_equal(clean_set(set, CLEAN_KEYS | CLEAN_CONTACTS, NULL, NULL), 0);
         for (uint32_t i = 0; i < clip->event_count; i++) {
             const raw_event *e = &clip->events[i];
             const int right = strcmp(e->name, "right_foot") == 0;
@@ -192,7 +192,7 @@ static void keys_are_named_by_sides(void **state)
         }
         clip->frame_count = 331; /* five passes and a half */
         assert_int_equal(raw_clip_add_event(clip, &own), 0);
-        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL), 0);
+        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL, NULL), 0);
         assert_int_equal(clip->event_count, 1 + 5 + 6);
         uint32_t lefts = 0, others = 0;
         for (uint32_t k = 0; k < clip->event_count; k++) {
@@ -221,7 +221,7 @@ static void a_foot_of_two_joints_steps_once(void **state)
         free(set->skeleton.joints[LEFT_TOE].name);
         set->skeleton.joints[LEFT_TOE].name = model_string("ik.l");
         set->skeleton.joints[LEFT_TOE].translation[0] += 0.02f;
-        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL), 0);
+        assert_int_equal(clean_set(set, CLEAN_KEYS, NULL, NULL), 0);
         assert_int_equal(clip->event_count, 12);
         raw_set_free(set);
     }
@@ -238,7 +238,7 @@ static void no_step_is_a_warning(void **state)
     assert_non_null(report);
     for (uint32_t f = 1; f < FRAMES; f++)
         memcpy(clip->translations + (size_t)f * JOINTS * 3, clip->translations, JOINTS * 3 * sizeof(float));
-    assert_int_equal(clean_set(set, CLEAN_KEYS, report), 0);
+    assert_int_equal(clean_set(set, CLEAN_KEYS, NULL, report), 0);
     assert_int_equal(clip->event_count, 0);
     rewind(report);
     assert_non_null(fgets(line, sizeof line, report));

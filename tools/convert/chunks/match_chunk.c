@@ -576,17 +576,19 @@ static void write_match(pack_writer *w, const void *made)
 
 /* ---- the maker ---- */
 
-static void report(FILE *out, const match_table *t)
+static void report(FILE *out, FILE *warnings, const match_table *t)
 {
     const double seconds = t->row_count * (double)row_ticks(t) / NOH_TICKS_PER_SECOND;
     double moves = 0.0;
     for (uint32_t r = 0; r < t->row_count; r++) {
         moves = fmax(moves, hypot(t->features[r][19], t->features[r][20]));
     }
-    fprintf(out, "motion matching: %u rows of %u clips (%.1f s), %u tags\n", t->row_count, t->clip_count, seconds,
-            t->tag_count);
-    if (moves < 1e-3) {
-        fprintf(out, "warning: no clip for motion matching moves its root: the actor will stay where it is\n");
+    if (out) {
+        fprintf(out, "motion matching: %u rows of %u clips (%.1f s), %u tags\n", t->row_count, t->clip_count, seconds,
+                t->tag_count);
+    }
+    if (warnings && moves < 1e-3) {
+        fprintf(warnings, "warning: no clip for motion matching moves its root: the actor will stay where it is\n");
     }
 }
 
@@ -604,7 +606,7 @@ static int read_match(const convert_options *options, const source *s, void **ma
     failed = failed || find_clips(s, t, &failure->line, &failure->error) ||
              find_rows(t, options->clip.check_loops, &failure->error);
     if (!failed && (make_numbers(t) || make_order(t))) failed = model_fail_memory(&failure->error);
-    if (!failed && options->report) report(options->report, t);
+    if (!failed) report(options->report, convert_warnings(options), t);
     return failed;
 }
 

@@ -62,14 +62,14 @@ static int has_markers(const raw_clip *clip)
     return 0;
 }
 
-static int add_keys(const contacts *c, raw_clip *clip, FILE *report)
+static int add_keys(const contacts *c, raw_clip *clip, FILE *report, FILE *warnings)
 {
     uint32_t added = 0;
     const int failed = contacts_add_keys(c, clip, &added);
     if (report && added) {
         fprintf(report, "clean '%s': %u callback keys where %u feet come down\n", clip->name, added, contacts_feet(c));
-    } else if (report && !failed) {
-        fprintf(report,
+    } else if (warnings && !added && !failed) {
+        fprintf(warnings,
                 "warning: clip '%s' has no contact-keys: no foot comes down in it; if it has steps, give keys with "
                 "--events\n",
                 clip->name);
@@ -77,15 +77,16 @@ static int add_keys(const contacts *c, raw_clip *clip, FILE *report)
     return failed;
 }
 
-static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what, FILE *report)
+static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what, FILE *report, FILE *warnings)
 {
     int failed;
     uint32_t marked = 0;
     contacts *c = contacts_find(skeleton, clip, &failed);
     if (failed) return 1;
     if (!c) {
-        if (report) {
-            fprintf(report, "%s '%s': no feet: no joints in the lowest tenth of the body%s\n",
+        FILE *out = what & CLEAN_KEYS ? warnings : report;
+        if (out) {
+            fprintf(out, "%s '%s': no feet: no joints in the lowest tenth of the body%s\n",
                     what & CLEAN_KEYS ? "warning: clip" : "clean", clip->name,
                     what & CLEAN_KEYS ? ", so it has no contact-keys: give them with --events" : "");
         }
@@ -101,12 +102,12 @@ static int use_feet(const raw_skeleton *skeleton, raw_clip *clip, unsigned what,
         failed = contacts_mark(c, skeleton, clip, &marked);
         if (report) fprintf(report, "clean '%s': %u feet come down %u times\n", clip->name, contacts_feet(c), marked);
     }
-    if (!failed && (what & CLEAN_KEYS)) failed = add_keys(c, clip, report);
+    if (!failed && (what & CLEAN_KEYS)) failed = add_keys(c, clip, report, warnings);
     contacts_free(c);
     return failed;
 }
 
-int clean_set(raw_set *set, unsigned what, FILE *report)
+int clean_set(raw_set *set, unsigned what, FILE *report, FILE *warnings)
 {
     for (uint32_t i = 0; i < set->clip_count; i++) {
         raw_clip *clip = &set->clips[i];
@@ -114,7 +115,7 @@ int clean_set(raw_set *set, unsigned what, FILE *report)
         if (what) clip->source = NULL;
         if ((what & CLEAN_GAPS) && fill_gaps(&set->skeleton, clip, report)) return 1;
         if ((what & CLEAN_JITTER) && filter_jitter(&set->skeleton, clip, report)) return 1;
-        if ((what & FEET) && use_feet(&set->skeleton, clip, what, report)) return 1;
+        if ((what & FEET) && use_feet(&set->skeleton, clip, what, report, warnings)) return 1;
     }
     return 0;
 }

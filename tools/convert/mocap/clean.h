@@ -19,7 +19,7 @@ enum {
 int clean_parse(const char *text, unsigned *what);
 
 /* Clean the clips of a set, each by itself. report: a line for each clip with its changes and the distance it moved;
- * NULL: quiet. Returns 1 when out of memory. */
-int clean_set(raw_set *set, unsigned what, FILE *report);
+ * warnings: a line for each clip that stays without callback keys. NULL: none. Returns 1 when out of memory. */
+int clean_set(raw_set *set, unsigned what, FILE *report, FILE *warnings);
 
 #endif

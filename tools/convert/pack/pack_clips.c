@@ -166,8 +166,8 @@ static int encode_bounded(const raw_set *set, const raw_clip *clip, const clips_
         failed = clip_encode(&set->skeleton, clip, &options, &out->bytes, &out->report, error);
     } while (failed == CLIP_TOO_FINE && s->raises && !(own > 0.0) && options.error_cm <= ERROR_RAISED_CM);
     free(joints);
-    if (!failed && s->report && options.error_cm > s->clip.error_cm && !(own > 0.0)) {
-        fprintf(s->report,
+    if (!failed && s->warnings && options.error_cm > s->clip.error_cm && !(own > 0.0)) {
+        fprintf(s->warnings,
                 "warning: clip '%s' is too large, or too far from the origin, for --error-cm %g: %g was used\n",
                 clip->name, s->clip.error_cm, options.error_cm);
     }

@@ -32,9 +32,10 @@ typedef struct clips_settings {
     clip_options clip;  /* error_cm 0: as fits the skeleton's size */
     int raises;         /* 1: where single precision cannot hold the bound, it is raised; filled in by clips_encode */
     named_errors clip_errors, joint_errors; /* they override the bounds of `clip` */
-    const model *m;          /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are
-                                measured; NULL: on the shell */
-    FILE *report, *progress; /* or NULL */
+    /* bound to the sets: on its vertices the errors of fewer joints and lower update rates are measured; NULL: on the
+     * shell */
+    const model *m;
+    FILE *report, *warnings, *progress; /* or NULL */
 } clips_settings;
 
 /* Encode every clip. 0, or 1 and a filled error; free in both cases. */
