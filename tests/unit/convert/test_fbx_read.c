@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "convert/fbx/fbx_read.h"
 #include "support/fbx_binary.h"
@@ -598,22 +599,24 @@ static void materials_and_pictures(void **state)
     model_free(m);
 }
 
-/* A picture is known by its bytes: its name may end in anything, and have another case than in the file. */
+/* A picture is known by its bytes: its name may end in anything. Its case, and its folder's, need not match. */
 static void pictures_have_any_name(void **state)
 {
     static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
-    static const char *const names[4] = { "a.tga", "A.PNG", "picture", "Other.TGA" };
+    static const char *const named[] = { "a.tga", "A.PNG", "picture", "Other.TGA", "maps\\Deep.tga" };
+    static const char *const files[] = { "a.tga", "A.PNG", "picture", "oTHER.tga", "Maps/deep.TGA" };
     (void)state;
-    for (int i = 0; i < 4; i++) {
+    (void)mkdir(test_path("Maps"), 0777);
+    for (int i = 0; i < 5; i++) {
         char line[64];
         begin();
         add_triangle(1, "");
         add_object("Model", 2, "t", "Mesh", "", "");
         add_object("Material", 3, "a", "", "", "");
-        (void)snprintf(line, sizeof line, "\t\tRelativeFilename: \"%s\"\n", names[i]);
+        (void)snprintf(line, sizeof line, "\t\tRelativeFilename: \"%s\"\n", named[i]);
         add_object("Texture", 4, "outside", "", "", line);
         links(OO(2, 0) OO(1, 2) OO(3, 2) OP(4, 3, "DiffuseColor"));
-        test_write_file(test_path(i == 3 ? "oTHER.tga" : names[i]), tga, sizeof tga);
+        test_write_file(test_path(files[i]), tga, sizeof tga);
         model *m = load();
         assert_true(m->texture_count == 1 && m->textures[0].width == 1);
         assert_true(m->textures[0].rgba[0] == 10 && m->textures[0].rgba[2] == 30);

@@ -12,11 +12,13 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cmocka.h>
 #include <meshoptimizer.h>
 
+#include "convert/base/input_file.h"
 #include "convert/model/model.h"
 #include "support/support.h"
 #include "noh/format.h"
@@ -321,22 +323,87 @@ static void binary_container(void **state)
     model_free(m);
 }
 
-static void buffer_in_a_file_beside(void **state)
+static void write_positions(const char *name)
 {
-    (void)state;
-    snprintf(file_path, sizeof file_path, "%s/a b.bin", folder);
+    snprintf(file_path, sizeof file_path, "%s/%s", folder, name);
     FILE *out = fopen(file_path, "wb");
     assert_non_null(out);
     fwrite(triangle_positions, 1, sizeof triangle_positions, out);
     fclose(out);
-    write_text("test.gltf", "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%20b.bin\"}],"
-                            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
-                            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
-                            "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
-    model *m = load_file();
-    assert_floats(m->meshes[0].position, triangle_positions, 9);
-    assert_string_equal(m->meshes[0].name, "mesh_0");
-    model_free(m);
+}
+
+static void write_gltf_of(const char *uri)
+{
+    char text[8192];
+    snprintf(text, sizeof text,
+             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"%s\"}],"
+             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}",
+             uri);
+    write_text("test.gltf", text);
+}
+
+static void buffer_in_a_file_beside(void **state)
+{
+    (void)state;
+    snprintf(file_path, sizeof file_path, "%s/Parts", folder);
+    mkdir(file_path, 0777);
+    write_positions("a b.bin");
+    write_positions("Parts/a.bin");
+    write_positions("c%20d.bin");
+    const char *const uris[] = { "a%20b.bin", "A%20b.Bin", "parts/A.BIN", "./Parts/../parts/a.bin", "c%20d.bin" };
+    for (size_t i = 0; i < sizeof uris / sizeof *uris; ++i) {
+        write_gltf_of(uris[i]);
+        model *m = load_file();
+        assert_floats(m->meshes[0].position, triangle_positions, 9);
+        assert_string_equal(m->meshes[0].name, "mesh_0");
+        model_free(m);
+    }
+}
+
+/* Of files in memory: folders in any case, and names longer than a path. */
+static void held_names_are_found_in_any_case(void **state)
+{
+    (void)state;
+    static char longest[5008];
+    const input_held files[] = { { "in/B/Textures/wood.png", "", 0 }, { "in/b/x.png", "", 0 }, { longest, "", 0 } };
+    char found[64];
+    memset(longest, 'a', 5000);
+    memcpy(longest + 5000, "/b.bin", 7);
+    inputs_hold(files, 3);
+    assert_true(input_find_any_case("./in/B/textures/Wood.PNG", found, sizeof found));
+    assert_string_equal(found, "./in/B/Textures/wood.png");
+    assert_true(input_find_any_case("in/b/x.png", found, sizeof found));
+    assert_true(input_find_any_case("IN/B/X.PNG", found, 11) == 0);
+    assert_true(input_find_any_case("IN/b/X.PNG", found, 11));
+    assert_string_equal(found, "in/b/x.png");
+    assert_false(input_find_any_case("in/b/X.PNG", found, 10));
+    assert_false(input_find_any_case("in/b/wood.png", found, sizeof found));
+    assert_false(input_find_any_case(longest, found, sizeof found));
+    inputs_hold(NULL, 0);
+}
+
+/* No file is opened and nothing is written past a buffer. */
+static void long_names_are_refused(void **state)
+{
+    (void)state;
+    static char text[8192], uri[5008];
+    memset(uri, 'a', 5000);
+    memcpy(uri + 5000, "/b.bin", 7);
+    write_gltf_of(uri);
+    snprintf(file_path, sizeof file_path, "%s/test.gltf", folder);
+    FILE *in = fopen(file_path, "rb");
+    assert_non_null(in);
+    const input_held file = { "test.gltf", text, fread(text, 1, sizeof text, in) };
+    fclose(in);
+    for (int held = 0; held < 2; ++held) {
+        model *m = NULL;
+        model_error error;
+        if (held) inputs_hold(&file, 1);
+        assert_int_equal(model_read_gltf(held ? "test.gltf" : file_path, &m, &error), 1);
+        inputs_hold(NULL, 0);
+    }
 }
 
 static void interleaved_attributes(void **state)
@@ -2822,13 +2889,15 @@ static int make_folder(void **state)
 
 static int remove_folder(void **state)
 {
-    static const char *const names[] = { "test.gltf", "test.glb", "json", "a b.bin" };
+    static const char *const names[] = { "test.gltf", "test.glb", "json", "a b.bin", "c%20d.bin", "Parts/a.bin" };
     char path[128];
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
         (void)unlink(path);
     }
+    snprintf(path, sizeof path, "%s/Parts", folder);
+    (void)rmdir(path);
     return rmdir(folder);
 }
 
@@ -2839,6 +2908,8 @@ int main(void)
         cmocka_unit_test(indices_of_every_size),
         cmocka_unit_test(binary_container),
         cmocka_unit_test(buffer_in_a_file_beside),
+        cmocka_unit_test(held_names_are_found_in_any_case),
+        cmocka_unit_test(long_names_are_refused),
         cmocka_unit_test(interleaved_attributes),
         cmocka_unit_test(sparse_with_a_base),
         cmocka_unit_test(sparse_without_a_base),

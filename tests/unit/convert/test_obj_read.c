@@ -218,16 +218,42 @@ static void nothing_is_invisible(void **state)
     model_free(m);
 }
 
-/* Files from Windows name their materials and pictures in another case. */
+/* Files from Windows name their materials, pictures and folders in another case, and with other slashes. */
 static void names_differ_in_case(void **state)
 {
     static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
     (void)state;
     test_write_file(test_path("skin_case.TGA"), tga, sizeof tga);
-    save("face.mtl", "newmtl a\nmap_Kd C:\\art\\Skin_Case.tga\nnewmtl b\nmap_Kd SKIN_CASE.tga\n");
-    model *m = load("mtllib Face.MTL\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
-    assert_int_equal(m->texture_count, 2);
-    assert_true(m->textures[0].rgba[0] == 10 && m->textures[1].rgba[0] == 10);
+    (void)mkdir(test_path("Maps"), 0777);
+    test_write_file(test_path("Maps/wood.tga"), tga, sizeof tga);
+    save("face.mtl", "newmtl a\nmap_Kd C:\\art\\Skin_Case.tga\nnewmtl b\nmap_Kd SKIN_CASE.tga\nnewmtl c\nmap_Kd "
+                     "maps/Wood.TGA\nnewmtl d\nmap_Kd maps\\wood.tga\n");
+    save("Maps/deep.mtl", "newmtl a\nmap_Kd Maps/wood.tga\n");
+    model *m = load("mtllib Face.MTL\n" SQUARE
+                    "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\nusemtl c\nf 1 3 4\nusemtl d\nf 1 3 4\n");
+    assert_int_equal(m->texture_count, 4);
+    for (uint32_t i = 0; i < 4; i++) assert_true(m->textures[i].rgba[0] == 10);
+    model_free(m);
+    m = load("mtllib maps\\Deep.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
+    assert_int_equal(m->texture_count, 1);
+    model_free(m);
+}
+
+/* A path that does not fit is not cut to another one. */
+static void long_names_are_left_out(void **state)
+{
+    static char text[16384];
+    static char name[5001];
+    (void)state;
+    memset(name, 'a', sizeof name - 1);
+    (void)snprintf(text, sizeof text, "newmtl a\nmap_Kd %s\n", name);
+    save("face.mtl", text);
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
+    assert_true(has_warning(m, "was left out: its name is longer than the 4095 bytes of a path"));
+    model_free(m);
+    (void)snprintf(text, sizeof text, "mtllib %s\n" SQUARE "usemtl a\nf 1 2 3\n", name);
+    m = load(text);
+    assert_true(has_warning(m, "were left out: its name is longer than the 4095 bytes of a path"));
     model_free(m);
 }
 
@@ -448,6 +474,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(materials_are_submeshes),
     cmocka_unit_test(nothing_is_invisible),
     cmocka_unit_test(names_differ_in_case),
+    cmocka_unit_test(long_names_are_left_out),
     cmocka_unit_test(large_images_are_counted_first),
     cmocka_unit_test(missing_materials_are_told),
     cmocka_unit_test(colours_of_positions),

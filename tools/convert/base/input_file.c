@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "platform.h"
 
@@ -58,8 +59,8 @@ int inputs_are_held(void)
     return held != NULL;
 }
 
-/* A path without ".", empty names, and names that a ".." takes back; "" where it is too long. */
-static void plain_path(const char *path, char plain[PATH_BYTES])
+/* A path without ".", empty names, and names that a ".." takes back. 0: it is too long. */
+static int plain_path(const char *path, char plain[PATH_BYTES])
 {
     size_t count = 0;
     plain[0] = '\0';
@@ -72,10 +73,7 @@ static void plain_path(const char *path, char plain[PATH_BYTES])
             count = last == plain ? 0 : (size_t)(last - plain) - 1u;
         } else {
             const size_t slash = count != 0;
-            if (count + slash + length >= PATH_BYTES) {
-                count = 0;
-                break;
-            }
+            if (count + slash + length >= PATH_BYTES) return 0;
             if (slash) plain[count++] = '/';
             memcpy(plain + count, path, length);
             count += length;
@@ -83,31 +81,48 @@ static void plain_path(const char *path, char plain[PATH_BYTES])
         plain[count] = '\0';
     }
     plain[count] = '\0';
+    return 1;
 }
 
 const input_held *input_find_held(const char *path)
 {
     char wanted[PATH_BYTES], own[PATH_BYTES];
-    plain_path(path, wanted);
+    if (!plain_path(path, wanted) || !wanted[0]) return NULL;
     for (uint32_t i = 0; i < held_count; i++) {
-        plain_path(held[i].path, own);
-        if (wanted[0] && strcmp(wanted, own) == 0) return &held[i];
+        if (plain_path(held[i].path, own) && strcmp(wanted, own) == 0) return &held[i];
     }
     return NULL;
 }
 
+/* What follows a folder in a held file's path, which goes to own; NULL: the file is not in the folder or below it. */
+static const char *part_below(const char *folder, const char *path, char own[PATH_BYTES])
+{
+    char wanted[PATH_BYTES];
+    if (!plain_path(folder, wanted) || !plain_path(path, own)) return NULL;
+    const size_t length = strlen(wanted);
+    if (length && (strncmp(own, wanted, length) != 0 || own[length] != '/')) return NULL;
+    return own + length + (length != 0);
+}
+
 const char *input_next_held(const char *folder, uint32_t *at)
 {
-    char wanted[PATH_BYTES], own[PATH_BYTES];
-    plain_path(folder, wanted);
+    char own[PATH_BYTES];
     while (*at < held_count) {
-        const char *path = held[(*at)++].path, *slash = strrchr(path, '/');
-        plain_path(path, own);
-        char *cut = strrchr(own, '/');
-        *(cut ? cut : own) = '\0';
-        if (strcmp(wanted, own) == 0) return slash ? slash + 1 : path;
+        const char *path = held[(*at)++].path, *slash = strrchr(path, '/'), *below = part_below(folder, path, own);
+        if (below && !strchr(below, '/')) return slash ? slash + 1 : path;
     }
     return NULL;
+}
+
+/* ---- names in any case ---- */
+
+/* A file or folder of exactly this path. */
+static int is_there(const char *path)
+{
+    char own[PATH_BYTES];
+    int found = held ? input_find_held(path) != NULL : access(path, F_OK) == 0;
+    for (uint32_t i = 0; i < held_count && !found; i++) found = part_below(path, held[i].path, own) != NULL;
+    return found;
 }
 
 static int lower(int c)
@@ -115,36 +130,50 @@ static int lower(int c)
     return c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c;
 }
 
-static int is_same_but_case(const char *a, const char *b)
+static int is_same_but_case(const char *a, const char *b, size_t length)
 {
-    while (*a && lower(*a) == lower(*b)) a++, b++;
-    return *a == *b;
+    for (size_t i = 0; i < length; i++) {
+        if (lower(a[i]) != lower(b[i])) return 0;
+    }
+    return a[length] == '\0' || (held && a[length] == '/');
 }
 
-static int is_better(const char *own, const char *best, const char *name)
+/* Give the name at the path's end the case that it has in its folder. 0: there is none in any case. */
+static int mend_case(char *path, size_t start)
 {
-    return !best[0] || strcmp(own, name) == 0 || (strcmp(best, name) != 0 && strcmp(own, best) < 0);
+    char own[PATH_BYTES], *name = path + start;
+    const size_t length = strlen(name);
+    int found = 0;
+    if (start) path[start - 1u] = '\0';
+    const char *folder = start > 1u ? path : start ? "/" : ".";
+    DIR *open = held ? NULL : opendir(folder);
+    for (uint32_t i = 0; held ? i < held_count : open != NULL; i++) {
+        const struct dirent *entry = open ? readdir(open) : NULL;
+        if (open && !entry) break;
+        const char *at = entry ? entry->d_name : part_below(folder, held[i].path, own);
+        if (!at || !is_same_but_case(at, name, length) || (found && memcmp(at, name, length) >= 0)) continue;
+        memcpy(name, at, length);
+        found = 1;
+    }
+    if (open) (void)closedir(open);
+    if (start) path[start - 1u] = '/';
+    return found;
 }
 
 int input_find_any_case(const char *path, char *found, size_t size)
 {
-    const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path, *own;
-    char folder[PATH_BYTES], best[256] = "";
-    uint32_t at = 0;
-    DIR *open = NULL;
-    (void)snprintf(folder, sizeof folder, "%.*s", (int)(name - path), path);
-    if (!held) open = opendir(slash ? folder : ".");
-    do {
-        const struct dirent *entry = open ? readdir(open) : NULL;
-        if (held && slash) folder[slash - path] = '\0';
-        own = held ? input_next_held(folder, &at) : entry ? entry->d_name : NULL;
-        if (own && strlen(own) < sizeof best && is_same_but_case(own, name) && is_better(own, best, name)) {
-            memcpy(best, own, strlen(own) + 1u);
-        }
-    } while (own);
-    if (open) (void)closedir(open);
-    (void)snprintf(found, size, "%.*s%s", (int)(name - path), path, best);
-    return best[0] != '\0';
+    const size_t length = strlen(path);
+    int failed = 0;
+    if (length >= size || length >= PATH_BYTES) return 0;
+    memcpy(found, path, length + 1u);
+    if (is_there(path)) return 1;
+    for (size_t start = 0, end; start < length && !failed; start = end + 1u) {
+        end = start + strcspn(found + start, "/");
+        found[end] = '\0';
+        failed = end > start && !is_there(found) && !mend_case(found, start);
+        found[end] = path[end];
+    }
+    return !failed;
 }
 
 int input_map(const char *path, const void **bytes, size_t *count, const char **what)

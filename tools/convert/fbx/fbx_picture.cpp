@@ -89,7 +89,7 @@ static std::string name_there(const std::filesystem::path &folder, const std::st
     const bool found = inputs_are_held() ? input_find_held(path) != nullptr
                                          : std::filesystem::is_regular_file(path, ignored);
     inputs_note(path, found);
-    return !found ? std::string() : any_case ? name.substr(0, name.find_last_of('/') + 1) + base_name(other) : name;
+    return !found ? std::string() : std::string(path).substr(picture.size() - name.size());
 }
 
 /* Paths are from the author's machine: the picture is looked up by its name, where exporters put it. */

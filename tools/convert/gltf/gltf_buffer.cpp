@@ -90,18 +90,14 @@ static bytes decode_data_uri(const std::string &uri, const std::string &where)
  * read the user's own files. */
 static std::string path_of(const file &f, const std::string &uri, const std::string &where)
 {
-    std::string path = percent_decode(uri);
-    std::error_code ignored;
+    const std::string path = percent_decode(uri);
     if (path.empty() || path[0] == '/' || path.find(':') != std::string::npos || path.find('\0') != std::string::npos)
         fail(where,
              "the URI '" + printable(uri) + "' is not a relative path: put the file in the folder of the glTF file");
-    /* of an exporter that wrote a name as it is */
-    if (path != uri && !inputs_are_held() && !std::filesystem::exists(f.directory + path, ignored) &&
-        std::filesystem::exists(f.directory + uri, ignored))
-        path = uri;
     char found[4096];
-    path.insert(0, f.directory);
-    return input_find_any_case(path.c_str(), found, sizeof found) ? found : path;
+    for (const std::string &name : { path, uri }) /* some exporters write a name as it is */
+        if (input_find_any_case((f.directory + name).c_str(), found, sizeof found)) return found;
+    return f.directory + path;
 }
 
 bytes read_uri(file &f, const std::string &uri, const std::string &where)

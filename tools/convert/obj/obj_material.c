@@ -7,13 +7,12 @@
 
 #include "convert/base/image_file.h"
 #include "convert/base/input_file.h"
-#include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
 
 /* A material file while the model's materials are filled in. */
 typedef struct library {
-    const char *folder; /* with its slash, or "" */
+    const char *obj_path;
     text_scan scan;
     model *m;
     model_material *at;   /* the one that the lines are about; NULL: none that is used */
@@ -57,24 +56,47 @@ static model_material *material_of(model *m, text_word name)
     return NULL;
 }
 
-/* ---- textures ---- */
+/* ---- files ---- */
 
-/* Exporters may write a path from another machine: then the file of that name in the model's folder is used. */
-static int read_image(library *l, const char *name, image_file *image, model_error *error)
+#define PATH_BYTES 4096
+
+/* The path of a file in the OBJ's folder. 0: it is too long. */
+static int join_path(const char *obj_path, const char *name, char path[PATH_BYTES])
 {
-    char path[4096], own[4096], found[4096];
+    const char *slash = strrchr(obj_path, '/');
+    const size_t folder = slash ? (size_t)(slash - obj_path) + 1u : 0u, length = strlen(name);
+    if (folder >= PATH_BYTES || length >= PATH_BYTES - folder) return 0;
+    memcpy(path, obj_path, folder);
+    memcpy(path + folder, name, length + 1u);
+    for (char *c = path + folder; *c; c++) {
+        if (*c == '\\') *c = '/';
+    }
+    return 1;
+}
+
+/* Exporters may write a path from another machine: then the file of that name in the model's folder is used. found: a
+ * path to read, whether it is there or not. */
+static int find_file(const char *obj_path, const char *name, char found[PATH_BYTES], model_error *error)
+{
+    char path[PATH_BYTES];
     const char *last = name;
-    const int absolute = name[0] == '/' || strchr(name, ':') != NULL || strstr(name, "..") != NULL;
+    const int is_local = name[0] != '/' && name[0] != '\\' && !strchr(name, ':');
     for (const char *c = name; *c; c++) {
         if (*c == '/' || *c == '\\') last = c + 1;
     }
-    (void)snprintf(path, sizeof path, "%s%s", l->folder, name);
-    if (!absolute && image_read_next(path, &l->pixels_left, image, error) == 0) return 0;
-    (void)snprintf(own, sizeof own, "%s%s", l->folder, last);
-    if (!input_find_any_case(own, found, sizeof found)) memcpy(found, own, sizeof found);
-    if (!absolute && strcmp(found, path) == 0) return 1;
-    return image_read_next(found, &l->pixels_left, image, error);
+    if (is_local && join_path(obj_path, name, path)) {
+        if (input_find_any_case(path, found, PATH_BYTES)) return 0;
+        inputs_note(path, 0);
+    }
+    if (!join_path(obj_path, last, path)) {
+        return model_fail(error, "", "its name is longer than the %d bytes of a path: give it a shorter one",
+                          PATH_BYTES - 1);
+    }
+    if (!input_find_any_case(path, found, PATH_BYTES)) memcpy(found, path, strlen(path) + 1u);
+    return 0;
 }
+
+/* ---- textures ---- */
 
 static uint32_t find_texture(const model *m, const char *name)
 {
@@ -86,10 +108,11 @@ static uint32_t find_texture(const model *m, const char *name)
 
 static int add_texture(library *l, const char *name)
 {
+    char path[PATH_BYTES];
     image_file image;
     model_error error = { "", "" };
     model_texture *t = &l->m->textures[l->m->texture_count];
-    if (read_image(l, name, &image, &error)) {
+    if (find_file(l->obj_path, name, path, &error) || image_read_next(path, &l->pixels_left, &image, &error)) {
         return model_warn(l->m, "material '%.60s': the texture %.80s was left out: %s", l->at->name, name, error.what);
     }
     if (image.has_no_end && model_warn(l->m, "material '%.60s': %.80s: %s", l->at->name, name, error.what)) {
@@ -203,18 +226,15 @@ static int read_library(library *l, const char *text, size_t bytes)
 
 int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
 {
-    char folder[4096], path[8192], found[8192];
-    const char *slash = strrchr(obj_path, '/');
-    library l = { .folder = folder, .m = m, .pixels_left = IMAGE_PIXELS };
+    char path[PATH_BYTES];
+    library l = { .obj_path = obj_path, .m = m, .pixels_left = IMAGE_PIXELS };
     model_error error = { "", "" };
     size_t bytes = 0;
     char *text;
     int failed;
     if (make_materials(o, m)) return 1;
     if (!o->library || m->material_count == 0) return 0;
-    (void)snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - obj_path + 1) : 0, obj_path);
-    (void)snprintf(path, sizeof path, "%s%s", folder, o->library);
-    text = input_read_text(input_find_any_case(path, found, sizeof found) ? found : path, &bytes, &error);
+    text = find_file(obj_path, o->library, path, &error) ? NULL : input_read_text(path, &bytes, &error);
     if (!text) return model_warn(m, "the materials of %.80s were left out: %s", o->library, error.what);
     failed = read_library(&l, text, bytes);
     free(text);
