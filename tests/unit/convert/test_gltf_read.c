@@ -2759,6 +2759,37 @@ static void hidden_nodes_are_not_drawn(void **state)
     model_free(m);
 }
 
+/* What an animation shows is kept; a mesh that only hidden nodes have is not, and the others' numbers follow. */
+static void hidden_meshes_are_not_kept(void **state)
+{
+    (void)state;
+    scene *s = triangle("", "");
+    const float times[2] = { 0, 1 };
+    add_array(s, times, sizeof times, F32, 2, "SCALAR");
+    APPEND(s->rest,
+           ",\"nodes\":[{\"name\":\"n\",\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},"
+           "{\"name\":\"o\",\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},"
+           "{\"name\":\"p\",\"mesh\":0}],\"animations\":[{\"samplers\":[{\"input\":1,\"output\":1}],\"channels\":[{"
+           "\"sampler\":0,\"target\":{\"path\":\"pointer\",\"extensions\":{\"KHR_animation_pointer\":{\"pointer\":"
+           "\"/nodes/0/extensions/KHR_node_visibility/visible\"}}}}]}]");
+    model *m = load(s);
+    assert_true(m->nodes[0].mesh == 0 && m->nodes[1].mesh == MODEL_NONE && m->nodes[2].mesh == 0);
+    model_free(m);
+    write_positions("a b.bin");
+    write_text("test.gltf",
+               "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%20b.bin\"}],"
+               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+               "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+               "\"meshes\":[{\"name\":\"free\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]},"
+               "{\"name\":\"hidden\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]},"
+               "{\"name\":\"shown\",\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+               "\"nodes\":[{\"mesh\":1,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},{\"mesh\":2}]}");
+    m = load_file();
+    assert_true(m->mesh_count == 2 && m->nodes[0].mesh == MODEL_NONE && m->nodes[1].mesh == 1);
+    assert_string_equal(m->meshes[1].name, "shown");
+    model_free(m);
+}
+
 /* A clip moves the weights of the first instance, which the others follow; another node with the mesh keeps its own. */
 static void weights_of_instances_are_animated(void **state)
 {
@@ -3020,6 +3051,7 @@ int main(void)
         cmocka_unit_test(bad_references),
         cmocka_unit_test(instances_are_nodes),
         cmocka_unit_test(hidden_nodes_are_not_drawn),
+        cmocka_unit_test(hidden_meshes_are_not_kept),
         cmocka_unit_test(weights_of_instances_are_animated),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),
         cmocka_unit_test(compressed_head_has_the_same_shape),

@@ -46,7 +46,7 @@ struct target {
     std::string path;
 };
 
-static std::string pointer_of(const tinygltf::AnimationChannel &c)
+std::string pointer_of(const tinygltf::AnimationChannel &c)
 {
     const auto found = c.target_extensions.find("KHR_animation_pointer");
     if (found == c.target_extensions.end() || !found->second.Has("pointer")) return "";

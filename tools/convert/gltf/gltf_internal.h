@@ -270,6 +270,8 @@ void read_springs(file &f); /* after read_nodes */
  * nodes outside the scene. */
 void find_left_out(file &f);
 void hide_nodes(file &f); /* after read_nodes */
+/* KHR_animation_pointer of a channel; empty: it has none. */
+std::string pointer_of(const tinygltf::AnimationChannel &c);
 void read_extras(file &f, const tinygltf::Animation &a, const std::string &where, model_clip &out);
 
 } // namespace gltf

@@ -1,6 +1,7 @@
 /* gltf_left_out.cpp: warnings about features that the model does not store, one for each kind. */
 #include "gltf_internal.h"
 
+#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <set>
@@ -78,36 +79,77 @@ static void find_in_scene(file &f)
                       " was left out: it is not in the default scene");
 }
 
-/* KHR_node_visibility: a node and what is below it; of FBX, where a node below may be shown, it alone (fbx_nodes.cpp). A
- * file that shows nothing is drawn whole. */
-void hide_nodes(file &f)
+/* Nodes that an animation shows and hides are seen at some time. */
+static std::set<size_t> nodes_that_blink(const file &f)
 {
+    std::set<size_t> out;
+    for (const tinygltf::Animation &animation : f.json.animations)
+        for (const tinygltf::AnimationChannel &c : animation.channels) {
+            unsigned index = 0;
+            int end = 0;
+            const std::string pointer = c.target_path == "pointer" ? pointer_of(c) : "";
+            if (sscanf(pointer.c_str(), "/nodes/%9u/extensions/KHR_node_visibility/visible%n", &index, &end) == 1 &&
+                end && static_cast<size_t>(end) == pointer.size())
+                out.insert(index);
+        }
+    return out;
+}
+
+/* KHR_node_visibility: a node and what is below it; of FBX, where a node below may be shown, it alone
+ * (fbx_nodes.cpp). */
+static std::vector<bool> hidden_nodes(const file &f)
+{
+    const std::set<size_t> blink = nodes_that_blink(f);
     std::vector<bool> hidden(f.out->node_count), below(f.out->node_count);
-    bool any_shown = false;
     for (size_t i = 0; i < f.json.nodes.size(); ++i) {
         const auto said = f.json.nodes[i].extensions.find("KHR_node_visibility");
         if (f.node_of[i] == MODEL_NONE || said == f.json.nodes[i].extensions.end() || !said->second.IsObject())
             continue;
         const tinygltf::Value &visible = said->second.Get("visible"), &extras = said->second.Get("extras");
-        hidden[f.node_of[i]] = visible.IsBool() && !visible.Get<bool>();
+        hidden[f.node_of[i]] = visible.IsBool() && !visible.Get<bool>() && !blink.count(i);
         below[f.node_of[i]] = hidden[f.node_of[i]] && !(extras.IsObject() && extras.Has("alone"));
     }
     for (size_t i = 0; i < hidden.size(); ++i) { /* parents first */
-        const model_node &node = f.out->nodes[i];
-        if (node.parent != MODEL_NONE && below[node.parent]) hidden[i] = below[i] = true;
-        any_shown |= node.mesh != MODEL_NONE && !hidden[i];
+        const uint32_t parent = f.out->nodes[i].parent;
+        if (parent != MODEL_NONE && below[parent]) hidden[i] = below[i] = true;
     }
+    return hidden;
+}
+
+/* A mesh that only hidden nodes have would be dead bytes in a pack. */
+static void drop_hidden_meshes(file &f, std::vector<bool> &was_hidden)
+{
+    for (size_t i = 0; i < f.out->node_count; ++i)
+        if (f.out->nodes[i].mesh != MODEL_NONE) was_hidden[f.out->nodes[i].mesh] = false;
+    for (uint32_t mesh = f.out->mesh_count; mesh-- > 0;) {
+        if (!was_hidden[mesh]) continue;
+        model_drop_mesh(f.out, mesh);
+        for (uint32_t &own : f.mesh_of)
+            if (own != MODEL_NONE && own >= mesh) own = own == mesh ? MODEL_NONE : own - 1;
+    }
+}
+
+/* A file that shows nothing is drawn whole. */
+void hide_nodes(file &f)
+{
+    const std::vector<bool> hidden = hidden_nodes(f);
+    std::vector<bool> has_hidden(f.out->mesh_count);
+    bool any_shown = false;
+    for (size_t i = 0; i < hidden.size(); ++i) any_shown |= f.out->nodes[i].mesh != MODEL_NONE && !hidden[i];
     for (size_t i = 0; i < hidden.size(); ++i) {
         model_node &node = f.out->nodes[i];
         if (!hidden[i] || node.mesh == MODEL_NONE) continue;
         leave_out(f, std::string("node '") + node.name + "'",
-                  any_shown ? " is hidden in the file and is not drawn: to draw it, show it in its program"
+                  any_shown ? " is hidden in the file and is not drawn: to draw it, unhide it in the program that made "
+                              "the file"
                             : " is hidden in the file, as are all that have a mesh: they are drawn");
         if (!any_shown) continue;
+        has_hidden[node.mesh] = true;
         node.mesh = MODEL_NONE;
         free(node.weights);
         node.weights = nullptr;
     }
+    drop_hidden_meshes(f, has_hidden);
 }
 
 void find_left_out(file &f)
