@@ -258,6 +258,30 @@ static void one_shape_of_two_names_counts_once(void **state)
     recipe_free(recipe);
 }
 
+/* Of targets that move the same way the smallest is used, but no detail of another; a small one holds no chain. */
+static void details_stand_for_nothing(void **state)
+{
+    static const moved shapes[] = {
+        { "jawOpen", { 1.0f, 0, 0, 0, 0, 0 } },   { "Mouth_Open", { 0.05f, 0, 0, 0, 0, 0 } },
+        { "a", { 0, 1.0f, 0, 0, 0, 0 } },         { "b", { 0, 0.55f, 0, 0, 0, 0 } },
+        { "c", { 0, 0.29f, 0, 0, 0, 0 } },        { "b again", { 0, 0.55f, 0, 0, 0, 0 } },
+        { "elsewhere", { 0, 0, 0.5f, 0, 0, 0 } }, { "nothing", { 0, 0, 0, 0, 0, 0 } },
+        { "alone", { 0, 0.55f, 0, 0, 0, 0 } },
+    };
+    static const uint32_t meaning[TEST_COUNT(shapes)] = { 0, 0, 2, 2, 2, 2, 2, 2, MODEL_NONE };
+    static const uint8_t expected[TEST_COUNT(shapes)] = { 0, 1, 1, 0, 1, 1, 0, 0, 0 };
+    const char *names[TEST_COUNT(shapes)];
+    model_target targets[TEST_COUNT(shapes)];
+    uint8_t held[TEST_COUNT(shapes)];
+    model_mesh mesh;
+    model m;
+    (void)state;
+    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
+    for (size_t i = 0; i < TEST_COUNT(shapes); i++) names[i] = shapes[i].name;
+    assert_int_equal(targets_find_held(&m, names, meaning, TEST_COUNT(shapes), held), 0);
+    assert_memory_equal(held, expected, sizeof expected);
+}
+
 /* An emotion of the whole face gives its mouth to speech, and its lids to blinks; one that is no sum stays. */
 static void whole_faces_take_their_parts(void **state)
 {
@@ -274,10 +298,10 @@ static void whole_faces_take_their_parts(void **state)
     model m;
     (void)state;
     add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
-    assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Joy", "anger-upper", 1.0f, 0), 0); /* an artist's own row */
+    assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Joy", "anger-upper", 1.0f, 1), 0); /* an artist's own row */
     assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Joy", "joy-upper", 0.5f, 0), 0);
     assert_int_equal(recipe_add_row(recipe, "F_Fcl_ALL_Angry", "fear-upper", 1.0f, 0), 0);
-    assert_int_equal(recipe_split_whole(recipe, &m, 1), 0);
+    assert_int_equal(recipe_split_whole(recipe, &m), 0);
     assert_true(weight_of(recipe, "anger-upper", "F_Fcl_ALL_Joy") == 1.0f);
     assert_true(weight_of(recipe, "fear-upper", "F_Fcl_ALL_Angry") == 1.0f);
     assert_true(weight_of(recipe, "joy-upper", "F_Fcl_ALL_Joy") == 0.0f);
@@ -286,6 +310,30 @@ static void whole_faces_take_their_parts(void **state)
     assert_true(weight_of(recipe, "joy-mouth", "F_Fcl_MTH_Joy") == 0.5f);
     assert_true(weight_of(recipe, "override-lids", "joy-upper") == (float)NOH_OVERRIDE_BLEND);
     recipe_free(recipe);
+}
+
+/* A row in a mesh's extras is its artist's, and is kept as it is; VRM's expressions are split. */
+static void rows_of_artists_stay(void **state)
+{
+    static const moved shapes[] = { { "Fcl_ALL_Joy", { 1, 1, 2, 2, 1, 1 } },
+                                    { "Fcl_BRW_Joy", { 1, 1, 0, 0, 0, 0 } },
+                                    { "Fcl_EYE_Joy", { 0, 0, 2, 2, 0, 0 } },
+                                    { "Fcl_MTH_Joy", { 0, 0, 0, 0, 1, 1 } } };
+    model_target targets[TEST_COUNT(shapes)];
+    model_mesh mesh;
+    model m;
+    char lines[] = "joy-upper Fcl_ALL_Joy";
+    (void)state;
+    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
+    mesh.recipe = lines;
+    for (int is_made = 0; is_made < 2; is_made++) {
+        recipe_text *recipe = recipe_new();
+        mesh.recipe_is_made = is_made;
+        assert_int_equal(recipe_add_extras(recipe, &m), 0);
+        assert_int_equal(recipe_split_whole(recipe, &m), 0);
+        assert_true(weight_of(recipe, "joy-upper", "Fcl_ALL_Joy") == (is_made ? 0.0f : 1.0f));
+        recipe_free(recipe);
+    }
 }
 
 static void wrong_lines_are_named(void **state)
@@ -318,6 +366,8 @@ int main(void)
         cmocka_unit_test(wrong_lines_are_named),
         cmocka_unit_test(one_shape_of_two_names_counts_once),
         cmocka_unit_test(whole_faces_take_their_parts),
+        cmocka_unit_test(details_stand_for_nothing),
+        cmocka_unit_test(rows_of_artists_stay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

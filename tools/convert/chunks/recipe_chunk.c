@@ -85,9 +85,8 @@ static int read_recipe(const convert_options *options, const source *s, void **m
     if (!recipe) recipe = recipe_new();
     *made = recipe;
     if (failed) return 1;
-    const uint32_t own = recipe ? recipe->count : 0u;
     if (!recipe || recipe_add_extras(recipe, s->m) || recipe_add_lips(recipe, s->m) ||
-        recipe_add_known(recipe, s->m, &known) || recipe_split_whole(recipe, s->m, own) ||
+        recipe_add_known(recipe, s->m, &known) || recipe_split_whole(recipe, s->m) ||
         (s->m->mesh_count && add_joints(recipe, s)) ||
         (!options->no_correctives && recipe_add_named(recipe, s->m, &named))) {
         (void)snprintf(failure->error.what, sizeof failure->error.what,

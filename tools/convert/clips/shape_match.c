@@ -86,14 +86,27 @@ static void fill(const raw_clip *clip, const uint32_t from[2], float standing, r
     }
 }
 
-/* Whether another target of the mesh has the same sources and stands for this one, too. */
-static int is_held(const model *m, const model_mesh *mesh, uint32_t (*from)[2], uint32_t t)
+/* A target that has the same sources as another which is used has none. */
+static int leave_held(const model *m, const model_mesh *mesh, uint32_t (*from)[2])
 {
-    for (uint32_t u = 0; from[t][0] != MODEL_NONE && u < mesh->target_count; u++) {
-        const int is_same = u != t && memcmp(from[u], from[t], sizeof from[t]) == 0;
-        if (is_same && target_is_held(m, mesh->targets[t].name, mesh->targets[u].name, u < t)) return 1;
+    const uint32_t count = mesh->target_count;
+    const char **names = model_zeros(count, sizeof *names);
+    uint32_t *meaning = model_zeros(count, sizeof *meaning);
+    uint8_t *held = model_zeros(count, 1);
+    int failed = !names || !meaning || !held;
+    for (uint32_t t = 0; t < count && !failed; t++) {
+        names[t] = mesh->targets[t].name;
+        meaning[t] = from[t][0] == MODEL_NONE ? MODEL_NONE : 0;
+        while (meaning[t] < t && memcmp(from[meaning[t]], from[t], sizeof from[t]) != 0) meaning[t]++;
     }
-    return 0;
+    failed = failed || targets_find_held(m, names, meaning, count, held);
+    for (uint32_t t = 0; t < count && !failed; t++) {
+        if (held[t]) from[t][0] = from[t][1] = MODEL_NONE;
+    }
+    free(names);
+    free(meaning);
+    free(held);
+    return failed;
 }
 
 /* The weights of one node, behind the clip's `count` scalars; left out where none of its targets is named. */
@@ -102,7 +115,7 @@ static int add_node(const model *m, uint32_t node, uint32_t count, const recipe_
 {
     const uint32_t at = m->nodes[node].mesh;
     const model_mesh *mesh = at == MODEL_NONE ? NULL : &m->meshes[at];
-    const uint32_t none[2] = { MODEL_NONE, MODEL_NONE }, targets = mesh ? mesh->target_count : 0;
+    const uint32_t targets = mesh ? mesh->target_count : 0;
     const float *own = m->nodes[node].weights;
     raw_floats *out = &clip->floats[clip->float_count];
     uint32_t(*from)[2] = targets ? model_zeros(targets, sizeof *from) : NULL;
@@ -118,16 +131,16 @@ static int add_node(const model *m, uint32_t node, uint32_t count, const recipe_
         failed = !out->name || !out->radius;
     }
     for (uint32_t t = 0; !failed && t < targets; t++) sources_of(clip, count, mesh->targets[t].name, from[t]);
+    failed = failed || leave_held(m, mesh, from);
     for (uint32_t t = 0; !failed && t < targets; t++) {
         out->radius[t] = reach_cm(m, at, t);
         if (fill_by_recipe(recipe, clip, count, mesh->targets[t].name, out, t, taken)) {
             any = 1;
             continue;
         }
-        const uint32_t *source = is_held(m, mesh, from, t) ? none : from[t];
-        fill(clip, source, own ? own[t] : mesh->weights[t], out, t);
-        if (source[0] == MODEL_NONE) continue;
-        taken[source[0]] = taken[source[1]] = 1;
+        fill(clip, from[t], own ? own[t] : mesh->weights[t], out, t);
+        if (from[t][0] == MODEL_NONE) continue;
+        taken[from[t][0]] = taken[from[t][1]] = 1;
         any = 1;
     }
     if (!failed && !any) raw_floats_clear(&clip->floats[--clip->float_count]);

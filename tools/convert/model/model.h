@@ -144,6 +144,7 @@ typedef struct model_mesh {
     uint32_t skin;           /* valid if `bound` */
     uint32_t palette_limit;  /* joints that one draw may use; 0: as many as the format holds */
     char *recipe;            /* lines of a face's recipe (base/recipe_read.h) out of the mesh's extras; NULL: none */
+    int recipe_is_made;      /* of VRM's expressions; 0: an artist wrote it */
     uint8_t *wrinkles; /* [target_count][12] how much each target wrinkles each region, 255 all; NULL: no wrinkles */
     uint8_t *colors;   /* as at noh_wrinkles_header.colors_offset, [4 + target_count][4]; NULL: no colours */
     uint32_t color_material; /* with colours: index into materials */

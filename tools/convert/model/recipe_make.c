@@ -55,15 +55,17 @@ static int add_line(recipe_text *extras, model *m, const model_mesh *mesh, const
                       (int)(size < 60 ? size : 60), text, error.what);
 }
 
-/* Lines end with a line feed or a semicolon. */
+/* Lines end with a line feed or a semicolon. Rows of VRM's expressions have no line, as nobody wrote them. */
 static int read_mesh(recipe_text *extras, model *m, const model_mesh *mesh)
 {
+    const uint32_t before = extras->count;
     const char *at = mesh->recipe;
     while (at && *at) {
         const size_t size = strcspn(at, ";\n");
         if (add_line(extras, m, mesh, at, size)) return 1;
         at += size + (at[size] != '\0');
     }
+    for (uint32_t i = before; i < extras->count && mesh->recipe_is_made; i++) extras->rows[i].line = 0;
     return 0;
 }
 
@@ -91,7 +93,8 @@ int recipe_add_extras(recipe_text *recipe, model *m)
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) failed = read_mesh(extras, m, &m->meshes[i]);
     for (uint32_t i = 0; !failed && i < extras->count; i++) {
         const recipe_row *row = &extras->rows[i];
-        if (!has_row(recipe, own, row)) failed = recipe_add_row(recipe, row->target, row->channel, row->weight, 0);
+        if (!has_row(recipe, own, row))
+            failed = recipe_add_row(recipe, row->target, row->channel, row->weight, row->line);
     }
     failed = failed || add_wrinkles(recipe, recipe->wrinkle_count, extras);
     for (uint32_t c = 0; !failed && c < 4; c++) {
@@ -133,10 +136,10 @@ int recipe_add_lips(recipe_text *recipe, const model *m)
 /* ---- the table of names ---- */
 
 typedef struct known {
-    const model *m;
     const char *names[NOH_TARGETS_MAX]; /* of all meshes, each once */
     const char *means[NOH_TARGETS_MAX]; /* the table's, or its own */
     char text[NOH_TARGETS_MAX][NOH_NAME_BYTES_MAX];
+    uint8_t held[NOH_TARGETS_MAX]; /* another target of the same meaning is used */
     uint32_t count;
 } known;
 
@@ -148,8 +151,9 @@ static int is_listed(const known *k, const char *name)
     return 0;
 }
 
-static void list_known(known *k, const model *m)
+static int list_known(known *k, const model *m)
 {
+    uint32_t meaning[NOH_TARGETS_MAX];
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t t = 0; t < m->meshes[i].target_count && k->count < NOH_TARGETS_MAX; t++) {
             if (!is_listed(k, m->meshes[i].targets[t].name)) k->names[k->count++] = m->meshes[i].targets[t].name;
@@ -158,17 +162,9 @@ static void list_known(known *k, const model *m)
     for (uint32_t i = 0; i < k->count; i++) {
         const int found = names_find(NAME_TARGET, k->names[i], k->text[i], NULL);
         k->means[i] = found && !is_listed(k, k->text[i]) ? k->text[i] : k->names[i];
+        for (meaning[i] = 0; strcmp(k->means[meaning[i]], k->means[i]) != 0;) meaning[i]++;
     }
-}
-
-/* Whether another target of the same meaning stands for this one, too. */
-static int is_held(const known *k, uint32_t i)
-{
-    for (uint32_t j = 0; j < k->count; j++) {
-        const int is_other = j != i && strcmp(k->means[i], k->means[j]) == 0;
-        if (is_other && target_is_held(k->m, k->names[i], k->names[j], j < i)) return 1;
-    }
-    return 0;
+    return targets_find_held(m, k->names, meaning, k->count, k->held);
 }
 
 /* A row for each target that means this. */
@@ -176,7 +172,7 @@ static int add_meant(recipe_text *recipe, const known *k, const char *meant, uin
 {
     const char *name = noh_face_channel_name(channel);
     for (uint32_t i = 0; i < k->count; i++) {
-        if (strcmp(k->means[i], meant) == 0 && !is_held(k, i) && recipe_add_row(recipe, k->names[i], name, weight, 0))
+        if (strcmp(k->means[i], meant) == 0 && !k->held[i] && recipe_add_row(recipe, k->names[i], name, weight, 0))
             return 1;
     }
     return 0;
@@ -211,11 +207,7 @@ int recipe_add_known(recipe_text *recipe, const model *m, uint32_t *count)
 {
     const uint32_t before = recipe->count;
     known *k = calloc(1, sizeof *k);
-    int failed = !k;
-    if (k) {
-        k->m = m;
-        list_known(k, m);
-    }
+    int failed = !k || list_known(k, m);
     for (uint32_t c = 0; c < NOH_CHANNEL_COUNT && !failed; c++) failed = add_channel(recipe, k, c);
     free(k);
     *count = recipe->count - before;

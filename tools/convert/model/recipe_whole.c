@@ -8,8 +8,9 @@
 #include "noh/face.h"
 #include "noh/format.h"
 
-#define SAME 0.5  /* of the smaller target's motion: the targets move the same way from here on */
-#define EXACT 0.1 /* of the whole's motion may be missing in its parts */
+#define SAME 0.5   /* of the smaller target's motion: the targets move the same way from here on */
+#define SMALL 0.25 /* of the larger target's motion: a smaller one cannot stand for it */
+#define EXACT 0.1  /* of the whole's motion may be missing in its parts */
 #define PARTS 3u
 
 /* ---- motion ---- */
@@ -17,21 +18,62 @@
 /* The product of two targets' deltas over all meshes that have both. */
 static double product(const model *m, const char *a, const char *b)
 {
-    double sum = 0.0;
+    double sum[3] = { 0.0, 0.0, 0.0 };
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
         const uint32_t at = model_find_target(mesh, a), bt = model_find_target(mesh, b);
         const float *x = at == MODEL_NONE ? NULL : mesh->targets[at].position;
         const float *y = bt == MODEL_NONE ? NULL : mesh->targets[bt].position;
-        for (size_t n = 0; x && y && n < 3u * (size_t)mesh->vertex_count; n++) sum += (double)x[n] * (double)y[n];
+        for (size_t n = 0; x && y && n < 3u * (size_t)mesh->vertex_count; n += 3) {
+            for (size_t k = 0; k < 3; k++) sum[k] += (double)x[n + k] * (double)y[n + k];
+        }
     }
-    return sum;
+    return sum[0] + sum[1] + sum[2];
 }
 
-int target_is_held(const model *m, const char *a, const char *b, int b_is_first)
+typedef struct held_job {
+    const model *m;
+    const char *const *names;
+    const double *motion; /* each target's product with itself */
+    uint8_t *is_same;     /* scratch */
+    uint8_t *held;
+} held_job;
+
+static int is_larger(const held_job *job, uint32_t i, uint32_t j)
 {
-    const double aa = product(m, a, a), bb = product(m, b, b), ab = product(m, a, b);
-    return bb > 0.0 && (bb < aa || (bb == aa && b_is_first)) && ab > SAME * bb;
+    return job->motion[i] > job->motion[j] || (job->motion[i] == job->motion[j] && i > j);
+}
+
+/* Compare a target with the larger ones of its meaning: it is held by one that is much larger, or holds all. */
+static void compare(const held_job *job, const uint32_t *meaning, uint32_t count, uint32_t j)
+{
+    const double own = job->motion[j];
+    memset(job->is_same, 0, count);
+    for (uint32_t i = 0; i < count && own > 0.0; i++) {
+        const int is_small = own < SMALL * job->motion[i];
+        if (i == j || meaning[i] != meaning[j] || !is_larger(job, i, j) || (job->held[i] && !is_small)) continue;
+        job->is_same[i] = product(job->m, job->names[i], job->names[j]) > SAME * own;
+        if (!job->is_same[i] || !is_small) continue;
+        job->held[j] = 1;
+        return;
+    }
+    for (uint32_t i = 0; i < count; i++) job->held[i] |= job->is_same[i];
+}
+
+int targets_find_held(const model *m, const char *const *names, const uint32_t *meaning, uint32_t count, uint8_t *held)
+{
+    double *motion = model_zeros(count + 1u, sizeof *motion);
+    uint8_t *is_same = model_zeros(count + 1u, 1);
+    const held_job job = { m, names, motion, is_same, held };
+    const int failed = !motion || !is_same;
+    memset(held, 0, count);
+    for (uint32_t i = 0; i < count && !failed; i++) motion[i] = product(m, names[i], names[i]);
+    for (uint32_t j = 0; j < count && !failed; j++) {
+        if (meaning[j] != MODEL_NONE) compare(&job, meaning, count, j);
+    }
+    free(motion);
+    free(is_same);
+    return failed;
 }
 
 /* ---- whole faces ---- */
@@ -109,13 +151,13 @@ static int split_row(recipe_text *recipe, const model *m, uint32_t at, uint32_t 
            recipe_add_row(recipe, parts[MOUTH], mouth, weight, 0);
 }
 
-int recipe_split_whole(recipe_text *recipe, const model *m, uint32_t from)
+int recipe_split_whole(recipe_text *recipe, const model *m)
 {
     const uint32_t count = recipe->count;
     int failed = 0;
-    for (uint32_t i = from; i < count && !failed; i++) {
+    for (uint32_t i = 0; i < count && !failed; i++) {
         const uint32_t emotion = noh_face_channel_find(recipe->rows[i].channel) - NOH_CHANNEL_UPPER;
-        if (emotion < NOH_EMOTION_COUNT) failed = split_row(recipe, m, i, emotion);
+        if (!recipe->rows[i].line && emotion < NOH_EMOTION_COUNT) failed = split_row(recipe, m, i, emotion);
     }
     return failed;
 }
