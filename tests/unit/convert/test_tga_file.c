@@ -73,10 +73,12 @@ static void refused(const unsigned char *bytes, size_t count, uint64_t most, con
 static void what_is_not_read_is_told(void **state)
 {
     static const unsigned char palette[] = { 0, 1, 1, 0, 0, 1, 0, 24, 0, 0, 0, 0, 3, 0, 2, 0, 8, 0, 0 };
-    static const unsigned char few[] = { HEAD(2, 16, 0), 0 }, png[20] = { 0x89, 'P', 'N', 'G' };
+    static const unsigned char few[] = { HEAD(2, 16, 0), 0 }, grey[] = { HEAD(3, 16, 0), 0 };
+    static const unsigned char png[20] = { 0x89, 'P', 'N', 'G' };
     (void)state;
-    refused(palette, sizeof palette, 6, "with a palette");
-    refused(few, sizeof few, 6, "of 16 bits a pixel");
+    refused(palette, sizeof palette, 6, "with a palette, which is not read: save it as PNG");
+    refused(few, sizeof few, 6, "it is a TGA picture of 16 bits a pixel; 24 and 32 are read");
+    refused(grey, sizeof grey, 6, "it is a grey TGA picture of 16 bits a pixel; only 8 are read");
     refused(runs, sizeof runs, 5, "3 x 2 pixels; the limit is 5");
     for (size_t i = 19; i < sizeof runs; i++) refused(runs, i, 6, "was cut off");
     assert_false(tga_begins(runs, 18));

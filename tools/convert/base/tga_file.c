@@ -39,11 +39,12 @@ static int read_header(const unsigned char *bytes, size_t count, uint64_t pixels
     t->has_alpha = bits == 32u && (bytes[17] & 15u) == 8u;
     t->from_top = (bytes[17] & 32u) != 0;
     t->from_right = (bytes[17] & 16u) != 0;
-    if (bytes[1] || (kind == KIND_GREY ? bits != 8u : kind != KIND_COLORS || (bits != 24u && bits != 32u))) {
-        return model_fail(error, "",
-                          "it is a TGA picture with a palette, or of %u bits a pixel; 8 (grey), 24 and 32 "
-                          "are read: save it as PNG",
-                          bits);
+    if (bytes[1] || kind < KIND_COLORS) {
+        return model_fail(error, "", "it is a TGA picture with a palette, which is not read: save it as PNG");
+    }
+    if (kind == KIND_GREY ? bits != 8u : bits != 24u && bits != 32u) {
+        return model_fail(error, "", "it is a %sTGA picture of %u bits a pixel; %s read: save it as PNG",
+                          kind == KIND_GREY ? "grey " : "", bits, kind == KIND_GREY ? "only 8 are" : "24 and 32 are");
     }
     if (pixels > pixels_max) {
         return model_fail(error, "", "the image has %u x %u pixels; the limit is %llu", (unsigned)t->width,
