@@ -165,7 +165,7 @@ static double metallic_of(const source &m)
     return share(m.real({ "metalness", "metallic" }, is_blender(m.s) ? m.real({ "ReflectionFactor" }, 0.0) : 0.0));
 }
 
-/* A picture takes the place of the colour, which says nothing then (it is often black), also if it was not found. */
+/* Where a material has a picture, its colour is ignored, even if the picture was not found: it is often black. */
 static void read_colors(const source &m, bool textured, tinygltf::Material &out)
 {
     const double strength = m.real({ "base" }, 1.0), opacity = opacity_of(m);

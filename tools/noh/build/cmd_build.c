@@ -584,7 +584,7 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(build_args, wrinkles.map),
       .value = "FILE",
-      .what = "a painted normal map of wrinkles, PNG or JPEG, in place of a generated one",
+      .what = "a painted normal map of wrinkles, PNG, JPEG or TGA, in place of a generated one",
       .example = "wrinkles.png",
       .excludes = "--only=anim" },
     { .name = "--region-mask",
@@ -626,7 +626,7 @@ static const option options[] = {
       .at = offsetof(build_args, colors.map),
       .value = "FILE",
       .what =
-          "colours that fade in with targets, such as a blush: a painted picture, PNG or JPEG, whose channels r, g, b and a say where each of four colours shows; rows `tint` and `color` of a recipe give the colours and the targets (noh help formats)",
+          "colours that fade in with targets, such as a blush: a painted picture, PNG, JPEG or TGA, whose channels r, g, b and a say where each of four colours shows; rows `tint` and `color` of a recipe give the colours and the targets (noh help formats)",
       .example = "blush.png",
       .excludes = "--only=anim" },
     { .name = "--color-material",

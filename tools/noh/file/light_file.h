@@ -1,5 +1,5 @@
 /* light_file.h: a panorama: environment light as a picture, x the azimuth, y the height (equirectangular). A
- * Radiance .hdr file is linear; a PNG or JPEG is sRGB, and its white is radiance 1. The middle of the picture is
+ * Radiance .hdr file is linear; a PNG, JPEG or TGA is sRGB, and its white is radiance 1. The middle of the picture is
  * towards -z: in front of a viewer in front of a character. */
 #ifndef NOH_NOH_FILE_LIGHT_FILE_H
 #define NOH_NOH_FILE_LIGHT_FILE_H
