@@ -177,7 +177,8 @@ static void add_bind(file &f, expression &e, const value &bind, bool old, recipe
     if (target < count && weight && weight->IsNumber())
         add_line(f, e, mesh, target, weight->GetNumberAsDouble() / (old ? 100.0 : 1.0), r);
     else
-        leave_out(f, e.where, ": a bind was left out: its mesh or target does not exist or is hidden, or it has no weight");
+        leave_out(f, e.where,
+                  ": a bind was left out: its mesh or target does not exist or is hidden, or it has no weight");
 }
 
 static bool has_items(const value &object, const char *key)
