@@ -50,9 +50,9 @@ static const char *bad_desc(const noh_face_desc *d, uint64_t *where)
     *where = 0;
     if (d->eyes[0][0] - d->eyes[1][0] < 1e-4f) return "eyes of a face desc: the left eye must have the greater x";
     *where = 6;
-    return noh_is_within(d->head_yaw_max, 0.0f, 3.1f) && noh_is_within(d->head_pitch_max, 0.0f, 1.5f)
-               ? NULL
-               : "head_yaw_max of a face desc is not in 0..3.1, or head_pitch_max not in 0..1.5";
+    if (!noh_is_within(d->head_yaw_max, 0.0f, 3.1f)) return "head_yaw_max of a face desc is not in 0..3.1";
+    *where = 7;
+    return noh_is_within(d->head_pitch_max, 0.0f, 1.5f) ? NULL : "head_pitch_max of a face desc is not in 0..1.5";
 }
 
 /* ---- a face ---- */
