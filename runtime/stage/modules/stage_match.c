@@ -129,15 +129,22 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     return NOH_OK;
 }
 
-/* Whether the table was made of a clip of this name in its own pack, and another pack's plays instead. */
+static const noh_pack_chunk *clip_of(const noh_pack *pack, uint32_t name_hash)
+{
+    const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
+    for (uint32_t i = run.first; i < run.first + run.count; i++) {
+        if (pack->chunks[i].name_hash == name_hash) return &pack->chunks[i];
+    }
+    return NULL;
+}
+
+/* Whether the table was made of a clip of this name in its own pack, and another clip of another pack plays instead. */
 static int is_replaced(const noh_stage_kind *k, const match_kind *m, const noh_pack_match_clip *c, uint32_t clip)
 {
-    const noh_chunk_run run = m->pack->runs[NOH_CHUNK_CLIP];
-    if (!k->desc->clip_packs || k->desc->clip_packs[k->bank->packs[clip]] == m->pack) return 0;
-    for (uint32_t i = run.first; i < run.first + run.count; i++) {
-        if (m->pack->chunks[i].name_hash == c->name_hash) return 1;
-    }
-    return 0;
+    const noh_pack *pack = k->desc->clip_packs ? k->desc->clip_packs[k->bank->packs[clip]] : m->pack;
+    const noh_pack_chunk *own = clip_of(m->pack, c->name_hash), *plays = clip_of(pack, c->name_hash);
+    if (pack == m->pack || !own) return 0;
+    return !plays || own->crc != plays->crc || own->bytes != plays->bytes;
 }
 
 static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *error)
