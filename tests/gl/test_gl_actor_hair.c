@@ -264,6 +264,29 @@ static void hair_in_the_state_moves(void **state)
     close_scene(&s);
 }
 
+/* A head leaps in a frame whose wind is no number: hair does not follow it there, and begins at rest in the next one. */
+static void a_leap_in_a_bad_frame_is_a_leap(void **state)
+{
+    (void)state;
+    for (int where = OUTSIDE; where <= IN_STATE; where++) {
+        noh_place place;
+        scene s;
+        open_scene(&s, 1, 1, 0.0f, where);
+        shake(&s, 12);
+        assert_true(swing(&s, 0) > 0.002f);
+        assert_int_equal(noh_actor_place(s.stage, s.actors[0], &place, NULL), NOH_OK);
+        place.position[0] += 1.0f;
+        assert_int_equal(noh_actor_set_place(s.stage, s.actors[0], &place, NULL), NOH_OK);
+        assert_int_equal(noh_actor_cut(s.stage, s.actors[0], NULL), NOH_OK);
+        s.hair_desc.wind[0] = NAN;
+        frame(&s, 3.0f);
+        s.hair_desc.wind[0] = 0.0f;
+        frame(&s, 3.0f);
+        assert_true(swing(&s, 0) < 0.002f);
+        close_scene(&s);
+    }
+}
+
 /* ---- vertices ---- */
 
 /* The shader of strips with an empty fragment shader, what it makes of vertices fed back. */
@@ -548,6 +571,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(hair_of_the_largest_moves),
     cmocka_unit_test(hair_moves_more_as_it_comes_nearer),
     cmocka_unit_test(hair_in_the_state_moves),
+    cmocka_unit_test(a_leap_in_a_bad_frame_is_a_leap),
     cmocka_unit_test(bytes_are_exact),
     cmocka_unit_test(all_strips_are_one_draw),
     cmocka_unit_test(all_heads_are_some_draws),

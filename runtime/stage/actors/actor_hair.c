@@ -125,6 +125,7 @@ static void modify(noh_modifier_work *w)
         for (int i = 0; i < 3; i++) by[i] = w->home_moved[i] * d->cut->header->metres / w->place.scale;
         noh_hair_shift(hair, by);
     }
+    if (w->cut && !noh_hair_carries(&carrier)) state->begun = 0; /* it begins where the head is next known to be */
     if (!state->begun) {
         state->begun = noh_hair_init(hair, noh_hair_size(desc), desc, &carrier, &hair, NULL) == NOH_OK;
     } else if (w->cut) {
@@ -366,7 +367,7 @@ static void simulate(noh_actor_hair *h, uint32_t index, const noh_stage *stage, 
     } else {
         (void)noh_hair_step(s->hair, desc, &carrier, ticks);
     }
-    memcpy(s->position, carrier.position, sizeof s->position);
+    if (noh_hair_carries(&carrier)) memcpy(s->position, carrier.position, sizeof s->position);
 }
 
 /* Refer to the hair that the stage simulates. */
