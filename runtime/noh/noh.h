@@ -432,7 +432,7 @@ typedef struct noh_wanted_clip {
     uint32_t offset, bytes; /* its chunk */
 } noh_wanted_clip;
 
-/* Counts of the last frame. Not part of the state. */
+/* Counts of the last frame, and the largest of them since noh_stage_init. Not part of the state. */
 typedef struct noh_stage_stats {
     uint32_t actors, seen, updated, fading, events;
     uint32_t at_level[NOH_LOD_LEVELS_MAX]; /* visible actors by level */
@@ -446,6 +446,12 @@ typedef struct noh_stage_stats {
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
+    /* the largest `actors` of all frames: the actor_count of all kinds together that a game needs */
+    uint32_t actors_high;
+    /* the largest `events` of all steps: the event_count that a game needs */
+    uint32_t events_high;
+    /* the largest `coarser` of all frames: 0 if the slots of all kinds have been enough */
+    uint32_t coarser_high;
     /* textures shown coarser than needed: finer levels are being loaded, or texture_reserve is too small */
     uint32_t textures_coarser;
     uint32_t wanted_count; /* clips that were needed while they were absent, and are still absent */

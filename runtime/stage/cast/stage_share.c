@@ -384,6 +384,8 @@ static void count_levels(noh_stage *s)
             stats->at_level[s->shown[k->first_actor + k->order[p]].level]++;
         }
     }
+    if (stats->actors > stats->actors_high) stats->actors_high = stats->actors;
+    if (stats->coarser > stats->coarser_high) stats->coarser_high = stats->coarser;
 }
 
 void noh_stage_share(noh_stage *s)

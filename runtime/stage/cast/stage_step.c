@@ -143,6 +143,7 @@ noh_result noh_stage_step(noh_stage *stage, uint32_t ticks, noh_stage_event_fn o
             if (type && type->step) type->step(k, ticks);
         }
     }
+    if (stage->stats.events > stage->stats.events_high) stage->stats.events_high = stage->stats.events;
     stage->head->clock += ticks;
     stage->head->step_ticks = ticks;
     stage->phase = NOH_STAGE_IDLE;

@@ -575,7 +575,7 @@ static void keys_are_told_with_their_names(void **state)
 {
     noh_actor actor;
     heard h = { { 0 }, 0, NOH_OK };
-    uint32_t told = 0;
+    uint32_t told = 0, most = 0;
     cast c;
     (void)state;
     cast_open(&c);
@@ -595,6 +595,8 @@ static void keys_are_told_with_their_names(void **state)
                         events[i].clock <= (f + 1) * (int64_t)CAST_STEP);
         }
         told += count;
+        if (count > most) most = count;
+        assert_int_equal(noh_stage_stats_of(c.stage)->events_high, most);
     }
     assert_true(told > 2 && told == h.count);
     assert_int_equal(h.refused, NOH_ERR_ARG);
@@ -623,6 +625,34 @@ static void frames_and_steps_do_not_mix(void **state)
                      NOH_ERR_ARG);
     assert_int_equal(noh_stage_frame_end(c.stage, NULL), NOH_OK);
     assert_int_equal(noh_stage_jobs(c.stage), 0);
+    cast_close(&c);
+}
+
+/* The largest counts of all frames, however few there are later. */
+static void the_largest_counts_are_kept(void **state)
+{
+    noh_actor actors[CAST_ACTORS];
+    const noh_stage_stats *stats;
+    uint32_t coarser = 0;
+    cast c;
+    (void)state;
+    cast_open(&c);
+    c.kinds[PUPPETS].near_count = 1;
+    cast_make(&c, NULL);
+    stats = noh_stage_stats_of(c.stage);
+    cast_enter(&c, actors);
+    for (uint32_t f = 0; f < 20; f++) {
+        const noh_stage_view view = cast_view(f, f < 10 ? 2.0f : 60.0f);
+        if (f == 10) {
+            for (uint32_t i = 0; i < CAST_ACTORS; i++)
+                assert_int_equal(noh_stage_despawn(c.stage, actors[i], NULL), NOH_OK);
+        }
+        assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+        if (stats->coarser > coarser) coarser = stats->coarser;
+        assert_int_equal(stats->coarser_high, coarser);
+        assert_int_equal(stats->actors_high, CAST_ACTORS);
+    }
+    assert_true(stats->actors == 0 && stats->coarser == 0 && coarser > 0);
     cast_close(&c);
 }
 
@@ -1317,6 +1347,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(clips_play_beside_each_other),
         cmocka_unit_test(keys_are_told_with_their_names),
         cmocka_unit_test(frames_and_steps_do_not_mix),
+        cmocka_unit_test(the_largest_counts_are_kept),
         cmocka_unit_test(who_is_behind_the_camera_is_not_posed),
         cmocka_unit_test(spheres_hold_every_vertex),
         cmocka_unit_test(whoever_was_never_posed_is_culled_by_where_clips_may_take_it),
