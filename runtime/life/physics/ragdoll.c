@@ -410,6 +410,7 @@ static const noh_world *sized(const noh_world *w, float size, sized_world *out)
 
 static void rest_doll(noh_ragdoll_doll *doll, const noh_ragdoll_rig *rig)
 {
+    memset(doll, 0, sizeof *doll);
     noh_ragdoll_origin_near(rig->bodies[0].position, doll->origin);
     for (uint32_t i = 0; i < rig->body_count; i++) {
         noh_ragdoll_state *s = &doll->bodies[i];
@@ -418,6 +419,18 @@ static void rest_doll(noh_ragdoll_doll *doll, const noh_ragdoll_rig *rig)
         s->goal_rotation[3] = 1.0f;
     }
     doll->asleep = 1;
+}
+
+void noh_ragdoll_rest(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_rig *rig)
+{
+    rest_doll(&noh_ragdoll_dolls(set)[doll], rig);
+}
+
+int noh_ragdoll_rests(const noh_ragdolls *set, uint32_t doll, const noh_ragdoll_rig *rig)
+{
+    noh_ragdoll_doll rest;
+    rest_doll(&rest, rig);
+    return memcmp(doll_of(set, doll), &rest, sizeof rest) == 0;
 }
 
 noh_result noh_ragdolls_init(void *memory, size_t bytes, const noh_ragdolls_desc *desc, noh_ragdolls **set,

@@ -168,6 +168,9 @@ void noh_ragdoll_ask(const noh_ragdoll_shape *shape, const noh_world *world, con
  * memory   noh_ragdolls_state_size bytes, aligned to 16; rig checked, count and substeps in range */
 size_t noh_ragdolls_state_size(uint32_t count);
 noh_ragdolls *noh_ragdolls_begin(void *memory, const noh_ragdolls_desc *desc);
+/* Give a doll the bytes that noh_ragdolls_begin gives it: asleep, at rest. rig: of the set */
+void noh_ragdoll_rest(noh_ragdolls *set, uint32_t doll, const noh_ragdoll_rig *rig);
+int noh_ragdoll_rests(const noh_ragdolls *set, uint32_t doll, const noh_ragdoll_rig *rig); /* 1: it has these bytes */
 
 /* How many steps of 1/60 s `ticks` more make; noh_ragdolls_step_once makes one.
  * scratch  [NOH_RAGDOLL_SCRATCH_FLOATS(asks)], aligned to 32 bytes; undefined before and after

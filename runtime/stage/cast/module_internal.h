@@ -7,7 +7,7 @@
  *
  *   desc     is_there, bad, hash, measure: of a noh_kind_desc with its defaults filled in
  *   init     once the kind has its meshes, floats, layers and bounds
- *   actors   spawn, shift, check
+ *   actors   spawn, despawn, shift, check
  *   a step   step_actor, root, carries, steer; step, after all actors of the kind
  *   a frame  controller, sample; modify, in the order of the slots; turn
  *   names    name_count, name */
@@ -95,6 +95,8 @@ typedef struct noh_module_type {
     noh_result (*init)(struct noh_stage_kind *k, const void *desc, noh_error *error);
 
     void (*spawn)(const noh_stage *s, const struct noh_stage_kind *k, uint32_t index, noh_actor actor);
+    void (*despawn)(struct noh_stage_kind *k,
+                    uint32_t index); /* gives back its part of the pool; its state is zeroed */
     void (*shift)(struct noh_stage_kind *k, const float by[3]); /* the world's origin moves by `by` */
     /* A state of an actor from outside, and a pool. */
     noh_result (*check)(const struct noh_stage_kind *k, const void *state, noh_error *error);
@@ -144,6 +146,8 @@ noh_result noh_stage_measure_modules(const noh_kind_desc *kind, struct noh_stage
 int noh_stage_has_modifiers(const noh_kind_desc *kind);
 void noh_stage_open_modules(struct noh_stage_kind *k, const struct noh_stage_needs *needs); /* where their states lie */
 noh_result noh_stage_init_modules(struct noh_stage_kind *k, noh_error *error);
+/* Leave no byte of an actor in the states and pools of modules. */
+void noh_stage_clear_modules(struct noh_stage_kind *k, uint32_t index);
 /* A state or pool of a module in a copy of the stage's state. */
 noh_result noh_stage_check_modules(const struct noh_stage_kind *k, uint32_t index, const uint8_t *state,
                                    const uint8_t *copy, noh_error *error);

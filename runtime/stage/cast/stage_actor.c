@@ -423,12 +423,10 @@ static void let_go_all(noh_stage *s, uint32_t parent)
 static void free_actor(noh_stage *s, noh_stage_actor *a, noh_stage_kind *k)
 {
     noh_stage_free *f = &s->head->kinds[k - s->kinds];
-    const noh_stage_module *source = &k->modules[NOH_SLOT_SOURCE];
     const uint32_t own = noh_stage_index(k, a) + 1u, generation = a->generation;
     memset(noh_stage_character(k, own - 1u), 0, k->character_bytes);
     memset(k->held + (size_t)(own - 1u) * k->desc->held_float_count, 0, k->desc->held_float_count * sizeof *k->held);
-    memset(k->modifier_states + (own - 1u) * k->modifier_bytes, 0, k->modifier_bytes);
-    memset(source->states + (own - 1u) * source->stride, 0, source->stride);
+    noh_stage_clear_modules(k, own - 1u);
     memset(a, 0, sizeof *a);
     a->generation = generation == 0xffffu ? 1u : generation + 1u;
     if (f->last) {

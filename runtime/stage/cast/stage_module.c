@@ -108,6 +108,17 @@ noh_result noh_stage_init_modules(noh_stage_kind *k, noh_error *error)
     return result;
 }
 
+void noh_stage_clear_modules(noh_stage_kind *k, uint32_t index)
+{
+    const noh_stage_module *source = &k->modules[NOH_SLOT_SOURCE];
+    for (uint32_t slot = 0; slot < NOH_SLOT_COUNT; slot++) {
+        const noh_module_type *type = k->modules[slot].type;
+        if (type && type->despawn) type->despawn(k, index);
+    }
+    memset(k->modifier_states + index * k->modifier_bytes, 0, k->modifier_bytes);
+    memset(source->states + index * source->stride, 0, source->stride);
+}
+
 int noh_stage_is_carried(const noh_stage_kind *k, uint32_t index)
 {
     int is = 0;

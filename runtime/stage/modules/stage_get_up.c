@@ -252,7 +252,7 @@ static void leave_doll(const noh_stage *s, const noh_stage_kind *k, noh_stage_bo
     memset(b->of.motions, 0, sizeof b->of.motions);
     if (b->doll) noh_ragdoll_motions(noh_stage_ragdoll_kind_of(k)->dolls, b->doll - 1u, b->of.motions);
     b->goals = noh_stage_breath_left(b, s->head->clock);
-    b->doll = 0;
+    noh_stage_give_doll(k, b);
     b->state = NOH_BODY_STANDS;
     b->moves = NOH_MOVES_UP_BEGINS;
     b->rise_ticks = ticks;

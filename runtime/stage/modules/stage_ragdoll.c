@@ -117,6 +117,34 @@ static noh_result init(noh_stage_kind *k, const void *desc, noh_error *error)
     return NOH_OK;
 }
 
+/* ---- dolls ---- */
+
+void noh_stage_give_doll(const noh_stage_kind *k, noh_stage_body *b)
+{
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
+    if (b->doll) noh_ragdoll_rest(shared->dolls, b->doll - 1u, &shared->rig);
+    b->doll = 0;
+}
+
+static void despawn(noh_stage_kind *k, uint32_t index)
+{
+    noh_stage_give_doll(k, noh_stage_body_of(k, index));
+}
+
+/* 1 + the first doll from `from` on that no actor has; 0: there is none.
+ * states  of the actors' bodies, `stride` bytes apart */
+static uint32_t free_doll(const noh_stage_kind *k, const uint8_t *states, uint32_t from)
+{
+    const size_t stride = k->modules[NOH_SLOT_BODY].stride;
+    for (uint32_t doll = from + 1u; doll <= noh_stage_ragdoll_kind_of(k)->count; doll++) {
+        uint32_t i = 0;
+        while (i < k->desc->actor_count && ((const noh_stage_body *)(const void *)(states + i * stride))->doll != doll)
+            i++;
+        if (i == k->desc->actor_count) return doll;
+    }
+    return 0;
+}
+
 /* ---- poses ---- */
 
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3])
@@ -234,7 +262,7 @@ static void follow_doll(const noh_stage_kind *k, noh_stage_body *b, noh_stage_ac
     if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
     if (b->dead && noh_ragdoll_sleeps(shared->dolls, b->doll - 1u)) {
         b->state = NOH_BODY_LIES;
-        b->doll = 0;
+        noh_stage_give_doll(k, b);
     }
 }
 
@@ -246,25 +274,19 @@ static void brace(const noh_stage_ragdoll_kind *shared, const noh_stage_body *b)
     (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, origin, goals, 0, hertz, NULL);
 }
 
-/* Dolls learn what their clips want; those that are free cost nothing. */
+/* Dolls learn what their clips want. */
 static void tell_dolls(const noh_stage_kind *k)
 {
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
-    uint8_t used[NOH_RAGDOLLS_MAX];
-    memset(used, 0, sizeof used);
     for (uint32_t i = 0; i < k->desc->actor_count; i++) {
         const noh_stage_body *b = noh_stage_body_of(k, i);
         if (!k->actors[i].alive || !b->doll) continue;
-        used[b->doll - 1u] = 1;
         if (b->moves == NOH_MOVES_BRACING && !has_goals(k, b)) {
             brace(shared, b);
             continue;
         }
         (void)noh_ragdoll_follow_about(shared->dolls, b->doll - 1u, b->origin,
                                        b->goals && has_goals(k, b) ? b->bodies[1] : NULL, b->held, b->hertz, NULL);
-    }
-    for (uint32_t i = 0; i < shared->count; i++) {
-        if (!used[i]) noh_ragdoll_dolls(shared->dolls)[i].asleep = 1;
     }
 }
 
@@ -308,6 +330,9 @@ static void shift(noh_stage_kind *k, const float by[3])
     float metres[3];
     for (int i = 0; i < 3; i++) metres[i] = -by[i] * shared->metres;
     noh_ragdolls_shift(shared->dolls, metres);
+    for (uint32_t doll = 0; (doll = free_doll(k, k->modules[NOH_SLOT_BODY].states, doll)) != 0;) {
+        noh_ragdoll_rest(shared->dolls, doll - 1u, &shared->rig);
+    }
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
         noh_stage_body *b = noh_stage_body_of(k, a);
         float lost[3];
@@ -332,17 +357,6 @@ noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_acto
     }
     *b = noh_stage_body_of(*k, noh_stage_index(*k, *a));
     return NOH_OK;
-}
-
-/* 1 + a doll that no actor has; 0: there is none. */
-static uint32_t free_doll(const noh_stage_kind *k)
-{
-    for (uint32_t doll = 1; doll <= noh_stage_ragdoll_kind_of(k)->count; doll++) {
-        uint32_t i = 0;
-        while (i < k->desc->actor_count && noh_stage_body_of(k, i)->doll != doll) i++;
-        if (i == k->desc->actor_count) return doll;
-    }
-    return 0;
 }
 
 /* Put bodies together by their joints at a scale, from the first body on: a game may have changed the scale of an actor
@@ -406,14 +420,17 @@ noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage
         return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not in 0.01..100",
                         0, 0);
     }
-    doll = free_doll(k);
+    doll = free_doll(k, k->modules[NOH_SLOT_BODY].states, 0);
     if (!doll) {
         return noh_fail(error, NOH_ERR_LIMIT, "all ragdolls of the kind are in use: raise noh_kind_ragdoll.count",
                         shared->count, shared->count + 1u);
     }
     result = place_doll(k, a, b, doll, error);
-    if (result != NOH_OK) return result;
     b->doll = doll;
+    if (result != NOH_OK) {
+        noh_stage_give_doll(k, b);
+        return result;
+    }
     b->state = NOH_BODY_FALLS;
     b->moves = NOH_MOVES_BY_CLIPS;
     b->rise_ticks = 0;
@@ -566,7 +583,15 @@ static noh_result check(const noh_stage_kind *k, const void *state, noh_error *e
 
 static const char *check_pool(const noh_stage_kind *k, const void *pool)
 {
-    return noh_ragdolls_check(noh_stage_ragdoll_kind_of(k)->dolls, pool);
+    const noh_stage_module *m = &k->modules[NOH_SLOT_BODY];
+    const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
+    const uint8_t *states = (const uint8_t *)pool + (m->states - (const uint8_t *)m->pool);
+    const char *what = noh_ragdolls_check(shared->dolls, pool);
+    for (uint32_t doll = 0; !what && (doll = free_doll(k, states, doll)) != 0;) {
+        if (!noh_ragdoll_rests(pool, doll - 1u, &shared->rig))
+            what = "state: a ragdoll that no actor has is not at rest";
+    }
+    return what;
 }
 
 /* ---- the module ---- */
@@ -582,6 +607,7 @@ noh_module noh_ragdoll_module(const noh_kind_ragdoll *ragdoll)
         .bad = bad,
         .measure = measure,
         .init = init,
+        .despawn = despawn,
         .shift = shift,
         .check = check,
         .check_pool = check_pool,

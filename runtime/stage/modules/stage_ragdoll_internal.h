@@ -93,6 +93,8 @@ static inline noh_stage_body *noh_stage_body_of(const noh_stage_kind *k, uint32_
 /* *b stays as it is where the result is not NOH_OK. */
 noh_result noh_stage_open_body(noh_stage *stage, noh_actor actor, noh_stage_actor **a, noh_stage_kind **k,
                                noh_stage_body **b, noh_error *error);
+/* Let another actor have its doll. */
+void noh_stage_give_doll(const noh_stage_kind *k, noh_stage_body *b);
 /* A place as bodies that count from `origin` have it. */
 noh_ragdoll_frame noh_stage_ragdoll_frame(const noh_stage_kind *k, const noh_place *place, const float origin[3]);
 void noh_stage_ragdoll_weights(const noh_stage_kind *k, const noh_stage_body *b, float *weights); /* of each body */

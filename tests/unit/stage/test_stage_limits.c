@@ -4,6 +4,7 @@
  * cross: long, thousands of frames */
 #include "support/busy_stage.h"
 
+#include "life/physics/ragdoll_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
 #include <float.h>
@@ -366,11 +367,82 @@ static void what_is_let_go_stays_within(void **state)
     close_trial(&t);
 }
 
+/* Play a stage with ragdolls that are given back in each way: by dying, getting up and despawning. */
+static void use_all(busy_stage *s)
+{
+    noh_stage *stage = s->c.stage;
+    busy_stage_enter(s);
+    busy_stage_play(s);
+    assert_int_equal(noh_actor_kill(stage, s->actors[1], NULL), NOH_OK);
+    assert_int_equal(noh_actor_fall(stage, s->actors[3], NULL), NOH_OK);
+    for (uint32_t f = 0; f < 600; f++) busy_stage_frame(s, f);
+    assert_int_equal(noh_actor_body(stage, s->actors[1]), NOH_BODY_LIES);
+    assert_int_equal(noh_actor_get_up(stage, s->actors[3], NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_actor_fall(stage, s->actors[0], NULL), NOH_OK);
+}
+
+static void use_nothing(busy_stage *s)
+{
+    for (uint32_t i = 0; i < ACTORS; i++) {
+        const uint32_t kind = i < BODIES ? WALKERS : MATCHED;
+        assert_int_equal(noh_stage_spawn(s->c.stage, kind, NULL, &s->actors[i], NULL), NOH_OK);
+    }
+    for (uint32_t f = 0; f < BEFORE + 600u; f++) busy_stage_frame(s, f);
+}
+
+/* What actors did leaves no byte in a state once they are despawned, in no module and in no pool of a module: both are
+ * as in a stage whose actors did nothing. Slots of levels, which visible actors hold, are not compared. */
+static void despawned_actors_leave_nothing(void **state)
+{
+    const float by[3] = { 4.0f, 0.0f, -8.0f };
+    busy_stage s[2];
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        busy_stage_open(&s[i], 1);
+        s[i].world.friction = 0.6f;
+        (i ? use_nothing : use_all)(&s[i]);
+        assert_int_equal(noh_stage_shift_origin(s[i].c.stage, by, NULL), NOH_OK);
+        busy_stage_frame(&s[i], 0);
+        for (uint32_t a = 0; a < ACTORS; a++)
+            assert_int_equal(noh_stage_despawn(s[i].c.stage, s[i].actors[a], NULL), NOH_OK);
+    }
+    for (uint32_t k = 0; k < KINDS; k++) {
+        const noh_stage_kind *used = &s[0].c.stage->kinds[k], *unused = &s[1].c.stage->kinds[k];
+        const uint8_t *from = k ? used->characters : s[0].c.stage->state;
+        const uint8_t *other = k ? unused->characters : s[1].c.stage->state;
+        assert_memory_equal(from, other, (size_t)((const uint8_t *)used->pools - from));
+    }
+    for (int i = 0; i < 2; i++) busy_stage_close(&s[i]);
+}
+
+/* A state whose free ragdoll is not at rest is refused: else it would fall on, and equal stages had several hashes. */
+static void a_free_ragdoll_rests_in_states(void **state)
+{
+    noh_error error;
+    busy_stage s;
+    size_t bytes;
+    uint8_t *copy;
+    (void)state;
+    busy_stage_open(&s, 1);
+    const uint8_t *own = noh_stage_state(s.c.stage, &bytes);
+    copy = test_aligned(NULL, bytes);
+    memcpy(copy, own, bytes);
+    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, NULL), NOH_OK);
+    noh_ragdolls *dolls = noh_stage_ragdoll_kind_of(&s.c.stage->kinds[WALKERS])->dolls;
+    const noh_ragdoll_doll *last = &noh_ragdoll_dolls(dolls)[s.ragdoll.count - 1u];
+    copy[(const uint8_t *)&last->asleep - own] = 0;
+    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, &error), NOH_ERR_DATA);
+    assert_non_null(strstr(error.what, "ragdoll that no actor has"));
+    free(copy);
+    busy_stage_close(&s);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(a_stage_takes_its_own_states),
-                                        cmocka_unit_test(what_moves_stays_within),
-                                        cmocka_unit_test(what_staggers_stays_within),
-                                        cmocka_unit_test(what_is_let_go_stays_within) };
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_stage_takes_its_own_states),   cmocka_unit_test(despawned_actors_leave_nothing),
+        cmocka_unit_test(a_free_ragdoll_rests_in_states), cmocka_unit_test(what_moves_stays_within),
+        cmocka_unit_test(what_staggers_stays_within),     cmocka_unit_test(what_is_let_go_stays_within)
+    };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
