@@ -321,6 +321,44 @@ static void eyes_turn_out_of_the_shade(void **state)
     }
 }
 
+/* An eye around teeth: all levels of the eye have one light. Vertices of the teeth lie in the eye's range, and stay
+ * dark. */
+static void teeth_behind_eyes_stay_dark(void **state)
+{
+    const lod_face face = { 24, 20, 0, 1, 0 };
+    const lod_settings three = { 3, 0, LOD_FAST, 0.0f, 0.0f, NULL, 0 };
+    model *m = lod_face_model(&face);
+    uint32_t first = NOH_NONE, foreign = 0;
+    lod_pack from;
+    lit_pack p;
+    (void)state;
+    m->materials[0].surface = NOH_SURFACE_EYE;
+    m->materials[1].surface = NOH_SURFACE_TEETH;
+    m->materials[1].alpha = MODEL_ALPHA_OPAQUE;
+    lod_pack_make(m, &three, 0, &from);
+    add_transfer(&p, from.bytes, from.byte_count, 4, 0);
+    assert_int_equal(p.mesh.header->level_count, 3);
+    for (uint32_t k = 0; k < 3; k++) {
+        const noh_mesh level = noh_mesh_at_lod(&p.mesh, k);
+        for (uint32_t i = 0; i < level.header->index_count; i++) {
+            const uint32_t v = noh_mesh_index(&level, i);
+            const uint8_t occlusion = p.transfer.records[(size_t)v * NOH_TRANSFER_RECORD_BYTES(4, 0)];
+            const noh_submesh *eye = &p.mesh.submeshes[0];
+            if (level.submeshes[0].index_count > i) {
+                if (first == NOH_NONE) first = occlusion;
+                assert_int_equal(occlusion, first);
+            } else {
+                assert_true(occlusion < 30);
+                foreign += v >= eye->first_vertex && v < eye->first_vertex + eye->vertex_count;
+            }
+        }
+    }
+    assert_true(first > 200 && foreign > 0);
+    free(p.bytes);
+    lod_pack_free(&from);
+    model_free(m);
+}
+
 /* ---- lobes ---- */
 
 /* A surface that has turned under light that has turned with it looks the same: only the axis turns. */
@@ -716,6 +754,7 @@ int main(void)
         cmocka_unit_test(a_ball_in_a_furnace_is_white),
         cmocka_unit_test(occlusion_follows_the_targets),
         cmocka_unit_test(eyes_turn_out_of_the_shade),
+        cmocka_unit_test(teeth_behind_eyes_stay_dark),
         cmocka_unit_test(turned_surfaces_under_turned_light_look_alike),
         cmocka_unit_test(a_lobe_fits_itself),
         cmocka_unit_test(blue_light_is_answered_by_blue),

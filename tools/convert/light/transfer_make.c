@@ -21,6 +21,7 @@ typedef struct maker {
     const light_rays *rays;
     const transfer_settings *settings;
     uint8_t *blocked;   /* [rays->count] */
+    uint8_t *eyes;      /* [vertex_count] of transfer_mark_eyes */
     float *normals;     /* [vertex_count][3] in the bind pose */
     float *direct;      /* [vertex_count][NOH_SH_COUNT_MAX] in the bind pose, without reflections */
     float *transfers;   /* [vertex_count][NOH_SH_COUNT_MAX] that the lobes are of */
@@ -41,6 +42,7 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     vertices = k->surface.mesh.header->vertex_count;
     texels = k->surface.mesh.header->texel_count;
     k->blocked = model_zeros(k->rays->count, 1);
+    k->eyes = model_zeros(vertices, 1);
     k->normals = model_zeros(vertices, 3u * sizeof(float));
     k->direct = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
     k->transfers = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
@@ -51,8 +53,8 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     k->vertices = model_zeros(k->surface.mesh.header->touched_count, sizeof(uint32_t));
     k->weights = model_zeros(k->surface.mesh.header->target_count, sizeof(float));
     if (k->vertices) memset(k->vertices, 0xff, k->surface.mesh.header->touched_count * sizeof(uint32_t));
-    return k->blocked && k->normals && k->direct && k->transfers && k->occlusion && k->brightest && k->targets &&
-                   k->turned && k->vertices && k->weights
+    return k->blocked && k->eyes && k->normals && k->direct && k->transfers && k->occlusion && k->brightest &&
+                   k->targets && k->turned && k->vertices && k->weights
                ? 0
                : model_fail(error, k->surface.mesh.name, "out of memory");
 }
@@ -61,6 +63,7 @@ static void close(maker *k)
 {
     light_surface_close(&k->surface);
     free(k->blocked);
+    free(k->eyes);
     free(k->normals);
     free(k->direct);
     free(k->transfers);
@@ -199,25 +202,30 @@ static void take_brightest(maker *k, uint32_t target)
 
 #define SEEN 0.5f /* of the occlusion of the brightest vertex: what is in front of the lids */
 
-int transfer_turns(const noh_mesh *mesh, const noh_submesh *part, uint32_t vertex)
+void transfer_mark_eyes(const noh_mesh *mesh, uint32_t material, uint8_t value, uint8_t *mark)
 {
-    return part->material != NOH_NONE && mesh->pack->materials[part->material].surface == NOH_SURFACE_EYE &&
-           noh_mesh_accumulation_texel(mesh, vertex) >= mesh->header->touched_count;
+    if (mesh->pack->materials[material].surface != NOH_SURFACE_EYE) return;
+    for (uint32_t k = mesh->header->level_first; k < mesh->header->level_count; k++) {
+        const noh_mesh level = noh_mesh_at_lod(mesh, k);
+        for (uint32_t s = 0; s < level.header->submesh_count; s++) {
+            const noh_submesh *part = &level.submeshes[s];
+            for (uint32_t i = 0; part->material == material && i < part->index_count; i++) {
+                const uint32_t v = noh_mesh_index(&level, part->first_index + i);
+                if (noh_mesh_accumulation_texel(mesh, v) >= mesh->header->touched_count) mark[v] = value;
+            }
+        }
+    }
 }
 
-static int turns(const maker *k, const noh_submesh *part, uint32_t v)
-{
-    return transfer_turns(&k->surface.mesh, part, v);
-}
-
-/* The mean lobe about the normals of a part's vertices that are brighter than `least`. Returns their number. */
-static uint32_t mean_lobe(const maker *k, const noh_submesh *part, float least, noh_lobe *mean)
+/* The mean lobe about the normals of the eyes' vertices that are brighter than `least`, without vertices of coarse levels
+ * alone, whose light is another vertex's. Returns their number. */
+static uint32_t mean_lobe(const maker *k, float least, noh_lobe *mean)
 {
     uint32_t count = 0;
     memset(mean, 0, sizeof *mean);
-    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+    for (uint32_t v = 0; v < k->surface.mesh.header->vertex_count; v++) {
         noh_lobe lobe;
-        if (!turns(k, part, v) || !(k->occlusion[v] > least)) continue;
+        if (!k->eyes[v] || k->surface.stand_in[v] != v || !(k->occlusion[v] > least)) continue;
         transfer_lobe(k->transfers + NOH_SH_COUNT_MAX * (size_t)v, k->normals + 3u * (size_t)v, &lobe);
         for (uint32_t band = 0; band < NOH_SH_ORDER_MAX; band++) mean->shape[band] += lobe.shape[band];
         mean->occlusion += k->occlusion[v];
@@ -231,18 +239,19 @@ static uint32_t mean_lobe(const maker *k, const noh_submesh *part, float least, 
 /* Eyeballs that no target moves follow joints: all their vertices take the light of those that are seen at rest. */
 static void even_out_eyes(maker *k)
 {
-    for (uint32_t i = 0; i < k->surface.mesh.header->submesh_count; i++) {
-        const noh_submesh *part = &k->surface.mesh.submeshes[i];
-        const uint32_t end = part->first_vertex + part->vertex_count;
+    const uint32_t count = k->surface.mesh.header->vertex_count;
+    for (uint32_t i = 0; i < k->surface.mesh.pack->material_count; i++) {
         float brightest = 0.0f;
         noh_lobe mean;
-        for (uint32_t v = part->first_vertex; v < end; v++) {
-            if (turns(k, part, v) && k->occlusion[v] > brightest) brightest = k->occlusion[v];
+        memset(k->eyes, 0, count);
+        transfer_mark_eyes(&k->surface.mesh, i, 1, k->eyes);
+        for (uint32_t v = 0; v < count; v++) {
+            if (k->eyes[v] && k->surface.stand_in[v] == v) brightest = fmaxf(brightest, k->occlusion[v]);
         }
-        if (!(brightest > 0.0f) || !mean_lobe(k, part, SEEN * brightest, &mean)) continue;
-        for (uint32_t v = part->first_vertex; v < end; v++) {
+        if (!(brightest > 0.0f) || !mean_lobe(k, SEEN * brightest, &mean)) continue;
+        for (uint32_t v = 0; v < count; v++) {
             float *own = k->transfers + NOH_SH_COUNT_MAX * (size_t)v;
-            if (!turns(k, part, v)) continue;
+            if (!k->eyes[v]) continue;
             noh_sh_basis(NOH_SH_ORDER_MAX, k->normals + 3u * (size_t)v, own);
             noh_sh_convolve(NOH_SH_ORDER_MAX, mean.shape, own);
             k->occlusion[v] = mean.occlusion;

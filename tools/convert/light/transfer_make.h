@@ -26,9 +26,10 @@ typedef struct transfer_data {
 /* 0, or 1 and a filled error; free in both cases. */
 int transfer_make(const noh_pack *pack, uint32_t mesh, const light_rays *rays, const transfer_settings *settings,
                   transfer_data *out, model_error *error);
-/* Whether a vertex of the mesh's part is on an eyeball that no target moves, and so follows a joint. Its record is the mean
- * of what is seen at rest: what the lids cover comes into sight. */
-int transfer_turns(const noh_mesh *mesh, const noh_submesh *part, uint32_t vertex);
+/* Set `mark` [vertex_count] where a material's vertices, of all levels, are on eyeballs that no target moves, and so
+ * follow joints. Their records are the mean of what is seen at rest: what the lids cover comes into sight. Other
+ * vertices, and other materials', stay as they are. */
+void transfer_mark_eyes(const noh_mesh *mesh, uint32_t material, uint8_t value, uint8_t *mark);
 void transfer_data_free(transfer_data *d);
 
 #endif

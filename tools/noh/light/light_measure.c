@@ -220,12 +220,7 @@ static void keep_opaque(mesh_work *w)
     for (uint32_t i = 0; i < 3u * w->surface.own_count; i++) {
         w->kept[w->surface.corners[i]] = 1;
     }
-    for (uint32_t i = 0; i < mesh->header->submesh_count; i++) {
-        const noh_submesh *part = &mesh->submeshes[i];
-        for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
-            if (transfer_turns(mesh, part, v)) w->kept[v] = 0;
-        }
-    }
+    for (uint32_t i = 0; i < mesh->pack->material_count; i++) transfer_mark_eyes(mesh, i, 0, w->kept);
 }
 
 static int measure_poses(mesh_work *w, const float *weights, model_error *error)
