@@ -33,7 +33,7 @@ static model *model_of(const char *name, uint32_t surface, uint32_t vertices, ui
     mesh->vertex_count = vertices;
     mesh->position = test_zeros(3u * vertices * sizeof *mesh->position);
     mesh->uv = test_zeros(2u * vertices * sizeof *mesh->uv);
-    mesh->indices = test_zeros(indices * sizeof *mesh->indices);
+    mesh->indices = test_zeros((indices + 6u) * sizeof *mesh->indices); /* with room for two triangles */
     mesh->submeshes = test_zeros(sizeof *mesh->submeshes);
     mesh->submesh_count = 1;
     mesh->submeshes[0].vertex_count = vertices;
@@ -264,15 +264,14 @@ static void eyes_with_an_iris_stay(void **state)
         materials[1].surface = kind == 1 ? NOH_SURFACE_PLAIN : NOH_SURFACE_EYE;
         materials[1].alpha = kind == 2 ? MODEL_ALPHA_BLEND : MODEL_ALPHA_OPAQUE;
         parts[0] = mesh->submeshes[0];
-        parts[1].material = 1;
-        parts[1].first_vertex = 2u * BALL;
-        parts[1].vertex_count = 6;
+        parts[1] = (model_submesh){ .first_index = mesh->index_count, .index_count = 6, .material = 1 };
         memcpy(position, mesh->position, 6u * BALL * sizeof *position);
         for (uint32_t v = 0; kind == 5 && v < 2u * BALL; v++) {
             position[3u * v + 2u] = fminf(position[3u * v + 2u], 0.1f + 0.9f * RADIUS);
         }
         for (uint32_t i = 0; i < 6; i++) {
             float *p = position + 6u * BALL + 3u * i;
+            mesh->indices[mesh->index_count++] = 2u * BALL + i;
             p[0] = i < 3 ? -0.031f : 0.031f;
             p[1] = 1.6f;
             p[2] = 0.1f + (kind == 3 ? 1.5f : kind >= 4 ? 0.85f : 1.1f) * RADIUS;
@@ -309,7 +308,9 @@ static void add_part(model *m, float grey)
     mesh->submeshes = test_zeros(sizeof *mesh->submeshes);
     mesh->submesh_count = 1;
     mesh->submeshes->material = 1;
-    mesh->submeshes->vertex_count = 3;
+    mesh->submeshes->index_count = mesh->index_count = 3;
+    mesh->indices = test_zeros(3 * sizeof *mesh->indices);
+    for (uint32_t i = 0; i < 3; i++) mesh->indices[i] = i;
 }
 
 /* What is grey around eyes that were painted becomes skin, unless its name says another thing, it has a colour, or its
@@ -442,6 +443,69 @@ static void shadows_on_eyes_are_left_out(void **state)
     }
 }
 
+/* A triangle of another material joins the eyes' mesh, and is in the range of their vertices. */
+static void join_body(model *m)
+{
+    model_mesh *mesh = m->meshes;
+    const uint32_t first = mesh->vertex_count, index = mesh->index_count;
+    model_material *materials = test_zeros(2 * sizeof *materials);
+    model_submesh *parts = test_zeros(2 * sizeof *parts);
+    float *position = test_zeros(3u * (first + 3u) * sizeof *position);
+    memcpy(position, mesh->position, 3u * first * sizeof *position);
+    for (uint32_t i = 0; i < 3; i++) {
+        position[3u * (first + i) + 1u] = 0.1f * (float)i;
+        position[3u * (first + i)] = i == 1 ? 0.3f : 0.2f;
+        mesh->indices[mesh->index_count++] = first + i;
+    }
+    materials[0] = m->materials[0];
+    materials[1] = model_material_default();
+    materials[1].name = model_string("Body");
+    parts[0] = mesh->submeshes[0];
+    parts[1] = (model_submesh){ .first_index = index, .index_count = 3, .material = 1 };
+    mesh->vertex_count += 3u;
+    parts[0].vertex_count = parts[1].vertex_count = mesh->vertex_count;
+    free(mesh->position);
+    free(mesh->uv);
+    free(mesh->submeshes);
+    free(m->materials);
+    mesh->position = position;
+    mesh->uv = test_zeros(2u * mesh->vertex_count * sizeof *mesh->uv);
+    mesh->color = test_zeros(4u * mesh->vertex_count * sizeof *mesh->color);
+    for (uint32_t i = 0; i < 4u * mesh->vertex_count; i++) mesh->color[i] = 1.0f;
+    mesh->submeshes = parts;
+    m->materials = materials;
+    mesh->submesh_count = m->material_count = 2;
+}
+
+/* Joined meshes: a body's colours neither shade eyes, nor hide their shade, nor are cleared; its texture coordinates stay;
+ * what is coloured does not keep eyes blank. */
+static void bodies_of_joined_meshes_stay(void **state)
+{
+    (void)state;
+    for (int kind = 0; kind < 3; kind++) { /* a grey body; a blue one, shaded eyes; blank eyes */
+        model *m = eyes_of(0.062f);
+        float *color, *uv;
+        join_body(m);
+        color = m->meshes[0].color;
+        uv = m->meshes[0].uv + 4u * BALL;
+        for (uint32_t i = 0; i < 6; i++) uv[i] = 0.25f;
+        for (uint32_t i = 0; i < 3; i++) {
+            float *of = color + 4u * (2u * BALL + i);
+            of[0] = of[1] = 0.25f * (float)(i + 1u);
+            if (kind == 0) of[2] = of[0];
+        }
+        if (kind == 1) color[0] = color[1] = color[2] = 0.25f;
+        m->materials[0].base_color_texture = kind == 2 ? MODEL_NONE : 0;
+        assert_int_equal(kind == 2 ? eye_paint(m) : eye_shade_clear(m), 0);
+        assert_int_equal(m->warning_count, kind > 0);
+        assert_int_equal(m->materials[0].base_color_texture, 0);
+        assert_true(color[0] == 1.0f && color[4u * 2u * BALL] == 0.25f && color[4u * 2u * BALL + 4u] == 0.5f);
+        for (uint32_t i = 0; i < 6; i++) assert_true(uv[i] == 0.25f);
+        m->materials[0].base_color_texture = MODEL_NONE;
+        model_free(m);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -450,7 +514,7 @@ int main(void)
         cmocka_unit_test(eyes_with_an_iris_stay),       cmocka_unit_test(grey_faces_become_skin),
         cmocka_unit_test(slabs_of_lashes_are_hidden),   cmocka_unit_test(half_balls_get_an_iris),
         cmocka_unit_test(skinned_meshes_stand_upright), cmocka_unit_test(eyes_of_nodes_are_apart),
-        cmocka_unit_test(shadows_on_eyes_are_left_out),
+        cmocka_unit_test(shadows_on_eyes_are_left_out), cmocka_unit_test(bodies_of_joined_meshes_stay),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

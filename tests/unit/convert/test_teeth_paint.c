@@ -1,6 +1,7 @@
 /* Teeth of one colour get gums; what has them, or is no tooth, stays as it is. */
 #include "convert/model/teeth_paint.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/model_build.h"
@@ -122,6 +123,29 @@ static void one_jaw_stays(void **state)
     }
 }
 
+/* Two jaws of a joined mesh whose range has vertices of a gum: no triangle of the teeth uses them. */
+static void parts_of_joined_meshes_stay(void **state)
+{
+    static const float ivory[3] = { 0.76f, 0.72f, 0.60f };
+    model *m = mouth_of(ivory, 0.002f, 0.9f);
+    model_mesh *mesh = &m->meshes[0];
+    float *position = test_zeros(3u * (2u * STRIP + 1u) * sizeof *position);
+    float *color = test_zeros(4u * (2u * STRIP + 1u) * sizeof *color), *last = color + 8u * STRIP;
+    (void)state;
+    memcpy(position, mesh->position, 6u * STRIP * sizeof *position);
+    memcpy(color, mesh->color, 8u * STRIP * sizeof *color);
+    last[0] = 1.0f;
+    free(mesh->position);
+    free(mesh->color);
+    mesh->position = position;
+    mesh->color = color;
+    mesh->submeshes[0].vertex_count = ++mesh->vertex_count;
+    assert_int_equal(teeth_paint(m), 0);
+    assert_true(redness(m, 0, ROWS - 1u) > 2.5f && redness(m, 1, ROWS - 1u) > 2.5f);
+    assert_true(last[0] == 1.0f && last[1] == 0.0f && last[2] == 0.0f);
+    model_free(m);
+}
+
 /* Jaws that overlap by a third of their height are two where a target opens them, which leaves a gum at its teeth. */
 static void a_deep_bite_is_painted(void **state)
 {
@@ -160,10 +184,9 @@ static void an_overbite_is_painted(void **state)
 int main(int argc, char **argv)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(plain_teeth_get_gums),
-        cmocka_unit_test(other_mouths_stay),
-        cmocka_unit_test(one_jaw_stays),
-        cmocka_unit_test(an_overbite_is_painted), cmocka_unit_test(a_deep_bite_is_painted),
+        cmocka_unit_test(plain_teeth_get_gums),        cmocka_unit_test(other_mouths_stay),
+        cmocka_unit_test(parts_of_joined_meshes_stay), cmocka_unit_test(one_jaw_stays),
+        cmocka_unit_test(an_overbite_is_painted),      cmocka_unit_test(a_deep_bite_is_painted),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -97,15 +97,22 @@ static int is_ball(const model *m, ball *eye)
     return eye->front > 0.8;
 }
 
-static void visit_part(model *m, uint32_t mesh, const model_submesh *part, const mesh_islands *islands,
-                       ball_visit *visit, balls *b)
+/* 0, or 1 when out of memory. */
+static int visit_part(model *m, uint32_t mesh, const model_submesh *part, const mesh_islands *islands,
+                      ball_visit *visit, balls *b)
 {
-    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+    const uint32_t vertex_count = m->meshes[mesh].vertex_count;
+    uint8_t *used = islands_part(&m->meshes[mesh], part);
+    for (uint32_t v = 0; used && v < vertex_count; v++) {
         ball eye = { .mesh = mesh, .material = part->material, .vertices = islands->room };
-        if (islands->first[v] != v) continue;
-        eye.count = islands_list(islands->next, v, part->first_vertex + part->vertex_count, islands->room);
+        if (!used[v] || islands->first[v] != v) continue;
+        for (uint32_t i = v; i < vertex_count; i = islands->next[i]) {
+            if (used[i]) eye.vertices[eye.count++] = i;
+        }
         if (is_ball(m, &eye)) visit(m, &eye, b);
     }
+    free(used);
+    return !used;
 }
 
 static int visit_balls(model *m, ball_visit *visit, balls *b)
@@ -116,8 +123,8 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
         int failed = 0;
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
             if (!is_plain(m, mesh, &mesh->submeshes[s])) continue;
-            failed = !islands.first && islands_open(mesh, &islands);
-            if (!failed) visit_part(m, i, &mesh->submeshes[s], &islands, visit, b);
+            failed = (!islands.first && islands_open(mesh, &islands)) ||
+                     visit_part(m, i, &mesh->submeshes[s], &islands, visit, b);
         }
         islands_close(&islands);
         if (failed) return 1;
@@ -129,9 +136,10 @@ static int visit_balls(model *m, ball_visit *visit, balls *b)
 static int is_seen(const model *m, uint32_t mesh, const model_submesh *part, const eye_sphere *sphere, double front)
 {
     double places[BALLS_MAX][16];
-    const uint32_t count = part->vertex_count ? mesh_places(m, mesh, part->first_vertex, places) : 0u;
-    for (uint32_t i = 0; i < count * part->vertex_count; i++) {
-        const float *p = m->meshes[mesh].position + 3 * (size_t)(part->first_vertex + i / count);
+    const uint32_t *corners = m->meshes[mesh].indices + part->first_index;
+    const uint32_t count = part->index_count ? mesh_places(m, mesh, corners[0], places) : 0u;
+    for (uint32_t i = 0; i < count * part->index_count; i++) {
+        const float *p = m->meshes[mesh].position + 3 * (size_t)corners[i / count];
         const double at[3] = { (double)p[0], (double)p[1], (double)p[2] };
         double way[3];
         affine_point(places[i % count], at, way);
@@ -295,7 +303,9 @@ static void whiten(model *m, const balls *b)
         for (uint32_t s = 0; s < mesh->submesh_count; s++) {
             const model_submesh *part = &mesh->submeshes[s];
             if (!is_plain(m, mesh, part) || !is_painted(b, part->material)) continue;
-            memset(mesh->uv + 2 * (size_t)part->first_vertex, 0, 2 * (size_t)part->vertex_count * sizeof *mesh->uv);
+            for (uint32_t k = 0; k < part->index_count; k++) {
+                memset(mesh->uv + 2 * (size_t)mesh->indices[part->first_index + k], 0, 2 * sizeof *mesh->uv);
+            }
         }
     }
 }

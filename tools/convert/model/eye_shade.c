@@ -11,8 +11,9 @@
 static int is_shaded(const model_mesh *mesh, const model_submesh *part)
 {
     float darkest = 1.0f, brightest = 0.0f;
-    for (uint32_t v = part->first_vertex; mesh->color && v < part->first_vertex + part->vertex_count; v++) {
-        const float *c = mesh->color + 4 * (size_t)v, least = fminf(c[0], fminf(c[1], c[2]));
+    for (uint32_t i = 0; mesh->color && i < part->index_count; i++) {
+        const float *c = mesh->color + 4 * (size_t)mesh->indices[part->first_index + i],
+                    least = fminf(c[0], fminf(c[1], c[2]));
         const float most = fmaxf(c[0], fmaxf(c[1], c[2]));
         if (most - least > HUES) return 0;
         darkest = fminf(darkest, least);
@@ -23,8 +24,8 @@ static int is_shaded(const model_mesh *mesh, const model_submesh *part)
 
 static void whiten(model_mesh *mesh, const model_submesh *part)
 {
-    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
-        for (size_t c = 0; c < 3; c++) mesh->color[4 * (size_t)v + c] = 1.0f;
+    for (uint32_t i = 0; i < part->index_count; i++) {
+        for (size_t c = 0; c < 3; c++) mesh->color[4 * (size_t)mesh->indices[part->first_index + i] + c] = 1.0f;
     }
 }
 

@@ -74,6 +74,13 @@ int islands_open(const model_mesh *mesh, mesh_islands *out)
     return 0;
 }
 
+uint8_t *islands_part(const model_mesh *mesh, const model_submesh *part)
+{
+    uint8_t *used = model_zeros(mesh->vertex_count, 1);
+    for (uint32_t i = 0; used && i < part->index_count; i++) used[mesh->indices[part->first_index + i]] = 1;
+    return used;
+}
+
 void islands_close(mesh_islands *islands)
 {
     free(islands->first);

@@ -25,6 +25,10 @@ typedef struct mesh_islands {
 int islands_open(const model_mesh *mesh, mesh_islands *out);
 void islands_close(mesh_islands *islands);
 
+/* Which vertices the triangles of a part use, [vertex_count], to be freed; NULL: out of memory. Its range may have
+ * vertices of other parts, and lacks copies of split vertices. */
+uint8_t *islands_part(const model_mesh *mesh, const model_submesh *part);
+
 /* The root of a vertex in a union-find; what is passed on the way moves nearer to it. */
 uint32_t islands_root(uint32_t *parent, uint32_t v);
 void islands_join(uint32_t *parent, uint32_t a, uint32_t b); /* the smaller root stays */

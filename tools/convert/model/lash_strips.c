@@ -12,13 +12,17 @@
 /* Triangles that share vertices are one piece; lashes may touch the skin. joined: [vertex_count] */
 static int is_strip(const model_mesh *mesh, const model_submesh *part, uint32_t *joined)
 {
-    const uint32_t end = part->first_vertex + part->vertex_count, *indices = mesh->indices + part->first_index;
+    const uint32_t *indices = mesh->indices + part->first_index;
     uint32_t pieces = 0;
-    for (uint32_t v = part->first_vertex; v < end; v++) joined[v] = v;
+    for (uint32_t i = 0; i < part->index_count; i++) joined[indices[i]] = indices[i];
     for (uint32_t i = 0; i < part->index_count; i++) {
         joined[islands_root(joined, indices[i])] = islands_root(joined, indices[i / 3u * 3u]);
     }
-    for (uint32_t v = part->first_vertex; v < end; v++) pieces += joined[v] == v;
+    for (uint32_t i = 0; i < part->index_count; i++) {
+        if (joined[indices[i]] != indices[i]) continue;
+        joined[indices[i]] = MODEL_NONE; /* counted */
+        pieces++;
+    }
     return surface_is_white(mesh, part) && pieces <= STRIPS_MAX && part->index_count / 3u >= STRIP_TRIANGLES * pieces;
 }
 

@@ -15,9 +15,9 @@ static int mouth_bounds(const model *m, float low[3], float high[3])
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         for (uint32_t s = 0; s < m->meshes[i].submesh_count; s++) {
             const model_submesh *part = &m->meshes[i].submeshes[s];
-            const float *p = m->meshes[i].position + 3 * (size_t)part->first_vertex;
             if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_TEETH) continue;
-            for (uint32_t v = 0; v < part->vertex_count; v++, p += 3, found = 1) {
+            for (uint32_t v = 0; v < part->index_count; v++, found = 1) {
+                const float *p = m->meshes[i].position + 3 * (size_t)m->meshes[i].indices[part->first_index + v];
                 for (int c = 0; c < 3; c++) {
                     low[c] = !found || p[c] < low[c] ? p[c] : low[c];
                     high[c] = !found || p[c] > high[c] ? p[c] : high[c];

@@ -49,7 +49,7 @@ static void place_vertex(const model_mesh *mesh, uint32_t vertex, const double p
     affine_point(place, at, out);
 }
 
-/* Sums of the x, y and z of the vertices of eyes on either side of `middle`, and their numbers. */
+/* Sums of the x, y and z of the triangles' corners of eyes on either side of `middle`, and their numbers. */
 static void sum_eyes(const model *m, double middle, double sums[2][3], double counts[2])
 {
     memset(sums, 0, 2 * sizeof sums[0]);
@@ -59,10 +59,11 @@ static void sum_eyes(const model *m, double middle, double sums[2][3], double co
             const model_submesh *part = &m->meshes[i].submeshes[s];
             double places[MESH_PLACES_MAX][16];
             if (part->material == MODEL_NONE || m->materials[part->material].surface != NOH_SURFACE_EYE) continue;
-            const uint32_t count = part->vertex_count ? mesh_places(m, i, part->first_vertex, places) : 0u;
-            for (uint32_t k = 0; k < count * part->vertex_count; k++) {
+            const uint32_t *corners = m->meshes[i].indices + part->first_index;
+            const uint32_t count = part->index_count ? mesh_places(m, i, corners[0], places) : 0u;
+            for (uint32_t k = 0; k < count * part->index_count; k++) {
                 double at[3];
-                place_vertex(&m->meshes[i], part->first_vertex + k / count, places[k % count], at);
+                place_vertex(&m->meshes[i], corners[k / count], places[k % count], at);
                 const int side = at[0] > middle;
                 for (int c = 0; c < 3; c++) sums[side][c] += at[c];
                 counts[side] += 1.0;

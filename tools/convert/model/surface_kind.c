@@ -106,9 +106,10 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha)
 
 int surface_is_white(const model_mesh *mesh, const model_submesh *part)
 {
-    for (uint32_t v = part->first_vertex; mesh->color && v < part->first_vertex + part->vertex_count; v++) {
+    for (uint32_t i = 0; mesh->color && i < part->index_count; i++) {
+        const float *color = mesh->color + 4 * (size_t)mesh->indices[part->first_index + i];
         for (size_t c = 0; c < 3; c++) {
-            if (mesh->color[4 * (size_t)v + c] < WHITE_MIN) return 0;
+            if (color[c] < WHITE_MIN) return 0;
         }
     }
     return 1;

@@ -344,21 +344,24 @@ static int find_ways(eye_ball *b)
     return vec_normalize(b->above) && vec_normalize(b->ahead);
 }
 
-/* The islands that a part of the mesh is made of, each once. */
-static void add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const mesh_islands *islands,
-                     eye_mean *mean)
+/* The islands that a part of the mesh is made of, each once. 0, or 1 when out of memory. */
+static int add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const mesh_islands *islands,
+                    eye_mean *mean)
 {
     const uint32_t *island = islands->first;
-    for (uint32_t v = part->first_vertex; v < part->first_vertex + part->vertex_count; v++) {
+    uint8_t *used = islands_part(mesh, part);
+    for (uint32_t v = 0; used && v < mesh->vertex_count; v++) {
         eye_ball b = { .m = m, .mesh = mesh, .island = island, .material = part->material, .first = island[v] };
         uint32_t count;
-        if (island[v] != v) continue;
+        if (!used[v] || island[v] != v) continue;
         count = islands_list(islands->next, v, mesh->vertex_count, islands->room);
         if (eye_ball_fit(mesh->position, islands->room, count, &b.sphere) || !find_ways(&b) || !find_iris(&b)) continue;
         /* for shaders y is up, and the sign of a vertex's x is its side of the nose */
         if (b.above[1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
         add_eye(&b, mean);
     }
+    free(used);
+    return !used;
 }
 
 static float rounded(double x)
@@ -387,11 +390,9 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
         mesh_islands islands;
-        const int failed = islands_open(mesh, &islands);
+        int failed = islands_open(mesh, &islands);
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
-            if (mesh->submeshes[s].material == material) {
-                add_eyes(m, mesh, &mesh->submeshes[s], &islands, &mean);
-            }
+            failed = mesh->submeshes[s].material == material && add_eyes(m, mesh, &mesh->submeshes[s], &islands, &mean);
         }
         islands_close(&islands);
         if (failed) return 1;

@@ -22,8 +22,8 @@ static const float gum[3] = { 0.42f, 0.15f, 0.13f }, neck[3] = { 1.0f, 0.87f, 0.
 /* The teeth of one part of a mesh: from the lowest and the highest middle of an island the jaw of each is known. */
 typedef struct jaws {
     const model_mesh *mesh;
-    const model_submesh *part;
     const float *factor;
+    const uint8_t *used;                     /* of islands_part */
     float width, middle, edge[2], brightest; /* edge: of the lower teeth, of the upper */
 } jaws;
 
@@ -41,7 +41,8 @@ static float channel(const jaws *j, uint32_t v, int c)
 static int is_plain(jaws *j)
 {
     float least = 1.0f, most = 0.0f;
-    for (uint32_t v = j->part->first_vertex; v < j->part->first_vertex + j->part->vertex_count; v++) {
+    for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
+        if (!j->used[v]) continue;
         const float r = channel(j, v, 0), g = channel(j, v, 1), b = channel(j, v, 2), sum = r + g + b;
         if (sum < 0.03f) continue; /* black has any hue */
         if (b < PALE_MIN * r) return 0;
@@ -55,15 +56,15 @@ static int is_plain(jaws *j)
 /* The height of the middle of each island, at its first vertex. room: [vertex_count], as is middle */
 static void find_middles(const jaws *j, const uint32_t *island, float *room, float *middle)
 {
-    const uint32_t first = j->part->first_vertex, end = first + j->part->vertex_count;
-    for (uint32_t v = first; v < end; v++) room[v] = middle[v] = place_of(j, v)[1];
-    for (uint32_t v = first; v < end; v++) {
+    const uint32_t end = j->mesh->vertex_count;
+    for (uint32_t v = 0; v < end; v++) room[v] = middle[v] = place_of(j, v)[1];
+    for (uint32_t v = 0; v < end; v++) {
         const uint32_t at = island[v];
-        if (at < first) continue;
+        if (!j->used[v]) continue;
         room[at] = fminf(room[at], place_of(j, v)[1]);
         middle[at] = fmaxf(middle[at], place_of(j, v)[1]);
     }
-    for (uint32_t v = first; v < end; v++) middle[v] = 0.5f * (room[v] + middle[v]);
+    for (uint32_t v = 0; v < end; v++) middle[v] = 0.5f * (room[v] + middle[v]);
 }
 
 /* Two jaws have one height and one width, by a factor of ALIKE, and lie over one another except for an overbite; teeth
@@ -85,8 +86,8 @@ static int targets_part(const jaws *j, const uint32_t *island, const float *midd
     for (uint32_t t = 0; t < j->mesh->target_count; t++) {
         const float *moved = j->mesh->targets[t].position;
         double sum[2] = { 0.0, 0.0 }, count[2] = { 0.0, 0.0 };
-        for (uint32_t i = 0; moved && i < j->part->vertex_count; i++) {
-            const uint32_t v = j->part->first_vertex + i;
+        for (uint32_t v = 0; moved && v < j->mesh->vertex_count; v++) {
+            if (!j->used[v]) continue;
             const int upper = middle[island[v]] > j->middle;
             sum[upper] += (double)moved[3 * (size_t)v + 1];
             count[upper] += 1.0;
@@ -101,11 +102,11 @@ static int targets_part(const jaws *j, const uint32_t *island, const float *midd
 /* Whether there are two jaws. */
 static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
 {
-    const uint32_t first = j->part->first_vertex, end = first + j->part->vertex_count;
     float low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY;
     float box[2][4] = { { INFINITY, -INFINITY, INFINITY, -INFINITY }, { INFINITY, -INFINITY, INFINITY, -INFINITY } };
-    for (uint32_t v = first; v < end; v++) {
-        if (island[v] < first) return 0; /* joined to something else */
+    for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
+        if (!j->used[v]) continue;
+        if (!j->used[island[v]]) return 0; /* joined to something else */
         low = fminf(low, middle[island[v]]);
         high = fmaxf(high, middle[island[v]]);
         left = fminf(left, place_of(j, v)[0]);
@@ -113,7 +114,8 @@ static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
     }
     j->middle = 0.5f * (low + high);
     j->width = right - left;
-    for (uint32_t v = first; v < end; v++) {
+    for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
+        if (!j->used[v]) continue;
         float *of = box[middle[island[v]] > j->middle];
         for (int axis = 0; axis < 2; axis++) {
             of[2 * axis] = fminf(of[2 * axis], place_of(j, v)[axis]);
@@ -133,7 +135,8 @@ static float smooth_step(float from, float to, float x)
 
 static void paint(const jaws *j, const uint32_t *island, const float *middle)
 {
-    for (uint32_t v = j->part->first_vertex; v < j->part->first_vertex + j->part->vertex_count; v++) {
+    for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
+        if (!j->used[v]) continue;
         const int upper = middle[island[v]] > j->middle;
         const float away = fabsf(place_of(j, v)[1] - j->edge[upper]) / (CROWN * j->width);
         const float root = smooth_step(0.3f, 1.0f, away), share = smooth_step(1.0f - SOFT, 1.0f + SOFT, away);
@@ -147,10 +150,10 @@ static void paint(const jaws *j, const uint32_t *island, const float *middle)
     }
 }
 
-static int paint_part(model_mesh *mesh, const model_submesh *part, const float *factor, const uint32_t *island,
-                      float *room, float *middle)
+static int paint_part(model_mesh *mesh, const uint8_t *used, const float *factor, const uint32_t *island, float *room,
+                      float *middle)
 {
-    jaws j = { .mesh = mesh, .part = part, .factor = factor };
+    jaws j = { .mesh = mesh, .factor = factor, .used = used };
     if (!is_plain(&j)) return 0;
     find_middles(&j, island, room, middle);
     if (!find_jaws(&j, island, middle)) return 0;
@@ -173,6 +176,7 @@ int teeth_paint(model *m)
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
             const model_submesh *part = &mesh->submeshes[s];
             const model_material *by = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
+            uint8_t *used;
             if (!by || by->surface != NOH_SURFACE_TEETH || by->base_color_texture != MODEL_NONE) continue;
             if (!island) {
                 island = model_zeros(mesh->vertex_count, sizeof *island);
@@ -182,7 +186,9 @@ int teeth_paint(model *m)
                 failed = !island || !room || !middle || !lowest;
                 if (!failed) islands_find(mesh, island, room);
             }
-            failed = failed || paint_part(mesh, part, by->base_color, island, lowest, middle);
+            used = failed ? NULL : islands_part(mesh, part);
+            failed = !used || paint_part(mesh, used, by->base_color, island, lowest, middle);
+            free(used);
         }
         free(lowest);
         free(island);
