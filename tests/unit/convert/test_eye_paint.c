@@ -384,18 +384,20 @@ static void eyes_of_nodes_are_apart(void **state)
     model_free(m);
 }
 
-/* Strips of 32 triangles are hidden; 32 lashes stay, 20 of 32 triangles each, and what has a given surface. */
+/* Strips of 32 triangles are hidden; 32 lashes stay, 20 of 32 triangles each, and what has a given surface. Vertices of
+ * others, as joined meshes have, are no lashes. */
 static void slabs_of_lashes_are_hidden(void **state)
 {
     static const struct {
-        uint32_t pieces, triangles;
+        uint32_t pieces, triangles, others;
         int is_given, is_hidden;
-    } cases[] = { { 1, 32, 0, 1 }, { 16, 32, 0, 1 }, { 32, 1, 0, 0 }, { 20, 32, 0, 0 }, { 1, 32, 1, 0 } };
+    } cases[] = { { 1, 32, 0, 0, 1 },  { 16, 32, 0, 0, 1 }, { 32, 1, 0, 0, 0 },
+                  { 20, 32, 0, 0, 0 }, { 1, 32, 0, 1, 0 },  { 1, 32, 40, 0, 1 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         const uint32_t of_piece = cases[i].triangles + 2u, vertices = cases[i].pieces * of_piece;
         const uint32_t triangles = cases[i].pieces * cases[i].triangles;
-        model *m = model_of("Std_Eyelash", NOH_SURFACE_PLAIN, vertices, 3u * triangles);
+        model *m = model_of("Std_Eyelash", NOH_SURFACE_PLAIN, vertices + cases[i].others, 3u * triangles);
         for (uint32_t t = 0; t < 3u * triangles; t++) {
             const uint32_t triangle = t / 3u;
             m->meshes[0].indices[t] = triangle / cases[i].triangles * of_piece + triangle % cases[i].triangles + t % 3u;
@@ -506,6 +508,19 @@ static void bodies_of_joined_meshes_stay(void **state)
     }
 }
 
+/* Eyes of a joined figure in centimetres are as far apart as without the body, which is far to one side. */
+static void bodies_do_not_part_eyes(void **state)
+{
+    model *m = eyes_of(0.062f);
+    (void)state;
+    join_body(m);
+    for (uint32_t i = 0; i < 3u * m->meshes[0].vertex_count; i++) m->meshes[0].position[i] *= 100.0f;
+    for (uint32_t i = 0; i < 3; i++) m->meshes[0].position[3u * (2u * BALL + i)] += 20000.0f;
+    assert_int_equal(size_guess(m, NULL), 0);
+    assert_int_equal(m->warning_count, 1);
+    model_free(m);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -515,6 +530,7 @@ int main(void)
         cmocka_unit_test(slabs_of_lashes_are_hidden),   cmocka_unit_test(half_balls_get_an_iris),
         cmocka_unit_test(skinned_meshes_stand_upright), cmocka_unit_test(eyes_of_nodes_are_apart),
         cmocka_unit_test(shadows_on_eyes_are_left_out), cmocka_unit_test(bodies_of_joined_meshes_stay),
+        cmocka_unit_test(bodies_do_not_part_eyes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -3,6 +3,7 @@
 #include "convert/model/mouth_shape.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "convert/model/model_build.h"
@@ -121,8 +122,28 @@ static void teeth_without_targets_stay_light(void **state)
     }
 }
 
+/* A vertex of another part lies in the teeth's range, as in joined meshes. */
+static void others_in_range_are_no_teeth(void **state)
+{
+    model *m = face_of(NULL, NULL), *joined = face_of(NULL, NULL);
+    model_mesh *mesh = &joined->meshes[UPPER];
+    float *position = test_zeros(3u * (mesh->vertex_count + 1u) * sizeof *position);
+    (void)state;
+    memcpy(position, mesh->position, 3u * mesh->vertex_count * sizeof *position);
+    position[3u * mesh->vertex_count + 2u] = -3.0f;
+    free(mesh->position);
+    mesh->position = position;
+    mesh->submeshes[0].vertex_count = ++mesh->vertex_count;
+    assert_int_equal(mouth_shape_find(m) + mouth_shape_find(joined), 0);
+    assert_memory_equal(m->materials[TEETH].surface_values, joined->materials[TEETH].surface_values,
+                        sizeof m->materials[TEETH].surface_values);
+    model_free(m);
+    model_free(joined);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(teeth_without_targets_stay_light) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(teeth_without_targets_stay_light),
+                                        cmocka_unit_test(others_in_range_are_no_teeth) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
