@@ -63,7 +63,7 @@ check 'which does not warn of a stage' sh -c '! grep -q stage "$1"' - "$work/err
 noh build too_many.gltf -o too_many.noh --warnings
 expect 0 'a build of 513'
 check 'which warns that no stage draws them' \
-    grep -q '^warning: its 513 drawn meshes take 17 kinds.*at most 16: join meshes' "$work/err"
+    grep -q "^warning: the pack's 513 drawn meshes take 17 kinds.*at most 16: join meshes" "$work/err"
 nodes 5 820 >weights.gltf
 noh build weights.gltf -o weights.noh --warnings
 expect 0 'a build of 4100 morph targets'

@@ -50,13 +50,13 @@ static void check_meshes(const noh_pack *pack, const uint32_t *meshes, FILE *out
 {
     char what[48];
     uint32_t count = 0;
-    need n = { what, "kinds, one for each 32 of a skeleton", 0, NOH_STAGE_KINDS_MAX,
+    need n = { what, "kinds (at most 32 meshes of one skeleton in each)", 0, NOH_STAGE_KINDS_MAX,
                "join meshes in the program that made them" };
     for (uint32_t s = 0; s < skeletons_of(pack); s++) {
         count += meshes[s];
         n.count += (meshes[s] + NOH_STAGE_MESHES_MAX - 1u) / NOH_STAGE_MESHES_MAX;
     }
-    (void)snprintf(what, sizeof what, "its %u drawn meshes", count);
+    (void)snprintf(what, sizeof what, "the pack's %u drawn meshes", count);
     check(out, &n);
 }
 
@@ -64,7 +64,7 @@ static void check_meshes(const noh_pack *pack, const uint32_t *meshes, FILE *out
 static void check_floats(const noh_pack *pack, uint64_t targets, FILE *out)
 {
     need n = { "morph targets of all drawn meshes, with named floats,", "floats", targets, NOH_FLOATS_MAX,
-               "it plays no clip with them; remove targets, or join the meshes that have them" };
+               "a stage plays no clip of this pack; remove targets, or join the meshes that have them" };
     for (uint32_t s = 0; s < skeletons_of(pack); s++) {
         const noh_clip_bank_desc bank = { .clips = pack, .skeleton = s };
         noh_error why = { NOH_OK, "", 0, 0 };
