@@ -321,6 +321,32 @@ static void eyes_turn_out_of_the_shade(void **state)
     }
 }
 
+/* A plate below a lid, which a target takes away: teeth have the light that they have then if the target opens lips. */
+static void teeth_are_lit_between_open_lips(void **state)
+{
+    static const float corners[2][4][3] = { { { -1, 0, -1 }, { -1, 0, 1 }, { 1, 0, 1 }, { 1, 0, -1 } },
+                                            { { -3, 1, -3 }, { 3, 1, -3 }, { 3, 1, 3 }, { -3, 1, 3 } } };
+    float deltas[2][4][3];
+    (void)state;
+    memset(deltas, 0, sizeof deltas);
+    for (int i = 0; i < 4; i++) deltas[1][i][0] = 40.0f;
+    for (int kind = 0; kind < 3; kind++) {
+        model *m = quads_model(corners[0][0], 2, deltas[0][0]);
+        lit_pack p;
+        m->materials = test_zeros(sizeof *m->materials);
+        m->materials[0] = model_material_default();
+        m->materials[0].name = model_string("teeth");
+        m->materials[0].surface = kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_TEETH;
+        m->material_count = 1;
+        m->meshes[0].submeshes[0].material = 0;
+        m->meshes[0].targets[0].lips = kind == 1 ? 0.0f : 0.5f;
+        light_model(&p, m, 4, 0);
+        print_message("covered at rest: %.3f\n", occlusion_at(&p, 1, 0, 1));
+        assert_true(kind == 0 ? occlusion_at(&p, 1, 0, 1) > 0.9f : occlusion_at(&p, 1, 0, 1) < 0.3f);
+        free(p.bytes);
+    }
+}
+
 /* An eye around teeth: all levels of the eye have one light. Vertices of the teeth lie in the eye's range, and stay
  * dark. */
 static void teeth_behind_eyes_stay_dark(void **state)
@@ -754,6 +780,7 @@ int main(void)
         cmocka_unit_test(a_ball_in_a_furnace_is_white),
         cmocka_unit_test(occlusion_follows_the_targets),
         cmocka_unit_test(eyes_turn_out_of_the_shade),
+        cmocka_unit_test(teeth_are_lit_between_open_lips),
         cmocka_unit_test(teeth_behind_eyes_stay_dark),
         cmocka_unit_test(turned_surfaces_under_turned_light_look_alike),
         cmocka_unit_test(a_lobe_fits_itself),

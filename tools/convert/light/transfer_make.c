@@ -21,7 +21,7 @@ typedef struct maker {
     const light_rays *rays;
     const transfer_settings *settings;
     uint8_t *blocked;   /* [rays->count] */
-    uint8_t *eyes;      /* [vertex_count] of transfer_mark_eyes */
+    uint8_t *still;     /* [vertex_count] of transfer_mark_still */
     float *normals;     /* [vertex_count][3] in the bind pose */
     float *direct;      /* [vertex_count][NOH_SH_COUNT_MAX] in the bind pose, without reflections */
     float *transfers;   /* [vertex_count][NOH_SH_COUNT_MAX] that the lobes are of */
@@ -42,7 +42,7 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     vertices = k->surface.mesh.header->vertex_count;
     texels = k->surface.mesh.header->texel_count;
     k->blocked = model_zeros(k->rays->count, 1);
-    k->eyes = model_zeros(vertices, 1);
+    k->still = model_zeros(vertices, 1);
     k->normals = model_zeros(vertices, 3u * sizeof(float));
     k->direct = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
     k->transfers = model_zeros(vertices, NOH_SH_COUNT_MAX * sizeof(float));
@@ -53,7 +53,7 @@ static int open(maker *k, const noh_pack *pack, uint32_t mesh, model_error *erro
     k->vertices = model_zeros(k->surface.mesh.header->touched_count, sizeof(uint32_t));
     k->weights = model_zeros(k->surface.mesh.header->target_count, sizeof(float));
     if (k->vertices) memset(k->vertices, 0xff, k->surface.mesh.header->touched_count * sizeof(uint32_t));
-    return k->blocked && k->eyes && k->normals && k->direct && k->transfers && k->occlusion && k->brightest &&
+    return k->blocked && k->still && k->normals && k->direct && k->transfers && k->occlusion && k->brightest &&
                    k->targets && k->turned && k->vertices && k->weights
                ? 0
                : model_fail(error, k->surface.mesh.name, "out of memory");
@@ -63,7 +63,7 @@ static void close(maker *k)
 {
     light_surface_close(&k->surface);
     free(k->blocked);
-    free(k->eyes);
+    free(k->still);
     free(k->normals);
     free(k->direct);
     free(k->transfers);
@@ -198,13 +198,13 @@ static void take_brightest(maker *k, uint32_t target)
     }
 }
 
-/* ---- eyes: their balls turn, and what the lids cover comes into sight ---- */
+/* ---- what no target moves, and yet comes into sight ---- */
 
 #define SEEN 0.5f /* of the occlusion of the brightest vertex: what is in front of the lids */
 
-void transfer_mark_eyes(const noh_mesh *mesh, uint32_t material, uint8_t value, uint8_t *mark)
+void transfer_mark_still(const noh_mesh *mesh, uint32_t material, uint32_t surface, uint8_t value, uint8_t *mark)
 {
-    if (mesh->pack->materials[material].surface != NOH_SURFACE_EYE) return;
+    if (mesh->pack->materials[material].surface != surface) return;
     for (uint32_t k = mesh->header->level_first; k < mesh->header->level_count; k++) {
         const noh_mesh level = noh_mesh_at_lod(mesh, k);
         for (uint32_t s = 0; s < level.header->submesh_count; s++) {
@@ -225,7 +225,7 @@ static uint32_t mean_lobe(const maker *k, float least, noh_lobe *mean)
     memset(mean, 0, sizeof *mean);
     for (uint32_t v = 0; v < k->surface.mesh.header->vertex_count; v++) {
         noh_lobe lobe;
-        if (!k->eyes[v] || k->surface.stand_in[v] != v || !(k->occlusion[v] > least)) continue;
+        if (!k->still[v] || k->surface.stand_in[v] != v || !(k->occlusion[v] > least)) continue;
         transfer_lobe(k->transfers + NOH_SH_COUNT_MAX * (size_t)v, k->normals + 3u * (size_t)v, &lobe);
         for (uint32_t band = 0; band < NOH_SH_ORDER_MAX; band++) mean->shape[band] += lobe.shape[band];
         mean->occlusion += k->occlusion[v];
@@ -243,20 +243,49 @@ static void even_out_eyes(maker *k)
     for (uint32_t i = 0; i < k->surface.mesh.pack->material_count; i++) {
         float brightest = 0.0f;
         noh_lobe mean;
-        memset(k->eyes, 0, count);
-        transfer_mark_eyes(&k->surface.mesh, i, 1, k->eyes);
+        memset(k->still, 0, count);
+        transfer_mark_still(&k->surface.mesh, i, NOH_SURFACE_EYE, 1, k->still);
         for (uint32_t v = 0; v < count; v++) {
-            if (k->eyes[v] && k->surface.stand_in[v] == v) brightest = fmaxf(brightest, k->occlusion[v]);
+            if (k->still[v] && k->surface.stand_in[v] == v) brightest = fmaxf(brightest, k->occlusion[v]);
         }
         if (!(brightest > 0.0f) || !mean_lobe(k, SEEN * brightest, &mean)) continue;
         for (uint32_t v = 0; v < count; v++) {
             float *own = k->transfers + NOH_SH_COUNT_MAX * (size_t)v;
-            if (!k->eyes[v]) continue;
+            if (!k->still[v]) continue;
             noh_sh_basis(NOH_SH_ORDER_MAX, k->normals + 3u * (size_t)v, own);
             noh_sh_convolve(NOH_SH_ORDER_MAX, mean.shape, own);
             k->occlusion[v] = mean.occlusion;
         }
     }
+}
+
+/* Teeth that no target moves have no differences of occlusion: they take the light with the target that opens the lips
+ * most. Behind closed lips, shaders darken them by their depth. */
+static int open_teeth(maker *k, model_error *error)
+{
+    const noh_mesh *mesh = &k->surface.mesh;
+    uint32_t opening = NOH_NONE;
+    for (uint32_t t = 0; t < mesh->header->target_count; t++) {
+        if (mesh->targets[t].lips > (opening == NOH_NONE ? 0 : mesh->targets[opening].lips)) opening = t;
+    }
+    if (opening == NOH_NONE) return 0;
+    memset(k->still, 0, mesh->header->vertex_count);
+    for (uint32_t i = 0; i < mesh->pack->material_count; i++) {
+        transfer_mark_still(mesh, i, NOH_SURFACE_TEETH, 1, k->still);
+    }
+    k->weights[opening] = 1.0f;
+    const int failed = light_surface_pose(&k->surface, k->weights, error);
+    k->weights[opening] = 0.0f;
+    for (uint32_t v = 0; v < mesh->header->vertex_count && !failed; v++) {
+        float transfer[NOH_SH_COUNT_MAX];
+        if (!k->still[v]) continue;
+        light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
+        add_bounce(k, v, transfer);
+        if (!(integral(transfer) > k->occlusion[v])) continue;
+        memcpy(k->transfers + NOH_SH_COUNT_MAX * (size_t)v, transfer, sizeof transfer);
+        k->occlusion[v] = integral(transfer);
+    }
+    return failed;
 }
 
 static void make_records(const maker *k, transfer_data *out)
@@ -338,6 +367,7 @@ static int make(maker *k, transfer_data *out, model_error *error)
     for (uint32_t t = 0; t < target_count && !failed; t++) {
         take_brightest(k, t);
     }
+    failed = failed || open_teeth(k, error);
     if (!failed) {
         even_out_eyes(k);
         make_records(k, out);

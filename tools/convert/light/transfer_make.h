@@ -26,10 +26,12 @@ typedef struct transfer_data {
 /* 0, or 1 and a filled error; free in both cases. */
 int transfer_make(const noh_pack *pack, uint32_t mesh, const light_rays *rays, const transfer_settings *settings,
                   transfer_data *out, model_error *error);
-/* Set `mark` [vertex_count] where a material's vertices, of all levels, are on eyeballs that no target moves, and so
- * follow joints. Their records are the mean of what is seen at rest: what the lids cover comes into sight. Other
- * vertices, and other materials', stay as they are. */
-void transfer_mark_eyes(const noh_mesh *mesh, uint32_t material, uint8_t value, uint8_t *mark);
+
+/* Set `mark` [vertex_count] where a material's vertices, of all levels, are on a surface of this kind, and no target moves
+ * them. Other vertices, and other kinds, stay as they are. Two kinds have other records than at rest: eyeballs follow
+ * joints, and what lids cover comes into sight, so they have the mean of what is seen at rest (NOH_SURFACE_EYE); teeth
+ * are as the target that opens the lips most shows them (NOH_SURFACE_TEETH). */
+void transfer_mark_still(const noh_mesh *mesh, uint32_t material, uint32_t surface, uint8_t value, uint8_t *mark);
 void transfer_data_free(transfer_data *d);
 
 #endif

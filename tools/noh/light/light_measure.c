@@ -213,14 +213,17 @@ static int make_seed(mesh_work *w)
     return failed || !blocked;
 }
 
-/* The vertices of materials that do not blend, without eyeballs, whose records are means. */
+/* The vertices of materials that do not blend, without eyeballs and teeth, whose records are not of the bind pose. */
 static void keep_opaque(mesh_work *w)
 {
     const noh_mesh *mesh = &w->surface.mesh;
     for (uint32_t i = 0; i < 3u * w->surface.own_count; i++) {
         w->kept[w->surface.corners[i]] = 1;
     }
-    for (uint32_t i = 0; i < mesh->pack->material_count; i++) transfer_mark_eyes(mesh, i, 0, w->kept);
+    for (uint32_t i = 0; i < mesh->pack->material_count; i++) {
+        transfer_mark_still(mesh, i, NOH_SURFACE_EYE, 0, w->kept);
+        transfer_mark_still(mesh, i, NOH_SURFACE_TEETH, 0, w->kept);
+    }
 }
 
 static int measure_poses(mesh_work *w, const float *weights, model_error *error)
