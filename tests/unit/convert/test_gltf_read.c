@@ -2813,6 +2813,36 @@ static void weights_of_instances_are_animated(void **state)
     model_free(m);
 }
 
+/* The weights of a mesh are animated at a node that draws it, wherever a hidden one stands. */
+static void weights_of_hidden_nodes_are_not_animated(void **state)
+{
+    (void)state;
+#define HIDDEN "{\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}}"
+#define SHOWN "{\"mesh\":0}"
+    static const struct {
+        const char *nodes, *target;
+        uint32_t node; /* MODEL_NONE: there is no clip */
+    } cases[] = { { HIDDEN "," SHOWN, POINTER("/meshes/0/weights"), 1 },
+                  { SHOWN "," HIDDEN, POINTER("/meshes/0/weights"), 0 },
+                  { HIDDEN "," SHOWN, WEIGHTS_OF_N, MODEL_NONE },
+                  { HIDDEN ",{\"mesh\":1}", POINTER("/meshes/0/weights"), MODEL_NONE } };
+    const float times[2] = { 0, 1 }, values[2] = { 0.25f, 1 };
+    for (size_t i = 0; i < sizeof cases / sizeof cases[0]; i++) {
+        scene *s = morphing(up_deltas, ONE_TARGET "}]},{\"primitives\":[{\"attributes\":{\"POSITION\":0}");
+        add_array(s, times, sizeof times, F32, 2, "SCALAR");
+        add_array(s, values, sizeof values, F32, 2, "SCALAR");
+        APPEND(s->rest,
+               ",\"nodes\":[%s],\"animations\":[{\"channels\":[{\"sampler\":0,\"target\":{%s}}],"
+               "\"samplers\":[{\"input\":2,\"output\":3}]}]",
+               cases[i].nodes, cases[i].target);
+        model *m = load(s);
+        assert_int_equal(m->clip_count, cases[i].node != MODEL_NONE);
+        if (m->clip_count) assert_int_equal(m->clips[0].channels[0].node, cases[i].node);
+        assert_int_equal(has_warning(m, "channel 0 was skipped: its mesh is not drawn"), !m->clip_count);
+        model_free(m);
+    }
+}
+
 /* --- real files --- */
 
 /* Where the example assets lie, or a skipped test. */
@@ -3053,6 +3083,7 @@ int main(void)
         cmocka_unit_test(hidden_nodes_are_not_drawn),
         cmocka_unit_test(hidden_meshes_are_not_kept),
         cmocka_unit_test(weights_of_instances_are_animated),
+        cmocka_unit_test(weights_of_hidden_nodes_are_not_animated),
         cmocka_unit_test(dense_and_sparse_heads_are_the_same),
         cmocka_unit_test(compressed_head_has_the_same_shape),
         cmocka_unit_test(all_assets_load),

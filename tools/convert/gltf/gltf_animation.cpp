@@ -54,7 +54,27 @@ std::string pointer_of(const tinygltf::AnimationChannel &c)
     return pointer.IsString() ? pointer.Get<std::string>() : "";
 }
 
-/* "/nodes/2/rotation"; "/meshes/1/weights" is of the first node that draws the mesh. */
+/* Nodes from this one on are instances (gltf_scene.cpp): each draws the mesh of the node above it, which draws none. */
+static uint32_t first_instance(const file &f)
+{
+    uint32_t first = 0;
+    for (uint32_t node : f.node_of)
+        if (node != MODEL_NONE) first = std::max(first, node + 1);
+    return first;
+}
+
+/* The nodes that draw a mesh, themselves or by instances. */
+static std::vector<bool> drawing_nodes(const file &f)
+{
+    const uint32_t instances = first_instance(f);
+    std::vector<bool> out(f.out->node_count);
+    for (uint32_t n = 0; n < f.out->node_count; ++n)
+        if (f.out->nodes[n].mesh != MODEL_NONE) out[n < instances ? n : f.out->nodes[n].parent] = true;
+    return out;
+}
+
+/* "/nodes/2/rotation"; "/meshes/1/weights" is of the first node that draws the mesh; where none does, of the last that
+ * has it. */
 static target target_of(const file &f, const tinygltf::AnimationChannel &c)
 {
     char path[16] = "";
@@ -65,21 +85,17 @@ static target target_of(const file &f, const tinygltf::AnimationChannel &c)
     if (sscanf(pointer.c_str(), "/nodes/%9u/%15[a-z]%n", &index, path, &end) == 2 &&
         static_cast<size_t>(end) == pointer.size())
         return { static_cast<int>(index), path };
-    if (sscanf(pointer.c_str(), "/meshes/%9u/weights%n", &index, &end) == 1 &&
-        static_cast<size_t>(end) == pointer.size())
-        for (size_t n = 0; n < f.json.nodes.size(); ++n)
-            if (f.json.nodes[n].mesh == static_cast<int>(index) && f.node_of[n] != MODEL_NONE)
-                return { static_cast<int>(n), "weights" };
-    return { c.target_node, "pointer" };
-}
-
-/* Nodes from this one on are instances (gltf_scene.cpp): each draws the mesh of the node above it, which draws none. */
-static uint32_t first_instance(const file &f)
-{
-    uint32_t first = 0;
-    for (uint32_t node : f.node_of)
-        if (node != MODEL_NONE) first = std::max(first, node + 1);
-    return first;
+    target found = { c.target_node, "pointer" };
+    if (sscanf(pointer.c_str(), "/meshes/%9u/weights%n", &index, &end) != 1 ||
+        static_cast<size_t>(end) != pointer.size())
+        return found;
+    const std::vector<bool> draws = drawing_nodes(f);
+    for (size_t n = 0; n < f.json.nodes.size(); ++n) {
+        if (f.json.nodes[n].mesh != static_cast<int>(index) || f.node_of[n] == MODEL_NONE) continue;
+        found = { static_cast<int>(n), "weights" };
+        if (draws[f.node_of[n]]) break;
+    }
+    return found;
 }
 
 /* The node that has a node's weights: its first instance, which the others follow by the names of their targets. */
@@ -104,9 +120,9 @@ static std::string reason_to_skip(const file &f, const target &t, const tinygltf
     if (!path_of(t.path, c.path)) return "its path is unknown";
     if (c.path != MODEL_PATH_WEIGHTS) return "";
     c.node = node_of_weights(f, c.node);
-    /* if a mesh is not kept (points, lines), neither are its weights */
+    /* of a hidden node, and of a mesh that is not kept (points, lines), neither are the weights */
     const uint32_t mesh = f.out->nodes[c.node].mesh;
-    if (mesh == MODEL_NONE && f.json.nodes[static_cast<size_t>(t.node)].mesh >= 0) return "its mesh was skipped";
+    if (mesh == MODEL_NONE && f.json.nodes[static_cast<size_t>(t.node)].mesh >= 0) return "its mesh is not drawn";
     if (mesh == MODEL_NONE) return "it animates weights of a node without a mesh";
     return f.out->meshes[mesh].target_count ? "" : "it animates weights of a mesh without morph targets";
 }
@@ -296,9 +312,10 @@ static void hold_others(file &f, const std::string &where, model_clip &out)
         if (const model_channel *c = follows(f, out, n)) {
             floats += f.out->meshes[f.out->nodes[n].mesh].target_count;
             if (floats > NOH_CLIP_FLOATS_MAX || held.size() >= NOH_CLIP_GROUPS_MAX / 2)
-                return leave_out(f, where,
-                                 ": it moves the weights of a node, and too many others have the same targets for a clip "
-                                 "to hold: they move along. Give the targets of each mesh names of their own");
+                return leave_out(
+                    f, where,
+                    ": it moves the weights of a node, and too many others have the same targets for a clip "
+                    "to hold: they move along. Give the targets of each mesh names of their own");
             held.push_back({ n, c->times[0] });
         }
     if (held.empty()) return;
