@@ -362,6 +362,42 @@ static void buffer_in_a_file_beside(void **state)
     }
 }
 
+/* Of several folders whose names differ in case, all are searched; a name that comes back to a folder is no endless
+ * search. */
+static void files_are_found_in_any_folder_of_a_name(void **state)
+{
+    (void)state;
+    static const char *const folders[] = { "Kit", "kIt", "kit", "kit/Skin", "kit/skin" };
+    char path[4096], found[4096];
+    for (size_t i = 0; i < sizeof folders / sizeof folders[0]; i++) {
+        snprintf(file_path, sizeof file_path, "%s/%s", folder, folders[i]);
+        mkdir(file_path, 0777);
+    }
+    write_positions("kit/skin/a.bin");
+    static const char *const uris[] = { "Kit/Skin/a.bin", "KIT/Skin/A.bin", "kit/SKIN/a.bin" };
+    for (size_t i = 0; i < sizeof uris / sizeof uris[0]; i++) {
+        write_gltf_of(uris[i]);
+        model *m = load_file();
+        assert_floats(m->meshes[0].position, triangle_positions, 9);
+        model_free(m);
+    }
+    write_positions("Kit/A.bin");
+    snprintf(path, sizeof path, "%s/kit/../KIT/a.bin", folder);
+    assert_true(input_find_any_case(path, found, sizeof found));
+    assert_true(strlen(found) == strlen(path) && strstr(found, "/kit/../Kit/A.bin"));
+    int used = snprintf(path, sizeof path, "%s/", folder);
+    while (used < 4000) used += snprintf(path + used, sizeof path - (size_t)used, "Kit/../");
+    snprintf(path + used, sizeof path - (size_t)used, "none.bin");
+    assert_false(input_find_any_case(path, found, sizeof found));
+    const input_held files[] = { { "in/Tex/b.png", "", 0 }, { "in/tex/a.png", "", 0 }, { "in/tEx/A.png", "", 0 } };
+    inputs_hold(files, 3);
+    assert_true(input_find_any_case("in/Tex/a.png", found, sizeof found));
+    assert_string_equal(found, "in/tEx/A.png");
+    assert_true(input_find_any_case("in/tex/A.png", found, sizeof found));
+    assert_string_equal(found, "in/tex/a.png");
+    inputs_hold(NULL, 0);
+}
+
 /* Of files in memory: folders in any case, and names longer than a path. */
 static void held_names_are_found_in_any_case(void **state)
 {
@@ -375,8 +411,7 @@ static void held_names_are_found_in_any_case(void **state)
     assert_true(input_find_any_case("./in/B/textures/Wood.PNG", found, sizeof found));
     assert_string_equal(found, "./in/B/Textures/wood.png");
     assert_true(input_find_any_case("in/b/x.png", found, sizeof found));
-    assert_true(input_find_any_case("IN/B/X.PNG", found, 11) == 0);
-    assert_true(input_find_any_case("IN/b/X.PNG", found, 11));
+    assert_true(input_find_any_case("IN/B/X.PNG", found, 11));
     assert_string_equal(found, "in/b/x.png");
     assert_false(input_find_any_case("in/b/X.PNG", found, 10));
     assert_false(input_find_any_case("in/b/wood.png", found, sizeof found));
@@ -2950,15 +2985,16 @@ static int make_folder(void **state)
 
 static int remove_folder(void **state)
 {
-    static const char *const names[] = { "test.gltf", "test.glb", "json", "a b.bin", "c%20d.bin", "Parts/a.bin" };
+    static const char *const names[] = { "test.gltf", "test.glb",    "json",      "a b.bin",
+                                         "c%20d.bin", "Parts/a.bin", "Kit/A.bin", "kit/skin/a.bin",
+                                         "kit/skin",  "kit/Skin",    "kit",       "kIt",
+                                         "Kit",       "Parts" };
     char path[128];
     (void)state;
     for (size_t i = 0; i < sizeof names / sizeof names[0]; ++i) {
         snprintf(path, sizeof path, "%s/%s", folder, names[i]);
-        (void)unlink(path);
+        (void)remove(path);
     }
-    snprintf(path, sizeof path, "%s/Parts", folder);
-    (void)rmdir(path);
     return rmdir(folder);
 }
 
@@ -2969,6 +3005,7 @@ int main(void)
         cmocka_unit_test(indices_of_every_size),
         cmocka_unit_test(binary_container),
         cmocka_unit_test(buffer_in_a_file_beside),
+        cmocka_unit_test(files_are_found_in_any_folder_of_a_name),
         cmocka_unit_test(held_names_are_found_in_any_case),
         cmocka_unit_test(long_names_are_refused),
         cmocka_unit_test(interleaved_attributes),

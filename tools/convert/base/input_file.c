@@ -138,42 +138,62 @@ static int is_same_but_case(const char *a, const char *b, size_t length)
     return a[length] == '\0' || (held && a[length] == '/');
 }
 
-/* Give the name at the path's end the case that it has in its folder. 0: there is none in any case. */
-static int mend_case(char *path, size_t start)
+/* The folders that a search reads at most: of names with "..", it could read the same ones for ever. */
+#define FOLDERS_MAX 256u
+
+/* Give the name at found + start, of length bytes, the next case that it has in its folder: by its bytes, after the case
+ * that path has. 0: there is no further one. */
+static int next_case(const char *path, char *found, size_t start, size_t length)
 {
-    char own[PATH_BYTES], *name = path + start;
-    const size_t length = strlen(name);
-    int found = 0;
-    if (start) path[start - 1u] = '\0';
-    const char *folder = start > 1u ? path : start ? "/" : ".";
+    char own[PATH_BYTES], best[PATH_BYTES];
+    char *name = found + start;
+    const char *exact = path + start;
+    const int is_first = memcmp(name, exact, length) == 0;
+    int any = 0;
+    if (start) found[start - 1u] = '\0';
+    const char *folder = start > 1u ? found : start ? "/" : ".";
     DIR *open = held ? NULL : opendir(folder);
     for (uint32_t i = 0; held ? i < held_count : open != NULL; i++) {
         const struct dirent *entry = open ? readdir(open) : NULL;
         if (open && !entry) break;
         const char *at = entry ? entry->d_name : part_below(folder, held[i].path, own);
-        if (!at || !is_same_but_case(at, name, length) || (found && memcmp(at, name, length) >= 0)) continue;
-        memcpy(name, at, length);
-        found = 1;
+        if (!at || !is_same_but_case(at, name, length) || memcmp(at, exact, length) == 0) continue;
+        if ((!is_first && memcmp(at, name, length) <= 0) || (any && memcmp(at, best, length) >= 0)) continue;
+        memcpy(best, at, length);
+        any = 1;
     }
     if (open) (void)closedir(open);
-    if (start) path[start - 1u] = '/';
-    return found;
+    if (start) found[start - 1u] = '/';
+    if (any) memcpy(name, best, length);
+    return any;
+}
+
+/* Find the names from path + start on below the folders that found has before: of each, first as it is. */
+static int find_below(const char *path, char *found, size_t start, uint32_t *folders_left)
+{
+    start += strspn(path + start, "/");
+    const size_t length = strcspn(path + start, "/"), end = start + length;
+    if (!length) return 1;
+    memcpy(found + start, path + start, length);
+    found[end] = '\0';
+    const int is_exact = is_there(found);
+    found[end] = path[end];
+    if (is_exact && find_below(path, found, end, folders_left)) return 1;
+    while (*folders_left) {
+        --*folders_left;
+        if (!next_case(path, found, start, length)) return 0;
+        if (find_below(path, found, end, folders_left)) return 1;
+    }
+    return 0;
 }
 
 int input_find_any_case(const char *path, char *found, size_t size)
 {
     const size_t length = strlen(path);
-    int failed = 0;
+    uint32_t folders_left = FOLDERS_MAX;
     if (length >= size || length >= PATH_BYTES) return 0;
     memcpy(found, path, length + 1u);
-    if (is_there(path)) return 1;
-    for (size_t start = 0, end; start < length && !failed; start = end + 1u) {
-        end = start + strcspn(found + start, "/");
-        found[end] = '\0';
-        failed = end > start && !is_there(found) && !mend_case(found, start);
-        found[end] = path[end];
-    }
-    return !failed;
+    return is_there(path) || find_below(path, found, 0, &folders_left);
 }
 
 int input_map(const char *path, const void **bytes, size_t *count, const char **what)

@@ -36,8 +36,8 @@ const input_held *input_find_held(const char *path);
 /* The name of the next file in a folder, not below it; *at starts with 0. NULL: no more. */
 const char *input_next_held(const char *folder, uint32_t *at);
 /* Windows does not distinguish A.PNG from a.png, so a file may name its pictures, and their folders, in another case.
- * found[size]: the path as it is there, of several the first by its bytes; it is as long as `path`. 0: there is none, or
- * it does not fit. */
+ * found[size]: the path as it is there, of several the one as given, then the first by its bytes, folder by folder; it
+ * is as long as `path`. 0: there is none, or it does not fit. */
 int input_find_any_case(const char *path, char *found, size_t size);
 /* Its bytes until input_unmap. 0, or 1 and *what, the reason (NULL: not wanted). */
 int input_map(const char *path, const void **bytes, size_t *count, const char **what);
