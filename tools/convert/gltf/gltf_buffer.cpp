@@ -95,8 +95,9 @@ static std::string path_of(const file &f, const std::string &uri, const std::str
         fail(where,
              "the URI '" + printable(uri) + "' is not a relative path: put the file in the folder of the glTF file");
     char found[4096];
-    for (const std::string &name : { path, uri }) /* some exporters write a name as it is */
-        if (input_find_any_case((f.directory + name).c_str(), found, sizeof found)) return found;
+    if (input_find_any_case((f.directory + path).c_str(), found, sizeof found)) return found;
+    /* some exporters write a name as it is */
+    if (uri != path && input_find_any_case((f.directory + uri).c_str(), found, sizeof found)) return found;
     return f.directory + path;
 }
 
