@@ -603,11 +603,11 @@ static void materials_and_pictures(void **state)
 static void pictures_have_any_name(void **state)
 {
     static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 24, 0, 30, 20, 10 };
-    static const char *const named[] = { "a.tga", "A.PNG", "picture", "Other.TGA", "maps\\Deep.tga" };
-    static const char *const files[] = { "a.tga", "A.PNG", "picture", "oTHER.tga", "Maps/deep.TGA" };
+    static const char *const named[] = { "a.tga", "A.PNG", "picture", "Other.TGA", "maps\\Deep.tga", "art\\Flat.tga" };
+    static const char *const files[] = { "a.tga", "A.PNG", "picture", "oTHER.tga", "Maps/deep.TGA", "art\\flat.tga" };
     (void)state;
     (void)mkdir(test_path("Maps"), 0777);
-    for (int i = 0; i < 5; i++) {
+    for (size_t i = 0; i < sizeof named / sizeof named[0]; i++) {
         char line[64];
         begin();
         add_triangle(1, "");

@@ -237,6 +237,11 @@ static void names_differ_in_case(void **state)
     m = load("mtllib maps\\Deep.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
     assert_int_equal(m->texture_count, 1);
     model_free(m);
+    test_write_file(test_path("art\\Flat.tga"), tga, sizeof tga); /* one name, as some programs unpack an archive */
+    save("face.mtl", "newmtl a\nmap_Kd Art\\flat.tga\n");
+    m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\n");
+    assert_int_equal(m->texture_count, 1);
+    model_free(m);
 }
 
 /* A path that does not fit is not cut to another one. */

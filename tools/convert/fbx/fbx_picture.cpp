@@ -99,7 +99,9 @@ static std::string beside(const job &j, const std::string &path)
     const std::string name = base_name(path);
     std::string as_given = path;
     std::replace(as_given.begin(), as_given.end(), '\\', '/');
-    const std::string tries[] = { as_given,
+    /* a name as it is may have backslashes: some programs unpack the archives of Windows so */
+    const std::string tries[] = { path == as_given ? std::string() : path,
+                                  as_given,
                                   name,
                                   file.stem().string() + ".fbm/" + name,
                                   "textures/" + name,
@@ -108,8 +110,8 @@ static std::string beside(const job &j, const std::string &path)
                                   "../Textures/" + name };
     for (bool any_case : { false, true })
         for (const std::string &try_at : tries) {
-            const bool local = !try_at.empty() && try_at[0] != '/' && try_at.find(':') == std::string::npos &&
-                               try_at.find('\0') == std::string::npos;
+            const bool local = !try_at.empty() && try_at[0] != '/' && try_at[0] != '\\' &&
+                               try_at.find(':') == std::string::npos && try_at.find('\0') == std::string::npos;
             const std::string found = local ? name_there(file.parent_path(), try_at, any_case) : std::string();
             if (!found.empty()) return found;
         }

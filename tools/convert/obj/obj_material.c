@@ -60,15 +60,15 @@ static model_material *material_of(model *m, text_word name)
 
 #define PATH_BYTES 4096
 
-/* The path of a file in the OBJ's folder. 0: it is too long. */
-static int join_path(const char *obj_path, const char *name, char path[PATH_BYTES])
+/* The path of a file in the OBJ's folder; slashes: with a slash for each backslash of its name. 0: it is too long. */
+static int join_path(const char *obj_path, const char *name, int slashes, char path[PATH_BYTES])
 {
     const char *slash = strrchr(obj_path, '/');
     const size_t folder = slash ? (size_t)(slash - obj_path) + 1u : 0u, length = strlen(name);
     if (folder >= PATH_BYTES || length >= PATH_BYTES - folder) return 0;
     memcpy(path, obj_path, folder);
     memcpy(path + folder, name, length + 1u);
-    for (char *c = path + folder; *c; c++) {
+    for (char *c = path + folder; slashes && *c; c++) {
         if (*c == '\\') *c = '/';
     }
     return 1;
@@ -84,11 +84,13 @@ static int find_file(const char *obj_path, const char *name, char found[PATH_BYT
     for (const char *c = name; *c; c++) {
         if (*c == '/' || *c == '\\') last = c + 1;
     }
-    if (is_local && join_path(obj_path, name, path)) {
+    /* a name as it is may have backslashes: some programs unpack the archives of Windows so */
+    for (int slashes = !strchr(name, '\\'); is_local && slashes < 2; slashes++) {
+        if (!join_path(obj_path, name, slashes, path)) break;
         if (input_find_any_case(path, found, PATH_BYTES)) return 0;
         inputs_note(path, 0);
     }
-    if (!join_path(obj_path, last, path)) {
+    if (!join_path(obj_path, last, 0, path)) {
         return model_fail(error, "", "its name is longer than the %d bytes of a path: give it a shorter one",
                           PATH_BYTES - 1);
     }
