@@ -116,7 +116,7 @@ static std::vector<bool> hidden_nodes(const file &f)
     return hidden;
 }
 
-/* A mesh that only hidden nodes have would be dead bytes in a pack. */
+/* A mesh that only hidden nodes have is not kept; its materials and textures are. */
 static void drop_hidden_meshes(file &f, std::vector<bool> &was_hidden)
 {
     for (size_t i = 0; i < f.out->node_count; ++i)
