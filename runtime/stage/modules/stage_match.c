@@ -129,22 +129,42 @@ static noh_result measure(const noh_kind_desc *d, const void *desc, const noh_st
     return NOH_OK;
 }
 
-static const noh_pack_chunk *clip_of(const noh_pack *pack, uint32_t name_hash)
+/* A clip of a pack, and the skeleton that it was built with: joint_count 0 without one. */
+static noh_pack_clip clip_of(const noh_pack *pack, uint32_t index, noh_skeleton *skeleton)
 {
-    const noh_chunk_run run = pack->runs[NOH_CHUNK_CLIP];
-    for (uint32_t i = run.first; i < run.first + run.count; i++) {
-        if (pack->chunks[i].name_hash == name_hash) return &pack->chunks[i];
-    }
-    return NULL;
+    noh_pack_clip c;
+    memset(skeleton, 0, sizeof *skeleton);
+    (void)noh_pack_clip_at(pack, index, &c, NULL);
+    (void)noh_pack_skeleton_at(pack, c.header->skeleton, skeleton, NULL, NULL);
+    return c;
 }
 
-/* Whether the table was made of a clip of this name in its own pack, and another clip of another pack plays instead. */
-static int is_replaced(const noh_stage_kind *k, const match_kind *m, const noh_pack_match_clip *c, uint32_t clip)
+/* Whether two clips move joints alike: the same compressed clip over the same bind pose, with the same ends for root
+ * motion. Keys do not matter, and hold offsets into the strings of their pack. */
+static int is_like(const noh_pack *pack, uint32_t index, const noh_pack *other, uint32_t other_index)
 {
-    const noh_pack *pack = k->desc->clip_packs ? k->desc->clip_packs[k->bank->packs[clip]] : m->pack;
-    const noh_pack_chunk *own = clip_of(m->pack, c->name_hash), *plays = clip_of(pack, c->name_hash);
-    if (pack == m->pack || !own) return 0;
-    return !plays || own->crc != plays->crc || own->bytes != plays->bytes;
+    noh_skeleton s, t;
+    const noh_pack_clip a = clip_of(pack, index, &s), b = clip_of(other, other_index, &t);
+    return a.header->skeleton_hash == b.header->skeleton_hash && a.header->clip_bytes == b.header->clip_bytes &&
+           s.joint_count == t.joint_count &&
+           memcmp(a.header->root_ends, b.header->root_ends, sizeof a.header->root_ends) == 0 &&
+           memcmp(a.bytes, b.bytes, a.header->clip_bytes) == 0 &&
+           (!s.joint_count || memcmp(s.bind_pose, t.bind_pose, s.joint_count * sizeof *s.bind_pose) == 0);
+}
+
+/* Whether the table's own pack has clips of this name, and a clip of another pack plays that is like none of them. */
+static int is_replaced(const noh_stage_kind *k, const noh_pack *own, uint32_t name_hash, uint32_t clip)
+{
+    const noh_pack *pack = noh_stage_clip_pack(k, clip);
+    const noh_chunk_run run = own->runs[NOH_CHUNK_CLIP];
+    int is_there = 0;
+    if (pack == own) return 0;
+    for (uint32_t i = 0; i < run.count; i++) {
+        if (own->chunks[run.first + i].name_hash != name_hash) continue;
+        if (is_like(own, i, pack, k->bank->pack_clips[clip])) return 0;
+        is_there = 1;
+    }
+    return is_there;
 }
 
 static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *error)
@@ -158,7 +178,7 @@ static noh_result bind_clips(const noh_stage_kind *k, match_kind *m, noh_error *
             return noh_fail(error, NOH_ERR_NOT_FOUND,
                             "match of a kind: its packs lack a clip of the table: add the pack that has it", i, 0);
         }
-        if (is_replaced(k, m, c, clip)) {
+        if (is_replaced(k, m->pack, c->name_hash, clip)) {
             return noh_fail(error, NOH_ERR_DATA,
                             "match of a kind: a later pack replaces a clip of the table: build a table with that clip "
                             "into the later pack",

@@ -2,8 +2,10 @@
  * forked in the middle it goes on to the bit, for any number of jobs; tables and descs that do not fit are refused. */
 #include <math.h>
 
+#include "support/pack_walk.h"
 #include "support/stage_fixture.h"
 #include "motion/match/match_internal.h"
+#include "noh/low_core.h"
 #include "noh/low_life.h"
 #include "noh/modules.h"
 
@@ -468,44 +470,130 @@ static void bad_descs_are_refused(void **state)
     for (int i = 0; i < 2; i++) noh_file_unmap(&c.files[i]);
 }
 
-/* A later pack may have a clip of the table again, with the same bytes. A clip of that name with other bytes moves
- * otherwise than the rows of the table say. */
-static void replaced_clips_are_refused(void **state)
+/* A copy of a pack whose clips have a callback key each, named by an offset of its strings. */
+static uint8_t *with_keys(const noh_pack *from, uint32_t name, noh_pack *pack)
 {
+    const noh_chunk_run run = from->runs[NOH_CHUNK_CLIP];
+    const size_t most = from->byte_count + run.count * 128u, room = 32; /* a key and its padding */
+    const noh_clip_event key = { .name = name, .name_hash = noh_hash_name("") };
+    uint8_t *out = test_aligned(NULL, most);
+    noh_pack_chunk *chunks = (noh_pack_chunk *)(void *)(out + sizeof(noh_pack_header));
+    size_t at = from->chunks[0].offset;
+    memset(out, 0, most);
+    memcpy(out, from->bytes, at);
+    for (uint32_t i = 0; i < from->chunk_count; i++) {
+        const uint8_t *bytes = from->bytes + from->chunks[i].offset;
+        noh_clip_header *h = (noh_clip_header *)(void *)(out + at);
+        memcpy(out + at, bytes, chunks[i].bytes);
+        chunks[i].offset = (uint32_t)at;
+        if (i - run.first < run.count) {
+            const uint32_t head = h->events_offset;
+            assert_int_equal(h->event_count, 0);
+            memcpy(out + at + head + room, bytes + head, chunks[i].bytes - head);
+            memset(out + at + head, 0, room);
+            memcpy(out + at + head, &key, sizeof key);
+            h->event_count = 1;
+            h->markers_offset += (uint32_t)room;
+            h->joint_errors_offset += (uint32_t)room;
+            h->clip_offset += (uint32_t)room;
+            chunks[i].bytes += (uint32_t)room;
+        }
+        at = (at + chunks[i].bytes + 63u) & ~(size_t)63u;
+    }
+    ((noh_pack_header *)(void *)out)->byte_count = (uint32_t)at;
+    pack_repair(out, at);
+    *pack = test_open(out, at);
+    return out;
+}
+
+/* A table's pack, and another with the same clips and without a table; clips have keys. */
+typedef struct two_packs {
+    cast c;
+    noh_pack own, other;
+    uint8_t *bytes[2]; /* of each */
     const noh_pack *packs[2];
-    noh_pack_chunk *chunks;
+} two_packs;
+
+static void two_open(two_packs *t)
+{
+    describe(&t->c, NULL);
+    t->bytes[0] = with_keys(&t->c.packs[ROAM], 0, &t->own);
+    t->bytes[1] = with_keys(&t->c.packs[ROAM], t->own.string_bytes - 1u, &t->other);
+    t->other.runs[NOH_CHUNK_MATCH].count = 0;
+    t->c.kinds[0].clips = NULL;
+    t->c.kinds[0].clip_packs = t->packs;
+    t->c.kinds[0].clip_pack_count = 2;
+}
+
+static void two_close(two_packs *t)
+{
+    for (int i = 0; i < 2; i++) {
+        free(t->bytes[i]);
+        noh_file_unmap(&t->c.files[i]);
+    }
+}
+
+static void opens(two_packs *t, int later, int refused)
+{
     noh_stage_plan plan;
     noh_stage *stage;
-    noh_pack bare;
-    cast c;
+    void *memory;
+    t->packs[later] = &t->own;
+    t->packs[!later] = &t->other;
+    assert_int_equal(noh_stage_plan_make(&t->c.desc, NULL, &plan, NULL), NOH_OK);
+    memory = malloc((size_t)plan.cpu_bytes);
+    const noh_result made = noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &t->c.desc, &plan, &stage, &said);
+    assert_int_equal(made, refused ? NOH_ERR_DATA : NOH_OK);
+    if (refused) assert_non_null(strstr(said.what, "a later pack replaces a clip"));
+    free(memory);
+}
+
+static noh_pack_chunk *clip_chunk(const noh_pack *pack, uint32_t clip)
+{
+    return (noh_pack_chunk *)(uintptr_t)&pack->chunks[pack->runs[NOH_CHUNK_CLIP].first + clip];
+}
+
+/* A later pack may have a clip of the table again, whatever the offsets of its keys' names. A clip of that name that
+ * moves otherwise than the rows of the table say is refused. */
+static void replaced_clips_are_refused(void **state)
+{
+    two_packs t;
+    noh_pack_chunk *first, *second, kept;
+    const noh_skeleton_header *h;
     (void)state;
-    describe(&c, NULL);
-    bare = c.packs[ROAM];
-    bare.runs[NOH_CHUNK_MATCH].count = 0;
-    chunks = malloc(bare.chunk_count * sizeof *chunks);
-    memcpy(chunks, bare.chunks, bare.chunk_count * sizeof *chunks);
-    bare.chunks = chunks;
-    c.kinds[0].clips = NULL;
-    c.kinds[0].clip_packs = packs;
-    c.kinds[0].clip_pack_count = 2;
-    for (int differs = 0; differs < 2; differs++) {
-        const noh_chunk_run run = bare.runs[NOH_CHUNK_CLIP];
-        for (uint32_t i = run.first; differs && i < run.first + run.count; i++) chunks[i].crc ^= 1u;
-        for (int later = 0; later < 2; later++) { /* whether the table's pack comes later */
-            const int refused = differs && !later;
-            void *memory;
-            packs[later] = &c.packs[ROAM];
-            packs[!later] = &bare;
-            assert_int_equal(noh_stage_plan_make(&c.desc, NULL, &plan, NULL), NOH_OK);
-            memory = malloc((size_t)plan.cpu_bytes);
-            const noh_result made = noh_stage_init(memory, (size_t)plan.cpu_bytes, NULL, &c.desc, &plan, &stage, &said);
-            assert_int_equal(made, refused ? NOH_ERR_DATA : NOH_OK);
-            if (refused) assert_non_null(strstr(said.what, "a later pack replaces a clip"));
-            free(memory);
-        }
+    two_open(&t);
+    for (int later = 0; later < 2; later++) opens(&t, later, 0); /* whether the table's pack comes later */
+    first = clip_chunk(&t.other, 0);
+    second = clip_chunk(&t.other, 1);
+    kept = *first;
+    first->name = second->name, first->name_hash = second->name_hash;
+    second->name = kept.name, second->name_hash = kept.name_hash;
+    for (int later = 0; later < 2; later++) opens(&t, later, !later);
+    two_close(&t);
+    two_open(&t);
+    h = noh_pack_chunk_at(&t.other, NOH_CHUNK_SKELETON, 0);
+    t.bytes[1][(const uint8_t *)h - t.bytes[1] + h->bind_offset + 44u] ^= 1u; /* of a joint below the root */
+    for (int later = 0; later < 2; later++) opens(&t, later, !later);
+    two_close(&t);
+}
+
+/* Each pack in turn has the second clip's name also for a clip of another skeleton, which comes first and does not
+ * play. */
+static void clips_of_other_skeletons_replace_nothing(void **state)
+{
+    (void)state;
+    for (int which = 0; which < 2; which++) {
+        two_packs t;
+        noh_pack *pack = which ? &t.other : &t.own;
+        noh_pack_chunk *first;
+        two_open(&t);
+        first = clip_chunk(pack, 0);
+        first->name = clip_chunk(pack, 1)->name;
+        first->name_hash = clip_chunk(pack, 1)->name_hash;
+        ((noh_clip_header *)(void *)(t.bytes[which] + first->offset))->skeleton_hash ^= 1u;
+        opens(&t, 0, 0);
+        two_close(&t);
     }
-    free(chunks);
-    for (int i = 0; i < 2; i++) noh_file_unmap(&c.files[i]);
 }
 
 static void bad_goals_are_refused(void **state)
@@ -581,6 +669,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(bad_descs_are_refused),
     cmocka_unit_test(bad_goals_are_refused),
     cmocka_unit_test(replaced_clips_are_refused),
+    cmocka_unit_test(clips_of_other_skeletons_replace_nothing),
 };
 
 TEST_MAIN(tests, NULL, NULL)
