@@ -446,9 +446,10 @@ typedef struct noh_stage_stats {
     uint64_t decoded;                      /* track-frames */
     uint64_t decoded_late;                 /* those among them that a pose had to wait for: too few cached segments */
     uint32_t events_lost;                  /* since init: event_count is too small */
-    /* the largest `actors` of all frames: the actor_count of all kinds together that a game needs */
+    /* the largest `actors` of all frames, not of steps without one: the most at once. What actor_count needs is each
+     * kind's own peak, and these may add up to more */
     uint32_t actors_high;
-    /* the largest `events` of all steps: the event_count that a game needs */
+    /* the largest `events` of all steps, with frames or without: the event_count that a game needs */
     uint32_t events_high;
     /* the largest `coarser` of all frames: 0 if the slots of all kinds have been enough */
     uint32_t coarser_high;
