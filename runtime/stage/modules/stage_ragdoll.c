@@ -131,16 +131,22 @@ static void despawn(noh_stage_kind *k, uint32_t index)
     noh_stage_give_doll(k, noh_stage_body_of(k, index));
 }
 
-/* 1 + the first doll from `from` on that no actor has; 0: there is none.
+/* How many actors have a doll, given as 1 + its index: more than one only in states from outside.
  * states  of the actors' bodies, `stride` bytes apart */
-static uint32_t free_doll(const noh_stage_kind *k, const uint8_t *states, uint32_t from)
+static uint32_t owners(const noh_stage_kind *k, const uint8_t *states, uint32_t doll)
 {
     const size_t stride = k->modules[NOH_SLOT_BODY].stride;
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < k->desc->actor_count; i++)
+        count += ((const noh_stage_body *)(const void *)(states + i * stride))->doll == doll;
+    return count;
+}
+
+/* 1 + the first doll from `from` on that no actor has; 0: there is none. */
+static uint32_t free_doll(const noh_stage_kind *k, uint32_t from)
+{
     for (uint32_t doll = from + 1u; doll <= noh_stage_ragdoll_kind_of(k)->count; doll++) {
-        uint32_t i = 0;
-        while (i < k->desc->actor_count && ((const noh_stage_body *)(const void *)(states + i * stride))->doll != doll)
-            i++;
-        if (i == k->desc->actor_count) return doll;
+        if (!owners(k, k->modules[NOH_SLOT_BODY].states, doll)) return doll;
     }
     return 0;
 }
@@ -330,7 +336,7 @@ static void shift(noh_stage_kind *k, const float by[3])
     float metres[3];
     for (int i = 0; i < 3; i++) metres[i] = -by[i] * shared->metres;
     noh_ragdolls_shift(shared->dolls, metres);
-    for (uint32_t doll = 0; (doll = free_doll(k, k->modules[NOH_SLOT_BODY].states, doll)) != 0;) {
+    for (uint32_t doll = 0; (doll = free_doll(k, doll)) != 0;) {
         noh_ragdoll_rest(shared->dolls, doll - 1u, &shared->rig);
     }
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
@@ -420,7 +426,7 @@ noh_result noh_stage_fall(noh_stage_kind *k, const noh_stage_actor *a, noh_stage
         return noh_fail(error, NOH_ERR_ARG, "cannot ragdoll: the actor is attached, or its scale is not in 0.01..100",
                         0, 0);
     }
-    doll = free_doll(k, k->modules[NOH_SLOT_BODY].states, 0);
+    doll = free_doll(k, 0);
     if (!doll) {
         return noh_fail(error, NOH_ERR_LIMIT, "all ragdolls of the kind are in use: raise noh_kind_ragdoll.count",
                         shared->count, shared->count + 1u);
@@ -587,8 +593,10 @@ static const char *check_pool(const noh_stage_kind *k, const void *pool)
     const noh_stage_ragdoll_kind *shared = noh_stage_ragdoll_kind_of(k);
     const uint8_t *states = (const uint8_t *)pool + (m->states - (const uint8_t *)m->pool);
     const char *what = noh_ragdolls_check(shared->dolls, pool);
-    for (uint32_t doll = 0; !what && (doll = free_doll(k, states, doll)) != 0;) {
-        if (!noh_ragdoll_rests(pool, doll - 1u, &shared->rig))
+    for (uint32_t doll = 1; !what && doll <= shared->count; doll++) {
+        const uint32_t count = owners(k, states, doll);
+        if (count > 1u) what = "state: two actors have one ragdoll";
+        if (!count && !noh_ragdoll_rests(pool, doll - 1u, &shared->rig))
             what = "state: a ragdoll that no actor has is not at rest";
     }
     return what;

@@ -437,12 +437,36 @@ static void a_free_ragdoll_rests_in_states(void **state)
     busy_stage_close(&s);
 }
 
+/* Two actors with one ragdoll would both move it. */
+static void a_ragdoll_has_one_actor_in_states(void **state)
+{
+    noh_error error;
+    busy_stage s;
+    size_t bytes;
+    uint8_t *copy;
+    (void)state;
+    busy_stage_open(&s, 1);
+    busy_stage_enter(&s);
+    busy_stage_play(&s);
+    const uint8_t *own = noh_stage_state(s.c.stage, &bytes);
+    const noh_stage_kind *walkers = &s.c.stage->kinds[WALKERS];
+    const noh_stage_body *falls = noh_stage_body_of(walkers, 1), *walks = noh_stage_body_of(walkers, 0);
+    assert_true(falls->doll && !walks->doll);
+    copy = test_aligned(own, bytes);
+    memcpy(copy + ((const uint8_t *)walks - own), falls, walkers->modules[NOH_SLOT_BODY].stride);
+    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, &error), NOH_ERR_DATA);
+    assert_non_null(strstr(error.what, "two actors have one ragdoll"));
+    free(copy);
+    busy_stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_stage_takes_its_own_states),   cmocka_unit_test(despawned_actors_leave_nothing),
-        cmocka_unit_test(a_free_ragdoll_rests_in_states), cmocka_unit_test(what_moves_stays_within),
-        cmocka_unit_test(what_staggers_stays_within),     cmocka_unit_test(what_is_let_go_stays_within)
+        cmocka_unit_test(a_free_ragdoll_rests_in_states), cmocka_unit_test(a_ragdoll_has_one_actor_in_states),
+        cmocka_unit_test(what_moves_stays_within),        cmocka_unit_test(what_staggers_stays_within),
+        cmocka_unit_test(what_is_let_go_stays_within)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
