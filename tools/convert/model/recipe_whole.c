@@ -46,7 +46,8 @@ typedef struct held_job {
 
 static int is_larger(const held_job *job, uint32_t i, uint32_t j)
 {
-    return job->motion[i] > job->motion[j] || (job->motion[i] == job->motion[j] && i > j);
+    const double a = job->motion[i], b = job->motion[j];
+    return a > b || (a == b && i > j);
 }
 
 /* Compare a target with the larger ones of its meaning: it is held by one that is much larger, or holds all. */
