@@ -293,6 +293,16 @@ static void occlusion_follows_the_targets(void **state)
     free(p.bytes);
 }
 
+static void set_surface(model *m, uint32_t surface)
+{
+    m->materials = test_zeros(sizeof *m->materials);
+    m->materials[0] = model_material_default();
+    m->materials[0].name = model_string("surface");
+    m->materials[0].surface = surface;
+    m->material_count = 1;
+    m->meshes[0].submeshes[0].material = 0;
+}
+
 /* Two plates, one of them below a lid. Of an eye, which turns, what the lid covers is lit as what it leaves open; of an eye
  * that a target moves, and of skin, it stays dark. */
 static void eyes_turn_out_of_the_shade(void **state)
@@ -306,12 +316,7 @@ static void eyes_turn_out_of_the_shade(void **state)
     for (int kind = 0; kind < 3; kind++) {
         model *m = quads_model(corners[0][0], 3, kind == 1 ? deltas[0][0] : NULL);
         lit_pack p;
-        m->materials = test_zeros(sizeof *m->materials);
-        m->materials[0] = model_material_default();
-        m->materials[0].name = model_string("eye");
-        m->materials[0].surface = kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_EYE;
-        m->material_count = 1;
-        m->meshes[0].submeshes[0].material = 0;
+        set_surface(m, kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_EYE);
         light_model(&p, m, 4, 0);
         print_message("open %.3f, covered %.3f\n", occlusion_at(&p, -8, 0, 1), occlusion_at(&p, 1, 0, 1));
         assert_true(occlusion_at(&p, -8, 0, 1) > 0.8f);
@@ -333,12 +338,7 @@ static void teeth_are_lit_between_open_lips(void **state)
     for (int kind = 0; kind < 3; kind++) {
         model *m = quads_model(corners[0][0], 2, deltas[0][0]);
         lit_pack p;
-        m->materials = test_zeros(sizeof *m->materials);
-        m->materials[0] = model_material_default();
-        m->materials[0].name = model_string("teeth");
-        m->materials[0].surface = kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_TEETH;
-        m->material_count = 1;
-        m->meshes[0].submeshes[0].material = 0;
+        set_surface(m, kind == 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_TEETH);
         m->meshes[0].targets[0].lips = kind == 1 ? 0.0f : 0.5f;
         light_model(&p, m, 4, 0);
         print_message("covered at rest: %.3f\n", occlusion_at(&p, 1, 0, 1));

@@ -259,24 +259,26 @@ static void even_out_eyes(maker *k)
     }
 }
 
-/* Teeth that no target moves have no differences of occlusion: they take the light with the target that opens the lips
- * most. Behind closed lips, shaders darken them by their depth. */
-static int open_teeth(maker *k, model_error *error)
+/* The target that opens the lips most; NOH_NONE: none does. */
+static uint32_t opening_target(const noh_mesh *mesh)
 {
-    const noh_mesh *mesh = &k->surface.mesh;
     uint32_t opening = NOH_NONE;
     for (uint32_t t = 0; t < mesh->header->target_count; t++) {
         if (mesh->targets[t].lips > (opening == NOH_NONE ? 0 : mesh->targets[opening].lips)) opening = t;
     }
-    if (opening == NOH_NONE) return 0;
+    return opening;
+}
+
+/* Teeth that no target moves have no differences of occlusion: they take the light of the surface's pose, in which the
+ * lips are open. Behind closed lips, shaders darken them by their depth. */
+static void open_teeth(maker *k)
+{
+    const noh_mesh *mesh = &k->surface.mesh;
     memset(k->still, 0, mesh->header->vertex_count);
     for (uint32_t i = 0; i < mesh->pack->material_count; i++) {
         transfer_mark_still(mesh, i, NOH_SURFACE_TEETH, 1, k->still);
     }
-    k->weights[opening] = 1.0f;
-    const int failed = light_surface_pose(&k->surface, k->weights, error);
-    k->weights[opening] = 0.0f;
-    for (uint32_t v = 0; v < mesh->header->vertex_count && !failed; v++) {
+    for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         float transfer[NOH_SH_COUNT_MAX];
         if (!k->still[v]) continue;
         light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
@@ -285,7 +287,6 @@ static int open_teeth(maker *k, model_error *error)
         memcpy(k->transfers + NOH_SH_COUNT_MAX * (size_t)v, transfer, sizeof transfer);
         k->occlusion[v] = integral(transfer);
     }
-    return failed;
 }
 
 static void make_records(const maker *k, transfer_data *out)
@@ -357,17 +358,17 @@ static void say(const maker *k, uint32_t target)
 
 static int make(maker *k, transfer_data *out, model_error *error)
 {
-    const uint32_t target_count = k->surface.mesh.header->target_count;
+    const uint32_t target_count = k->surface.mesh.header->target_count, opening = opening_target(&k->surface.mesh);
     int failed = 0;
     measure_bind_pose(k);
     for (uint32_t t = 0; t < target_count && !failed; t++) {
         say(k, t);
         failed = measure_target(k, t, error);
+        if (!failed && t == opening) open_teeth(k);
     }
     for (uint32_t t = 0; t < target_count && !failed; t++) {
         take_brightest(k, t);
     }
-    failed = failed || open_teeth(k, error);
     if (!failed) {
         even_out_eyes(k);
         make_records(k, out);
