@@ -75,7 +75,7 @@ noh_result noh_bank_bind(const noh_clip_bank_desc *desc, noh_bank_binding *b, no
     return r;
 }
 
-static int is_same(const noh_skeleton *a, const noh_skeleton *b)
+int noh_bank_same_skeletons(const noh_skeleton *a, const noh_skeleton *b)
 {
     return has_same_joints(a, b) && !memcmp(a->bind_pose, b->bind_pose, a->joint_count * sizeof *a->bind_pose);
 }
@@ -104,7 +104,7 @@ static int fits(const noh_bank_binding *b, noh_bank_found *found)
     clip->bind = built_with.bind_pose;
     if (!b->header || h->skeleton_hash != b->header->hash || h->joint_count != b->header->joint_count ||
         (b->mesh == pack && h->skeleton != b->skeleton_index)) {
-        found->is_mapped = !NOH_PAGE && b->map && is_same(&built_with, b->map->source);
+        found->is_mapped = !NOH_PAGE && b->map && noh_bank_same_skeletons(&built_with, b->map->source);
         return found->is_mapped;
     }
     return 1;

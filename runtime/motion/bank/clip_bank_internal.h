@@ -37,6 +37,8 @@ struct noh_bank_clip {
     uint16_t is_mapped; /* 1: its joints are of the map's source */
 };
 
+/* Whether two skeletons have equal parents and bind poses. */
+int noh_bank_same_skeletons(const noh_skeleton *a, const noh_skeleton *b);
 /* Test whether a map is complete and its target's joints are the skeleton's. */
 int noh_bank_map_fits(const noh_clip_map *map, const noh_skeleton *skeleton);
 

@@ -10,6 +10,7 @@
 #include "core/base/name_internal.h"
 #include "core/base/trig_internal.h"
 #include "motion/anim/root_internal.h"
+#include "motion/bank/clip_bank_internal.h"
 #include "motion/match/match_internal.h"
 #include "noh/base.h"
 #include "noh/clip.h"
@@ -146,10 +147,9 @@ static int is_like(const noh_pack *pack, uint32_t index, const noh_pack *other, 
     noh_skeleton s, t;
     const noh_pack_clip a = clip_of(pack, index, &s), b = clip_of(other, other_index, &t);
     return a.header->skeleton_hash == b.header->skeleton_hash && a.header->clip_bytes == b.header->clip_bytes &&
-           s.joint_count == t.joint_count &&
            memcmp(a.header->root_ends, b.header->root_ends, sizeof a.header->root_ends) == 0 &&
            memcmp(a.bytes, b.bytes, a.header->clip_bytes) == 0 &&
-           (!s.joint_count || memcmp(s.bind_pose, t.bind_pose, s.joint_count * sizeof *s.bind_pose) == 0);
+           (s.joint_count ? noh_bank_same_skeletons(&s, &t) : !t.joint_count);
 }
 
 /* Whether the table's own pack has clips of this name, and a clip of another pack plays that is like none of them. */
