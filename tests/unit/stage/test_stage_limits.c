@@ -415,10 +415,16 @@ static void despawned_actors_leave_nothing(void **state)
     for (int i = 0; i < 2; i++) busy_stage_close(&s[i]);
 }
 
+static void assert_refused(const busy_stage *s, const uint8_t *copy, size_t bytes, const char *why)
+{
+    noh_error error;
+    assert_int_equal(noh_stage_set_state(s->c.stage, copy, bytes, &error), NOH_ERR_DATA);
+    assert_non_null(strstr(error.what, why));
+}
+
 /* A state whose free ragdoll is not at rest is refused: else it would fall on, and equal stages had several hashes. */
 static void a_free_ragdoll_rests_in_states(void **state)
 {
-    noh_error error;
     busy_stage s;
     size_t bytes;
     uint8_t *copy;
@@ -431,8 +437,7 @@ static void a_free_ragdoll_rests_in_states(void **state)
     noh_ragdolls *dolls = noh_stage_ragdoll_kind_of(&s.c.stage->kinds[WALKERS])->dolls;
     const noh_ragdoll_doll *last = &noh_ragdoll_dolls(dolls)[s.ragdoll.count - 1u];
     copy[(const uint8_t *)&last->asleep - own] = 0;
-    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, &error), NOH_ERR_DATA);
-    assert_non_null(strstr(error.what, "ragdoll that no actor has"));
+    assert_refused(&s, copy, bytes, "ragdoll that no actor has");
     free(copy);
     busy_stage_close(&s);
 }
@@ -440,7 +445,6 @@ static void a_free_ragdoll_rests_in_states(void **state)
 /* Two actors with one ragdoll would both move it. */
 static void a_ragdoll_has_one_actor_in_states(void **state)
 {
-    noh_error error;
     busy_stage s;
     size_t bytes;
     uint8_t *copy;
@@ -454,8 +458,7 @@ static void a_ragdoll_has_one_actor_in_states(void **state)
     assert_true(falls->doll && !walks->doll);
     copy = test_aligned(own, bytes);
     memcpy(copy + ((const uint8_t *)walks - own), falls, walkers->modules[NOH_SLOT_BODY].stride);
-    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, &error), NOH_ERR_DATA);
-    assert_non_null(strstr(error.what, "two actors have one ragdoll"));
+    assert_refused(&s, copy, bytes, "two actors have one ragdoll");
     free(copy);
     busy_stage_close(&s);
 }
