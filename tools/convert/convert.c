@@ -38,13 +38,6 @@
  * largest error in pixels (low_stage.h). */
 #define SKIP_SHARE (1.0f / 3.0f)
 
-static int out_of_memory(model_error *error)
-{
-    snprintf(error->what, sizeof error->what, "out of memory");
-    error->where[0] = 0;
-    return 1;
-}
-
 static int has_moves(const source *s)
 {
     for (uint32_t i = 0; i < s->set_count; i++) {
@@ -188,7 +181,7 @@ static int check_own_pack(byte_buffer *out, const convert_options *options, mode
     }
     if (warnings && stage_warn(&pack, warnings)) {
         buffer_free(out);
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     if (report) {
         convert_report_textures(report, &pack);
@@ -231,7 +224,7 @@ static int strip(byte_buffer *out, const strip_levels *levels, model_error *erro
     (void)noh_pack_open(out->bytes, out->count, &pack, NULL); /* check_own_pack opened it */
     first = calloc(pack.runs[NOH_CHUNK_MESH].count + 1u, sizeof *first);
     failed = first ? strip_levels_of(levels, &pack, first, error) || pack_strip(&pack, first, &stripped, error)
-                   : out_of_memory(error);
+                   : model_fail_memory(error);
     free(first);
     buffer_free(out);
     *out = stripped;
@@ -275,7 +268,7 @@ static int trim_textures(model *m, const mesh_levels *levels, const convert_opti
 {
     texture_trimmed done;
     if (options->whole_textures || options->only == CONVERT_CLIPS) return 0;
-    if (texture_trim(m, levels, &done)) return out_of_memory(error);
+    if (texture_trim(m, levels, &done)) return model_fail_memory(error);
     if (options->report && done.count) {
         fprintf(options->report,
                 "%u of %u textures trimmed to what triangles read: %.0f%% of their texels are left "
@@ -296,7 +289,7 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     int failed;
     if (encoded_make(m->mesh_count, &meshes)) {
         encoded_free(&meshes);
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
     settings.report = options->report;
     settings.warnings = convert_warnings(options);
@@ -305,11 +298,11 @@ static int convert_source(const source *s, void *const *chunks, const convert_op
     settings.m = s->m;
     failed = make_wrinkles(s, chunks[NOH_CHUNK_RECIPE], options, error);
     failed = failed || set_textures(s, options, error);
-    if (!failed && options->only != CONVERT_CLIPS && extent_warn(s->m)) failed = out_of_memory(error);
+    if (!failed && options->only != CONVERT_CLIPS && extent_warn(s->m)) failed = model_fail_memory(error);
     if (!failed && options->only != CONVERT_MESH &&
         (weights_warn(s->m, s->sets, s->set_count) || size_warn(s->m, s->sets, s->set_count, settings.clip.error_cm) ||
          clips_mirror_warn(s->m, s->sets, s->set_count))) {
-        failed = out_of_memory(error);
+        failed = model_fail_memory(error);
     }
     if (settings.warnings) report_warnings(settings.warnings, s);
     failed = failed || pack_check_model(m, error) || encode_meshes(s, m, options, &meshes, error) ||
@@ -374,10 +367,10 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
         if (priority_assign(s->m, options->priorities[i], error)) return 1;
     }
     if (options->only == CONVERT_CLIPS) return 0;
-    if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return out_of_memory(error);
-    if (teeth_paint(s->m)) return out_of_memory(error);
+    if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return model_fail_memory(error);
+    if (teeth_paint(s->m)) return model_fail_memory(error);
     if (!options->keep_looks && (eye_paint(s->m) || eye_shade_clear(s->m) || lash_strips_hide(s->m)))
-        return out_of_memory(error);
+        return model_fail_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }
@@ -425,7 +418,7 @@ static int check_rows(const char *option, const char *path, int is_used, model *
     return model_warn(m, "%s %.200s changes nothing: %s", option, path,
                       is_used ? "the file has no rows"
                               : "it is for clips of other files; name such a file after the model")
-               ? out_of_memory(&failure->error)
+               ? model_fail_memory(&failure->error)
                : 0;
 }
 
@@ -470,7 +463,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
     failure->file = input_count ? inputs[0] : options->texts[NOH_CHUNK_TERRAIN];
     if (!all || (!input_count && !(all[0].m = model_new()))) {
         free(all);
-        return out_of_memory(&failure->error);
+        return model_fail_memory(&failure->error);
     }
     inputs_record(options->inputs);
     failed = use_names(options, failure) || read_all(inputs, input_count, options, all, failure);
@@ -482,7 +475,7 @@ int convert_files(const char *const *inputs, int input_count, const convert_opti
                  apply_events(options, &all[base], &failure->error) ||
                  read_chunks(options, &all[base], 0, chunks, failure) ||
                  (joint_order_sets(all[base].sets, all[base].set_count, all[base].m) &&
-                  out_of_memory(&failure->error)) ||
+                  model_fail_memory(&failure->error)) ||
                  read_chunks(options, &all[base], 1, chunks, failure) ||
                  convert_source(&all[base], chunks, options, out, &failure->error);
     }

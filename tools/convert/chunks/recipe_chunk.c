@@ -10,14 +10,6 @@
 #include "noh/format.h"
 #include "noh/low_core.h"
 
-static int has_target(const model *m, const char *name)
-{
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (model_find_target(&m->meshes[i], name) != MODEL_NONE) return 1;
-    }
-    return 0;
-}
-
 /* The text of a recipe. A target that no mesh has is a warning: a recipe may serve several faces, and missing
  * targets fall back. */
 static int read_recipe_text(const convert_options *options, const source *s, recipe_text **out,
@@ -35,12 +27,12 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
             continue;
         }
         const int is_joint = strncmp(row->channel, "joint-", 6) == 0;
-        const int is_there = is_joint ? source_has_joint(s, row->target) : has_target(s->m, row->target);
+        const int is_there = is_joint ? source_has_joint(s, row->target) : model_has_target(s->m, row->target);
         if (!is_there && model_warn(s->m, "%s:%u: no %s '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
                                     is_joint ? "skeleton has the joint" : "mesh has the target", row->target)) {
             return model_fail_memory(&failure->error);
         }
-        if ((row->channel[0] == '+' || row->channel[0] == ':') && !has_target(s->m, row->channel + 1) &&
+        if ((row->channel[0] == '+' || row->channel[0] == ':') && !model_has_target(s->m, row->channel + 1) &&
             model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
                        row->channel + 1)) {
             return model_fail_memory(&failure->error);
@@ -48,8 +40,9 @@ static int read_recipe_text(const convert_options *options, const source *s, rec
     }
     for (uint32_t i = 0; i < (*out)->wrinkle_count; i++) {
         const wrinkle_row *row = &(*out)->wrinkles[i];
-        if (!has_target(s->m, row->target) && model_warn(s->m, "%s:%u: no mesh has the target '%s'",
-                                                         options->texts[NOH_CHUNK_RECIPE], row->line, row->target)) {
+        if (!model_has_target(s->m, row->target) &&
+            model_warn(s->m, "%s:%u: no mesh has the target '%s'", options->texts[NOH_CHUNK_RECIPE], row->line,
+                       row->target)) {
             return model_fail_memory(&failure->error);
         }
     }

@@ -223,6 +223,14 @@ uint32_t model_find_target(const model_mesh *mesh, const char *name)
     return MODEL_NONE;
 }
 
+int model_has_target(const model *m, const char *name)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (model_find_target(&m->meshes[i], name) != MODEL_NONE) return 1;
+    }
+    return 0;
+}
+
 float model_mesh_scale(const model *m, uint32_t mesh)
 {
     double largest = 0.0;

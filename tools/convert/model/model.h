@@ -264,6 +264,7 @@ float model_mesh_scale(const model *m, uint32_t mesh);
 
 /* The mesh's target of this name; MODEL_NONE: there is none. */
 uint32_t model_find_target(const model_mesh *mesh, const char *name);
+int model_has_target(const model *m, const char *name); /* 1: any mesh has it */
 
 /* Fill in missing attributes (NULL arrays and MODEL_MISSING_* bits): normals
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of

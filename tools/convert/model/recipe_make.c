@@ -13,11 +13,6 @@
 
 /* ---- extras ---- */
 
-static int has_target(const model_mesh *mesh, const char *name)
-{
-    return model_find_target(mesh, name) != MODEL_NONE;
-}
-
 static int is_corrective(const recipe_row *row)
 {
     return row->channel[0] == '+';
@@ -128,7 +123,7 @@ static int add_bite(recipe_text *recipe, const model_mesh *mesh)
 int recipe_add_lips(recipe_text *recipe, const model *m)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        if (has_target(&m->meshes[i], LIP_TARGET)) return add_bite(recipe, &m->meshes[i]);
+        if (model_find_target(&m->meshes[i], LIP_TARGET) != MODEL_NONE) return add_bite(recipe, &m->meshes[i]);
     }
     return 0;
 }
@@ -266,13 +261,13 @@ static int read_part(const model_mesh *mesh, const char *from, size_t size, part
     out->peak = 1.0f;
     if (size > 2 && from[size - 1] >= '0' && from[size - 1] <= '9' && from[size - 2] >= '1' && from[size - 2] <= '9') {
         out->name[size - 2] = '\0';
-        if (has_target(mesh, out->name)) {
+        if (model_find_target(mesh, out->name) != MODEL_NONE) {
             out->peak = (float)(10 * (from[size - 2] - '0') + (from[size - 1] - '0')) / 100.0f;
             return 1;
         }
         out->name[size - 2] = from[size - 2];
     }
-    return has_target(mesh, out->name);
+    return model_find_target(mesh, out->name) != MODEL_NONE;
 }
 
 /* Cut a name at those underscores whose bits are set. 0: not all parts are targets, or one is there twice. */

@@ -89,13 +89,6 @@ static const char *const part_words[PARTS] = { "_BRW_", "_EYE_", "_MTH_" };
 #define EYES 1u
 #define MOUTH 2u
 
-static int model_has(const model *m, const char *name)
-{
-    int has = 0;
-    for (uint32_t i = 0; i < m->mesh_count; i++) has |= model_find_target(&m->meshes[i], name) != MODEL_NONE;
-    return has;
-}
-
 /* Another target of the same set: name with its word replaced, and with another end (NULL: its own). */
 static int sibling(const model *m, const char *name, const char *word, const char *end, char out[NOH_NAME_BYTES_MAX])
 {
@@ -103,7 +96,7 @@ static int sibling(const model *m, const char *name, const char *word, const cha
     const int bytes = at ? snprintf(out, NOH_NAME_BYTES_MAX, "%.*s%s%s", (int)(at - name), name, word,
                                     end ? end : at + sizeof whole_word - 1u)
                          : -1;
-    return bytes > 0 && bytes < (int)NOH_NAME_BYTES_MAX && model_has(m, out);
+    return bytes > 0 && bytes < (int)NOH_NAME_BYTES_MAX && model_has_target(m, out);
 }
 
 /* The share of a whole's motion that its parts lack. */

@@ -40,11 +40,6 @@ static void wrinkles_free(wrinkles *w)
     memset(w, 0, sizeof *w);
 }
 
-static int out_of_memory(model_error *error)
-{
-    return model_fail(error, "", "out of memory while making wrinkles");
-}
-
 /* ---- which surface ---- */
 
 /* Cards of hair and lashes, unlit materials, toons, eyes and teeth have no creases. */
@@ -199,15 +194,15 @@ static int decode_mask(const wrinkle_field *f, wrinkles *w)
 static int fill(const wrinkle_field *f, const wrinkle_folds *folds, const wrinkle_raster *r,
                 const wrinkle_settings *settings, wrinkles *w, model_error *error)
 {
-    if (settings->map ? read_map(settings->map, w, error) : generate_map(f, folds, r, w) && out_of_memory(error)) {
+    if (settings->map ? read_map(settings->map, w, error) : generate_map(f, folds, r, w) && model_fail_memory(error)) {
         return 1;
     }
     if (settings->mask) {
         if (region_mask_read(settings->mask, &w->mask, error)) return blame(settings->mask, error);
     } else if (generate_mask(f, folds, mask_size(settings, folds != NULL, r->width), &w->mask)) {
-        return out_of_memory(error);
+        return model_fail_memory(error);
     }
-    return decode_mask(f, w) && out_of_memory(error);
+    return decode_mask(f, w) && model_fail_memory(error);
 }
 
 /* ---- the table ---- */
@@ -417,21 +412,21 @@ static int make_mesh(model *m, model_mesh *mesh, const wrinkle_settings *setting
     wrinkle_folds folds;
     const char *why;
     int is_face = 0, failed = choose_surface(m, mesh, settings->mask && has_rows(settings->recipe, mesh), &f) &&
-                              out_of_memory(error);
+                              model_fail_memory(error);
     why = failed ? NULL : objection(mesh, &f);
     if (!failed && !why) {
-        failed = lay_out(m, mesh, settings, &f, &r, &folds, &is_face, &why) && out_of_memory(error);
+        failed = lay_out(m, mesh, settings, &f, &r, &folds, &is_face, &why) && model_fail_memory(error);
     }
     if (!failed && why) {
         failed = !faces_alone(settings) && model_warn(m, "mesh '%s' gets no wrinkles: %s", mesh->name, why) &&
-                 out_of_memory(error);
+                 model_fail_memory(error);
     } else if (!failed) {
         failed = fill(&f, is_face ? &folds : NULL, &r, settings, &w, error);
-        failed = failed || (keep_mask(settings, &w) && out_of_memory(error));
+        failed = failed || (keep_mask(settings, &w) && model_fail_memory(error));
         if (!failed) take_rows(settings->recipe, mesh, w.matrix);
-        failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && out_of_memory(error));
+        failed = failed || (settings->mask && warn_of_idle(m, mesh, &w) && model_fail_memory(error));
         if (!failed) report(settings, m, mesh, f.material, &w);
-        failed = failed || (add_to_model(m, mesh, &f, settings, is_face, &w) && out_of_memory(error));
+        failed = failed || (add_to_model(m, mesh, &f, settings, is_face, &w) && model_fail_memory(error));
         *made += !failed;
     }
     wrinkles_free(&w);
@@ -460,7 +455,7 @@ int wrinkles_make(model *m, const wrinkle_settings *settings, model_error *error
                model_warn(
                    m,
                    "the recipe's wrinkle rows have no effect without --wrinkles auto, --wrinkle-map or --region-mask") &&
-               out_of_memory(error);
+               model_fail_memory(error);
     }
     if (!made) {
         return model_fail(error, "", "no mesh can have wrinkles: %s",
