@@ -23,7 +23,7 @@ const within = (value, [from, to]) => Math.max(from, Math.min(to, value));
 // ---- what is framed, much as `noh render --camera` does (figure_shape.c) ----
 
 const faceIsAll = 0.4, upperShare = 0.45; // of the figure's height: a higher face is a head alone; of a body, its upper part
-const belowFace = [0.12, 0.12, 0.9], aboveFace = [0.12, 0.9, 0.35]; // room around a face, of its height: less at the sides, so that it fills a tall screen; above and behind, a drawn head is half hair
+const belowFace = [0.12, 0.12, 1.3], aboveFace = [0.12, 0.9, 0.35]; // room around a face, of its height: less at the sides, so that it fills a tall screen; above and behind, a drawn head is half hair
 
 // The box of a view: 'face', 'upper' or 'full'. Boxes: minimum, maximum. face: what targets move; its minimum is above its
 // maximum if there is none.
