@@ -59,7 +59,7 @@ static noh_result check_binding(const noh_check *check, const noh_clip_header *h
         return noh_check_fields(check, fields, 3, "clip without joints names a skeleton, or has joint errors", 0);
     }
     if (h->skeleton >= pack->runs[NOH_CHUNK_SKELETON].count) {
-        return noh_check_fail(check, "clip names a skeleton that is not there", offsetof(noh_clip_header, skeleton));
+        return noh_check_fail(check, "clip names a missing skeleton", offsetof(noh_clip_header, skeleton));
     }
     skeleton = noh_pack_chunk_at(pack, NOH_CHUNK_SKELETON, h->skeleton);
     if (skeleton->joint_count != h->joint_count) {

@@ -71,7 +71,7 @@ noh_result noh_check_far_joints(noh_check *check)
     mesh = noh_check_subject(check, NOH_CHUNK_FAR_JOINTS, NOH_CHUNK_MESH);
     if (!mesh || mesh->skin == NOH_NONE || mesh->flags & NOH_MESH_DUAL_QUATERNION) {
         return noh_check_fail(check,
-                              "virtual joints name a mesh that is not there, not skinned by matrices, or out of "
+                              "virtual joints name a missing mesh or one not skinned by matrices, or are out of "
                               "order",
                               offsetof(noh_far_joints_header, mesh));
     }

@@ -119,7 +119,7 @@ static noh_result check_values(const graph_view *g, const noh_pack_graph_node *n
         NODE(flags, n->flags > 3u),
         NODE(fade_ticks, (n->flags & 1u) && !n->fade_ticks),
     };
-    noh_result result = CHECK(missing, "graph node names a parameter or mask that is not there", n);
+    noh_result result = CHECK(missing, "graph node names a missing parameter or mask", n);
     return result ? result
                   : CHECK(unknown,
                           "graph node has a value that is not finite, an unknown curve or flags, or is inertial "
@@ -166,7 +166,7 @@ static noh_result check_space_values(const graph_view *g, const noh_pack_graph_s
     }
     for (uint32_t i = 0; i < 3u * s->triangle_count; i++) {
         if (triangles[i] >= s->point_count)
-            return fail_at(g, "triangle of a blend space names a point that is not there", triangles + i);
+            return fail_at(g, "triangle of a blend space names a missing point", triangles + i);
     }
     return NOH_OK;
 }
@@ -178,7 +178,7 @@ static noh_result check_space(const graph_view *g, const noh_pack_graph_node *n)
         NODE(first_item, n->first_item >= g->h->space_count),
         NODE(item_count, n->item_count != 1u),
     };
-    noh_result result = CHECK(rows, "graph node names a blend space that is not there", n);
+    noh_result result = CHECK(rows, "graph node names a missing blend space", n);
     if (!result) {
         const noh_check_field ranges[] = {
             FIELD(noh_pack_graph_space, first_point, s->first_point > g->h->point_count),
@@ -216,7 +216,7 @@ static noh_result check_transition(const graph_view *g, const noh_pack_graph_nod
     noh_result result = CHECK(states, "transition is not between two states of its machine", t);
     return result ? result
                   : CHECK(unknown,
-                          "transition has an unknown condition, curve or flags, a parameter that is not there, a "
+                          "transition has an unknown condition, curve or flags, a missing parameter, a "
                           "threshold that is not finite, or is inertial without a time",
                           t);
 }

@@ -92,7 +92,7 @@ noh_result noh_check_influences(noh_check *check)
     if (result) return result;
     mesh = noh_check_subject(check, NOH_CHUNK_INFLUENCES, NOH_CHUNK_MESH);
     if (!mesh || mesh->skin == NOH_NONE) {
-        return noh_check_fail(check, "influence list names a mesh that is not there or not skinned, or is out of order",
+        return noh_check_fail(check, "influence list names a mesh that is missing or not skinned, or is out of order",
                               offsetof(noh_influences_header, mesh));
     }
     result = check_arrays(check, h);

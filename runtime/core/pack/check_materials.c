@@ -16,7 +16,7 @@ static noh_result check_texture_of(const noh_check *check, uint32_t texture, int
         return NOH_OK;
     }
     if (!h) {
-        return noh_check_fail(check, "material names a texture that is not there", where);
+        return noh_check_fail(check, "material names a missing texture", where);
     }
     return (h->flags & NOH_TEXTURE_LINEAR) == (is_data ? NOH_TEXTURE_LINEAR : 0u)
                ? NOH_OK

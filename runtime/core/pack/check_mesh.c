@@ -88,7 +88,7 @@ static noh_result check_skin_counts(const noh_check *check, const noh_mesh_heade
         return noh_check_fields(check, fields, 4, "rigid mesh has influences, palettes or a skin's flags", 0);
     }
     if (h->skin >= check->pack->runs[NOH_CHUNK_SKIN].count) {
-        return noh_check_fail(check, "mesh names a skin that is not there", offsetof(noh_mesh_header, skin));
+        return noh_check_fail(check, "mesh names a missing skin", offsetof(noh_mesh_header, skin));
     }
     if (n != 1 && n != 2 && n != 4 && n != 8) {
         return noh_check_fail(check, "skinned mesh has neither 1, 2, 4 nor 8 influences a vertex",

@@ -79,8 +79,7 @@ noh_result noh_check_submeshes(const noh_check *check, const noh_mesh_header *h)
         }
         next = s->first_index + s->index_count;
         if (s->material != NOH_NONE && s->material >= check->pack->material_count) {
-            return noh_check_fail(check, "submesh names a material that is not there",
-                                  at + offsetof(noh_submesh, material));
+            return noh_check_fail(check, "submesh names a missing material", at + offsetof(noh_submesh, material));
         }
     }
     return NOH_OK;
@@ -171,8 +170,7 @@ noh_result noh_check_draws(const noh_check *check, const noh_mesh_header *h)
     for (uint32_t s = 0; s < h->submesh_count; s++) {
         uint64_t at = h->submeshes_offset + (uint64_t)s * sizeof *submeshes;
         if (submeshes[s].palette >= (h->palette_count ? h->palette_count : 1u)) {
-            return noh_check_fail(check, "submesh names a palette that is not there",
-                                  at + offsetof(noh_submesh, palette));
+            return noh_check_fail(check, "submesh names a missing palette", at + offsetof(noh_submesh, palette));
         }
         for (uint32_t i = 0; h->palette_count > 1 && i < submeshes[s].index_count; i++) {
             size_t k = (size_t)submeshes[s].first_index + i;

@@ -27,7 +27,7 @@ static noh_result check_node(const noh_check *check, const noh_nodes_header *h, 
         return noh_check_fail(check, "node comes before its parent", at + offsetof(noh_node, parent));
     }
     if (node->mesh != NOH_NONE && node->mesh >= check->pack->runs[NOH_CHUNK_MESH].count) {
-        return noh_check_fail(check, "node names a mesh that is not there", at + offsetof(noh_node, mesh));
+        return noh_check_fail(check, "node names a missing mesh", at + offsetof(noh_node, mesh));
     }
     if (node->first_weight != NOH_NONE &&
         (node->mesh == NOH_NONE || node->first_weight > h->weight_count ||

@@ -30,7 +30,7 @@ noh_result noh_check_skin(noh_check *check)
         return noh_check_fail(check, "skin has no joints or too many", offsetof(noh_skin_header, joint_count));
     }
     if (h->skeleton >= check->pack->runs[NOH_CHUNK_SKELETON].count) {
-        return noh_check_fail(check, "skin names a skeleton that is not there", offsetof(noh_skin_header, skeleton));
+        return noh_check_fail(check, "skin names a missing skeleton", offsetof(noh_skin_header, skeleton));
     }
     result = noh_check_array(check, offsetof(noh_skin_header, joints_offset), h->joint_count, 2);
     if (!result) result = noh_check_array(check, offsetof(noh_skin_header, inverse_bind_offset), h->joint_count, 48);
@@ -133,7 +133,7 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
         uint32_t palette = noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS;
         noh_result result;
         if (palette >= h->palette_count) {
-            return noh_check_fail(check, "vertex's palette is not there",
+            return noh_check_fail(check, "vertex has a missing palette",
                                   h->attributes_offset + (uint64_t)v * h->attribute_stride);
         }
         result = check_record(check, words + (size_t)v * stride, h->influence_count, palettes[palette].joint_count,

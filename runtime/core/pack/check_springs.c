@@ -20,7 +20,7 @@ static noh_result check_header(const noh_check *check, const noh_springs_header 
 {
     const noh_skeleton_header *skeleton = noh_check_subject(check, NOH_CHUNK_SPRINGS, NOH_CHUNK_SKELETON);
     if (!skeleton) {
-        return noh_check_fail(check, "springs name a skeleton that is not there, or are out of order",
+        return noh_check_fail(check, "springs name a missing skeleton, or are out of order",
                               offsetof(noh_springs_header, skeleton));
     }
     const noh_check_field fields[] = {

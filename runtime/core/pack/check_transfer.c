@@ -25,7 +25,7 @@ static noh_result check_mesh_counts(const noh_check *check, const noh_transfer_h
 {
     const noh_mesh_header *mesh = noh_check_subject(check, NOH_CHUNK_TRANSFER, NOH_CHUNK_MESH);
     if (!mesh) {
-        return noh_check_fail(check, "transfer names a mesh that is not there, or is out of order",
+        return noh_check_fail(check, "transfer names a missing mesh, or is out of order",
                               offsetof(noh_transfer_header, mesh));
     }
     const noh_check_field counts[] = {

@@ -9,7 +9,7 @@ static noh_result check_header(const noh_check *check, const noh_wrinkles_header
 {
     const noh_mesh_header *mesh = noh_check_subject(check, NOH_CHUNK_WRINKLES, NOH_CHUNK_MESH);
     if (!mesh) {
-        return noh_check_fail(check, "wrinkles name a mesh that is not there, or are out of order",
+        return noh_check_fail(check, "wrinkles name a missing mesh, or are out of order",
                               offsetof(noh_wrinkles_header, mesh));
     }
     if (h->target_count != mesh->target_count) {
@@ -37,8 +37,7 @@ static noh_result check_colors(const noh_check *check, const noh_wrinkles_header
                    : NOH_OK;
     }
     if (h->color_material >= pack->material_count) {
-        return noh_check_fail(check, "colours name a material that is not there",
-                              offsetof(noh_wrinkles_header, color_material));
+        return noh_check_fail(check, "colours name a missing material", offsetof(noh_wrinkles_header, color_material));
     }
     if (!t || !(t->flags & NOH_TEXTURE_LINEAR)) {
         return noh_check_fail(check, "colours have no map, or one of colours in place of data",

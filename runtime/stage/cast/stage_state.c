@@ -231,7 +231,7 @@ static noh_result check_kind(const reader *r, uint32_t kind, noh_error *error)
     for (uint32_t i = 0; i < k->desc->actor_count && result == NOH_OK; i++) {
         const uint8_t *character = in_copy(r, k->characters + (size_t)i * k->character_bytes);
         what = bad_actor(r, k, &actors[i]);
-        if (!what && !actors[i].alive && !is_gone(r, k, i)) what = "state: an actor that is not there has a state";
+        if (!what && !actors[i].alive && !is_gone(r, k, i)) what = "state: a despawned actor has a state";
         if (!what) what = bad_held(k, in_copy(r, k->held + (size_t)i * k->desc->held_float_count));
         if (what) return noh_fail(error, NOH_ERR_DATA, what, k->first_actor + i, 0);
         if (actors[i].alive) result = noh_character_check(character, k->character_bytes, &k->set, &k->table, error);

@@ -217,7 +217,7 @@ static noh_result check_desc(const noh_springs_desc *d, noh_error *error)
         const noh_spring_capsule *c = &d->colliders[i];
         if (c->joint >= d->skeleton.joint_count || !noh_is_finite3(c->from) || !noh_is_finite3(c->to) ||
             !(c->radius >= 0.0f) || !noh_is_finite(c->radius / d->metres)) {
-            return noh_fail(error, NOH_ERR_ARG, "springs: a collider's joint is not there, or a number is bad", i, 0);
+            return noh_fail(error, NOH_ERR_ARG, "springs: a collider's joint does not exist, or a number is bad", i, 0);
         }
     }
     return NOH_OK;

@@ -146,8 +146,8 @@ static void lie(noh_wrinkles_header *h, uint32_t which)
 
 static void chunks_that_lie_are_refused(void **state)
 {
-    static const char *const words[] = { "a material that is not there", "have no map", "does not begin at the end",
-                                         "without colours has",          "longer than", "reserved" };
+    static const char *const words[] = { "a missing material",  "have no map", "does not begin at the end",
+                                         "without colours has", "longer than", "reserved" };
     char path[1024];
     noh_file file;
     noh_error error = { NOH_OK, "", 0, 0 };

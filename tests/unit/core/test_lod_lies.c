@@ -225,8 +225,8 @@ static void have_more_rectangles(forged *f)
     X(submesh_not_triangles, f->submeshes[2][0].index_count -= 1, "submesh indices lie outside")                     \
     X(submesh_vertices_outside, f->submeshes[2][0].vertex_count = f->h[2].vertex_count + 1u,                         \
       "submesh vertices lie outside")                                                                                \
-    X(submesh_material, f->submeshes[1][0].material = 2, "material that is not there")                               \
-    X(submesh_palette, f->submeshes[1][0].palette = 1, "palette that is not there")                                  \
+    X(submesh_material, f->submeshes[1][0].material = 2, "missing material")                                         \
+    X(submesh_palette, f->submeshes[1][0].palette = 1, "missing palette")                                            \
     X(target_other_name, f->targets[1][0].name = f->targets[0][1].name, "target differs from the full mesh's")       \
     X(target_other_bits, f->targets[2][1].position_bits -= 1, "target differs from the full mesh's")                 \
     X(target_other_scale, f->targets[1][1].position_scale *= 2.0f, "target differs from the full mesh's")            \
@@ -258,7 +258,7 @@ static void have_more_rectangles(forged *f)
     X(other_palette_joints, f->h[1].palette_joints_offset += 2, "differs in what all levels share")               \
     X(other_joint_boxes, f->h[1].joint_boxes_offset += 16, "differs in what all levels share")                    \
     X(submesh_of_another_palette, f->submeshes[2][0].palette ^= 1u, "vertex of another palette")                  \
-    X(submesh_of_no_palette, f->submeshes[2][0].palette = 40, "palette that is not there")                        \
+    X(submesh_of_no_palette, f->submeshes[2][0].palette = 40, "missing palette")                                  \
     X(index_of_another_palette, f->indices[2][0] = f->indices[2][f->submeshes[2][1].first_index],                 \
       "vertex of another palette")                                                                                \
     X(vertex_of_no_palette, *reference(f, 0) |= 0xffc00000u, "vertex of another palette")                         \

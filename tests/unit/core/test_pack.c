@@ -520,7 +520,7 @@ static float nan_value(void)
     X(node_parent_is_itself, DATA, "parent", f->nodes[1].parent = 1)                                                 \
     X(node_parent_after_child, DATA, "parent", f->nodes[0].parent = 1)                                               \
     X(node_parent_missing, DATA, "parent", f->nodes[1].parent = 0xfffffffeu)                                         \
-    X(node_mesh_missing, DATA, "mesh that is not there", f->nodes[1].mesh = 1)                                       \
+    X(node_mesh_missing, DATA, "missing mesh", f->nodes[1].mesh = 1)                                                 \
     X(node_transform_nan, DATA, "not finite", f->nodes[1].rotation[0] = nan_value())                                 \
     X(node_world_infinite, DATA, "not finite", f->nodes[0].world[11] = INFINITE)                                     \
     X(node_world_beyond, DATA, "larger than 10^12", f->nodes[0].world[11] = 3e38f)                                   \
@@ -530,7 +530,7 @@ static float nan_value(void)
     X(node_flags, DATA, "flags", f->nodes[0].flags = 1)                                                              \
     X(node_name, DATA, "outside the strings", f->nodes[0].name = 0xffffffffu)                                        \
     X(node_weight_nan, DATA, "weight is not finite", f->node_weights[0] = nan_value())                               \
-    X(clip_joints_without_skeleton, DATA, "skeleton that is not there", f->clip->joint_count = 1)                    \
+    X(clip_joints_without_skeleton, DATA, "missing skeleton", f->clip->joint_count = 1)                              \
     X(clip_skeleton_without_joints, DATA, "names a skeleton", f->clip->skeleton = 0)                                 \
     X(clip_hash_without_joints, DATA, "names a skeleton", f->clip->skeleton_hash = 1)                                \
     X(clip_joint_errors_without_joints, DATA, "joint errors", f->clip->joint_error_count = 1)                        \

@@ -79,7 +79,7 @@ static forged reach(uint8_t *bytes)
 #define LIES(X)                                                                                                     \
     X(skin_without_joints, f->skin->joint_count = 0, "no joints")                                                   \
     X(skin_of_too_many_joints, f->skin->joint_count = 70000, "too many")                                            \
-    X(skin_of_no_skeleton, f->skin->skeleton = 1, "skeleton that is not there")                                     \
+    X(skin_of_no_skeleton, f->skin->skeleton = 1, "missing skeleton")                                               \
     X(skin_joint_outside, f->joints[1] = 6, "joint that its skeleton does not have")                                \
     X(skin_bind_nan, f->inverse_bind[17] = NAN, "inverse bind matrix is not finite")                                \
     X(skin_bind_infinite, f->inverse_bind[0] = INFINITY, "inverse bind matrix is not finite")                       \
@@ -88,7 +88,7 @@ static forged reach(uint8_t *bytes)
     X(scales_beyond, f->bind_pose[7] = f->bind_pose[17] = f->bind_pose[27] = 1e5f, "joint and its ancestors")       \
     X(reach_beyond, (f->bind_pose[7] = 1e5f, f->bind_pose[15] = 1e8f), "joint and its ancestors")                   \
     X(joint_box_beyond, f->joint_boxes[3] = 3e38f, "larger than 10^12")                                             \
-    X(mesh_of_no_skin, f->mesh->skin = 1, "skin that is not there")                                                 \
+    X(mesh_of_no_skin, f->mesh->skin = 1, "missing skin")                                                           \
     X(rigid_with_influences, f->mesh->skin = NOH_NONE, "rigid mesh has influences")                                 \
     X(three_influences, f->mesh->influence_count = 3, "neither 1, 2, 4 nor 8")                                      \
     X(no_influences, f->mesh->influence_count = 0, "neither 1, 2, 4 nor 8")                                         \
@@ -108,7 +108,7 @@ static forged reach(uint8_t *bytes)
     X(later_texel, *f->texels += 1, "texel of a later vertex")                                                      \
     X(no_such_palette, *f->texels |= 0xff400000u, "of another palette")                                             \
     X(another_palette, *f->texels ^= 0x00400000u, "")                                                               \
-    X(submesh_without_palette, f->submeshes[0].palette = 40, "palette that is not there")                           \
+    X(submesh_without_palette, f->submeshes[0].palette = 40, "missing palette")                                     \
     X(submesh_of_another_palette, f->submeshes[0].palette = 1, "vertex of another palette")                         \
     X(submeshes_overlap, f->submeshes[1].first_index -= 3, "overlap")                                               \
     X(joint_box_nan, f->joint_boxes[2] = NAN, "box is not finite")                                                  \

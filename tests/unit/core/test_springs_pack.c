@@ -89,7 +89,7 @@ static void forge(forged *f)
 
 /* name, a word of the message, the lie */
 #define FORGERIES(X)                                                                \
-    X(skeleton_missing, "name a skeleton", f->h->skeleton = 1)                      \
+    X(skeleton_missing, "name a missing skeleton", f->h->skeleton = 1)              \
     X(joint_count, "count of springs", f->h->joint_count += 1)                      \
     X(no_rows, "count of springs", f->h->row_count = 0)                             \
     X(rows_overflow, "count of springs", f->h->row_count = 0xffffffffu)             \
@@ -97,7 +97,7 @@ static void forge(forged *f)
     X(no_chains, "count of springs", f->h->chain_count = 0)                         \
     X(chains_overflow, "count of springs", f->h->chain_count = 0xffffffffu)         \
     X(colliders_overflow, "count of springs", f->h->collider_count = 33)            \
-    X(reserved, "reserved field", f->h->reserved[3] = 1)                          \
+    X(reserved, "reserved field", f->h->reserved[3] = 1)                            \
     X(rows_elsewhere, "begin", f->h->rows_offset += 16)                             \
     X(chains_elsewhere, "begin", f->h->chains_offset = 0)                           \
     X(colliders_elsewhere, "begin", f->h->colliders_offset = 0xfffffff0u)           \

@@ -196,7 +196,7 @@ static void forge(forged *f)
 
 /* name, a word of the message, the lie */
 #define FORGERIES(X)                                                                 \
-    X(mesh_missing, "name a mesh", f->h->mesh = 1)                                   \
+    X(mesh_missing, "name a missing mesh", f->h->mesh = 1)                           \
     X(level_0, "do not fit", f->h->level = 0)                                        \
     X(level_past, "do not fit", f->h->level = LEVELS)                                \
     X(level_of_targets, "accumulation texels", f->h->level -= 1)                     \

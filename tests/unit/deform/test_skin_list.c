@@ -243,7 +243,7 @@ static void forge(forged *f)
 }
 
 #define FORGERIES(X)                                                    \
-    X(mesh_missing, "names a mesh", f->h->mesh = 1)                     \
+    X(mesh_missing, "names a mesh that is missing", f->h->mesh = 1)     \
     X(reserved, "reserved", f->h->reserved[7] = 1)                      \
     X(more_vertices, "begin", f->h->vertex_count += 8)                  \
     X(vertices_overflow, "past", f->h->vertex_count = 0xffffffffu)      \

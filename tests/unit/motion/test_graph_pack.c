@@ -489,62 +489,62 @@ static noh_pack_graph_node *kind(forged *f, uint32_t which)
     return NULL;
 }
 
-#define LIES                                                                                              \
-    X(f.h->node_count = 0, "count of a graph is")                                                         \
-    X(f.h->node_count = 257, "count of a graph is")                                                       \
-    X(f.h->child_count++, "count of a graph is")                                                          \
-    X(f.h->clip_count = 65, "count of a graph is")                                                        \
-    X(f.h->clip_count--, "array does not begin")                                                          \
-    X(f.h->param_count = 257, "count of a graph is")                                                      \
-    X(f.h->name_count = 5000, "count of a graph is")                                                      \
-    X(f.h->reserved[1] = 1, "count of a graph is")                                                        \
-    X(f.h->machine_count++, "count of clips or machines")                                                 \
-    X(f.nodes[0].name = 0x7fffffff, "name lies outside the strings")                                      \
-    X(f.nodes[1].name_hash ^= 4, "name and its hash differ")                                              \
-    X(f.nodes[0].kind = 9, "unknown kind")                                                                \
-    X(f.nodes[0].mask = 1, "field that its kind does not have")                                           \
-    X(f.nodes[0].param = 0, "field that its kind does not have")                                          \
-    X(f.nodes[0].child_count = 1, "children that do not suit")                                            \
-    X(f.nodes[0].index = 1, "not numbered in their order")                                                \
-    X(kind(&f, NOH_PACK_NODE_BLEND)->value = NAN, "value that is not finite")                             \
-    X(kind(&f, NOH_PACK_NODE_ADD)->param = 90, "parameter or mask that is not there")                     \
-    X(kind(&f, NOH_PACK_NODE_ADD)->first_item = 90, "adds relative to a clip")                            \
-    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 2, "adds relative to a clip")                             \
-    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 0, "adds relative to a clip")                             \
-    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->param_y = 90, "parameter or mask that is not there")              \
-    X(kind(&f, NOH_PACK_NODE_SELECT)->param = NOH_PACK_GRAPH_NONE, "parameter or mask that is not there") \
-    X(kind(&f, NOH_PACK_NODE_MASK)->mask = 0, "parameter or mask that is not there")                      \
-    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->mask = 2, "parameter or mask that is not there")                  \
-    X(kind(&f, NOH_PACK_NODE_SELECT)->curve = 2, "unknown curve or flags")                                \
-    X(kind(&f, NOH_PACK_NODE_SELECT)->flags = 4, "unknown curve or flags")                                \
-    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->child_count = 1, "children that do not suit")                     \
-    X(kind(&f, NOH_PACK_NODE_MACHINE)->first_child = 400, "children are not in the chunk")                \
-    X(kind(&f, NOH_PACK_NODE_MACHINE)->item_count = 9, "transitions of a machine")                        \
-    X(kind(&f, NOH_PACK_NODE_SPACE_1D)->item_count = 1, "differs from its children")                      \
-    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->first_item = 1, "blend space that is not there")                  \
-    X(f.points[1] = -1.0f, "do not rise")                                                                 \
-    X(f.points[3] = INFINITY, "point of a blend space is not finite")                                     \
-    X(f.spaces[0].point_count = 2, "not have one point for each child")                                   \
-    X(f.spaces[0].triangle_count = 2, "points or triangles")                                              \
-    X(f.triangles[2] = 3, "triangle of a blend space names a point")                                      \
-    X(f.transitions[0].to = 3, "not between two states")                                                  \
-    X(f.transitions[0].to = 0, "not between two states")                                                  \
-    X(f.transitions[1].condition = 4, "unknown condition")                                                \
-    X(f.transitions[3].param = 0, "unknown condition")                                                    \
-    X(f.transitions[0].threshold = NAN, "unknown condition")                                              \
-    X(f.transitions[1].duration_ticks = 0, "inertial without a time")                                     \
-    X(f.children[0] = 1, "does not follow its children")                                                  \
-    X(f.clips[0].speed = 0, "clip of a graph has no speed")                                               \
-    X(f.clips[0].loop = 4, "clip of a graph has no speed")                                                \
-    X(f.clips[0].sync_group = 16, "clip of a graph has no speed")                                         \
-    X(f.params[0].kind = 4, "parameter of an unknown kind")                                               \
-    X(f.params[0].initial = 3.0f, "range of a parameter")                                                 \
-    X(f.params[0].maximum = INFINITY, "range of a parameter")                                             \
-    X(f.params[4].value_count = 9, "values that are not in the chunk")                                    \
-    X(f.params[4].maximum = 5.0f, "range of a parameter")                                                 \
-    X(f.params[5].maximum = 2.0f, "range of a parameter")                                                 \
-    X(f.masks[0].joint_count = 9, "mask has joints that are not in the chunk")                            \
-    X(f.masks[0].reserved[0] = 1, "mask has joints that are not in the chunk")                            \
+#define LIES                                                                                    \
+    X(f.h->node_count = 0, "count of a graph is")                                               \
+    X(f.h->node_count = 257, "count of a graph is")                                             \
+    X(f.h->child_count++, "count of a graph is")                                                \
+    X(f.h->clip_count = 65, "count of a graph is")                                              \
+    X(f.h->clip_count--, "array does not begin")                                                \
+    X(f.h->param_count = 257, "count of a graph is")                                            \
+    X(f.h->name_count = 5000, "count of a graph is")                                            \
+    X(f.h->reserved[1] = 1, "count of a graph is")                                              \
+    X(f.h->machine_count++, "count of clips or machines")                                       \
+    X(f.nodes[0].name = 0x7fffffff, "name lies outside the strings")                            \
+    X(f.nodes[1].name_hash ^= 4, "name and its hash differ")                                    \
+    X(f.nodes[0].kind = 9, "unknown kind")                                                      \
+    X(f.nodes[0].mask = 1, "field that its kind does not have")                                 \
+    X(f.nodes[0].param = 0, "field that its kind does not have")                                \
+    X(f.nodes[0].child_count = 1, "children that do not suit")                                  \
+    X(f.nodes[0].index = 1, "not numbered in their order")                                      \
+    X(kind(&f, NOH_PACK_NODE_BLEND)->value = NAN, "value that is not finite")                   \
+    X(kind(&f, NOH_PACK_NODE_ADD)->param = 90, "missing parameter or mask")                     \
+    X(kind(&f, NOH_PACK_NODE_ADD)->first_item = 90, "adds relative to a clip")                  \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 2, "adds relative to a clip")                   \
+    X(kind(&f, NOH_PACK_NODE_ADD)->item_count = 0, "adds relative to a clip")                   \
+    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->param_y = 90, "missing parameter or mask")              \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->param = NOH_PACK_GRAPH_NONE, "missing parameter or mask") \
+    X(kind(&f, NOH_PACK_NODE_MASK)->mask = 0, "missing parameter or mask")                      \
+    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->mask = 2, "missing parameter or mask")                  \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->curve = 2, "unknown curve or flags")                      \
+    X(kind(&f, NOH_PACK_NODE_SELECT)->flags = 4, "unknown curve or flags")                      \
+    X(kind(&f, NOH_PACK_NODE_ONE_SHOT)->child_count = 1, "children that do not suit")           \
+    X(kind(&f, NOH_PACK_NODE_MACHINE)->first_child = 400, "children are not in the chunk")      \
+    X(kind(&f, NOH_PACK_NODE_MACHINE)->item_count = 9, "transitions of a machine")              \
+    X(kind(&f, NOH_PACK_NODE_SPACE_1D)->item_count = 1, "differs from its children")            \
+    X(kind(&f, NOH_PACK_NODE_SPACE_2D)->first_item = 1, "missing blend space")                  \
+    X(f.points[1] = -1.0f, "do not rise")                                                       \
+    X(f.points[3] = INFINITY, "point of a blend space is not finite")                           \
+    X(f.spaces[0].point_count = 2, "not have one point for each child")                         \
+    X(f.spaces[0].triangle_count = 2, "points or triangles")                                    \
+    X(f.triangles[2] = 3, "triangle of a blend space names a missing")                          \
+    X(f.transitions[0].to = 3, "not between two states")                                        \
+    X(f.transitions[0].to = 0, "not between two states")                                        \
+    X(f.transitions[1].condition = 4, "unknown condition")                                      \
+    X(f.transitions[3].param = 0, "unknown condition")                                          \
+    X(f.transitions[0].threshold = NAN, "unknown condition")                                    \
+    X(f.transitions[1].duration_ticks = 0, "inertial without a time")                           \
+    X(f.children[0] = 1, "does not follow its children")                                        \
+    X(f.clips[0].speed = 0, "clip of a graph has no speed")                                     \
+    X(f.clips[0].loop = 4, "clip of a graph has no speed")                                      \
+    X(f.clips[0].sync_group = 16, "clip of a graph has no speed")                               \
+    X(f.params[0].kind = 4, "parameter of an unknown kind")                                     \
+    X(f.params[0].initial = 3.0f, "range of a parameter")                                       \
+    X(f.params[0].maximum = INFINITY, "range of a parameter")                                   \
+    X(f.params[4].value_count = 9, "values that are not in the chunk")                          \
+    X(f.params[4].maximum = 5.0f, "range of a parameter")                                       \
+    X(f.params[5].maximum = 2.0f, "range of a parameter")                                       \
+    X(f.masks[0].joint_count = 9, "mask has joints that are not in the chunk")                  \
+    X(f.masks[0].reserved[0] = 1, "mask has joints that are not in the chunk")                  \
     X(f.names[0].subtree = 2, "name of a graph has unknown flags")
 
 /* Whether a byte is before the graph's chunk: of the header and table, where the checksums are. */

@@ -331,7 +331,7 @@ static void lies_are_named(void **state)
     expect_refused(&f, "weight");
     f = forge();
     f.clip->skeleton = 1;
-    expect_refused(&f, "skeleton that is not there");
+    expect_refused(&f, "missing skeleton");
     f = forge();
     f.clip->skeleton_hash += 1;
     expect_refused(&f, "not its skeleton's");
