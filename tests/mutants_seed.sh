@@ -72,6 +72,10 @@ if [ "${1:-}" = --lines ]; then
     passed=$?
     times >"$work/times"
     seconds=$(awk -f tests/support/processor_seconds.awk "$work/times")
+    if [ -n "$(find "$work/data" -name '*.gcda' ! -path "$work/data$seeded/*" -print -quit)" ]; then
+        echo "mutants_seed.sh: $seeded/lines was built in another folder: remove it, then run this again"
+        exit 1
+    fi
     if [ $passed = 0 ]; then
         case $name in golden/*) cp "$out.log" "$seeded/map/golden.txt" ;; esac
         echo "$name $seconds" >"$work/lines"
