@@ -150,13 +150,35 @@ static void make_sources(const noh_reflection_desc *desc, uint32_t side, float *
 
 /* ---- blurring ---- */
 
+/* The middle of a texel on the cube, and 1 / its distance from the centre. They are the same for each texel that is
+ * blurred, so they are computed once, for levels 1 and 2, in the memory of level 0's source, which is packed by then. */
+typedef struct ray {
+    float to[3], inverse;
+} ray;
+
 typedef struct blur {
-    float *sources;
-    uint32_t side, finest; /* source level at the middle of the blur */
-    float a2;              /* alpha squared */
+    const float *sources; /* from level 1 */
+    const ray *rays;      /* their middles */
+    uint32_t coarse;      /* texels of a face's side at level 2 */
+    int is_narrow;        /* level 1 is taken near the middle */
+    float a2;             /* alpha squared */
     float direction[3];
     float sum[3], weight;
 } blur;
+
+static void make_rays(uint32_t side, ray *r)
+{
+    for (uint32_t level = 1; level < SOURCES; level++) {
+        const uint32_t n = side >> level;
+        for (uint32_t i = 0; i < 6u * n * n; i++, r++) {
+            const float(*face)[3] = faces[i / (n * n)];
+            const float s = (2.0f * (float)(i % n) + 1.0f) / (float)n - 1.0f;
+            const float t = (2.0f * (float)(i / n % n) + 1.0f) / (float)n - 1.0f;
+            for (uint32_t k = 0; k < 3u; k++) r->to[k] = face[0][k] + s * face[1][k] + t * face[2][k];
+            r->inverse = 1.0f / noh_sqrt(1.0f + s * s + t * t);
+        }
+    }
+}
 
 /* GGX of the half vector between the direction and a light, times t, as a function of the cosine t between the two (the
  * half vector's cosine is sqrt((1 + t) / 2)); without constant factors. */
@@ -166,66 +188,67 @@ static float lobe(float a2, float t)
     return t / (d * d);
 }
 
-/* One texel of a source, or near the middle of the blur, the four texels of the next finer source. */
-static void add_source(blur *b, uint32_t level, uint32_t face, uint32_t x, uint32_t y)
+/* Texel i of the sources, whose level has this share of a face in each texel. */
+static void add_source(blur *b, uint32_t i, float cosine, float share)
 {
-    const uint32_t n = b->side >> level;
-    const float s = (2.0f * (float)x + 1.0f) / (float)n - 1.0f, t = (2.0f * (float)y + 1.0f) / (float)n - 1.0f;
-    const float l2 = 1.0f + s * s + t * t, inverse = 1.0f / noh_sqrt(l2);
-    const float *rgb = source_at(b->sources, b->side, level, face, x, y);
-    float cosine = 0.0f, weight;
-    for (uint32_t k = 0; k < 3u; k++) {
-        cosine += b->direction[k] * (faces[face][0][k] + s * faces[face][1][k] + t * faces[face][2][k]);
-    }
-    cosine *= inverse;
+    const float inverse = b->rays[i].inverse;
+    float weight;
     if (cosine <= 0.0f) return;
-    weight = lobe(b->a2, cosine) * inverse * inverse * inverse / (float)(n * n); /* times the solid angle */
-    for (uint32_t k = 0; k < 3u; k++) b->sum[k] += weight * rgb[k];
+    weight = lobe(b->a2, cosine) * inverse * inverse * inverse * share; /* times the solid angle */
+    for (uint32_t k = 0; k < 3u; k++) b->sum[k] += weight * b->sources[3u * (size_t)i + k];
     b->weight += weight;
 }
 
-static int is_near(const blur *b, uint32_t face, uint32_t x, uint32_t y)
+static float cosine_of(const blur *b, uint32_t i)
 {
-    float direction[3];
-    noh_reflection_direction(b->side >> (SOURCES - 1u), face, x, y, direction);
-    return noh_dot3(direction, b->direction) > 0.85f;
+    return noh_dot3(b->direction, b->rays[i].to) * b->rays[i].inverse;
 }
 
+/* All texels of level 2. Near the middle of a narrow blur, the four texels of level 1 take the place of each. */
 static void blur_texel(blur *b, float rgb[3])
 {
-    const uint32_t level = SOURCES - 1u, n = b->side >> level, more = level - b->finest;
+    const uint32_t n = b->coarse, fine = 2u * n;
+    const float share = 1.0f / (float)(n * n);
     memset(b->sum, 0, sizeof b->sum);
     b->weight = 0.0f;
     for (uint32_t i = 0; i < 6u * n * n; i++) {
-        const uint32_t face = i / (n * n), x = i % n, y = i / n % n;
-        if (more && is_near(b, face, x, y)) {
-            for (uint32_t j = 0; j < 1u << 2u * more; j++) {
-                const uint32_t side = 1u << more;
-                add_source(b, b->finest, face, x * side + j % side, y * side + j / side);
+        const uint32_t at = 6u * fine * fine + i, corner = 2u * (i / n) * fine + 2u * (i % n);
+        const float cosine = cosine_of(b, at);
+        if (b->is_narrow && cosine > 0.85f) {
+            for (uint32_t j = 0; j < 4u; j++) {
+                const uint32_t one = corner + j / 2u * fine + j % 2u;
+                add_source(b, one, cosine_of(b, one), 0.25f * share);
             }
         } else {
-            add_source(b, level, face, x, y);
+            add_source(b, at, cosine, share);
         }
     }
     for (uint32_t k = 0; k < 3u; k++) rgb[k] = b->sum[k] / b->weight;
 }
 
-static void make_level(float *sources, uint32_t side, uint32_t level, uint32_t *texels)
+static void blur_level(const float *sources, const ray *rays, uint32_t side, uint32_t level, uint32_t *texels)
 {
     const uint32_t n = side >> level;
     const float roughness = (float)level / (float)(NOH_REFLECTION_LEVELS - 1u), alpha = roughness * roughness;
     blur b = {
-        sources, side, level == 1u ? 1u : SOURCES - 1u, alpha * alpha, { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f }, 0.0f
+        sources, rays, side >> (SOURCES - 1u), level == 1u, alpha * alpha, { 0.0f, 0.0f, 0.0f }, { 0.0f, 0.0f, 0.0f },
+        0.0f
     };
     for (uint32_t i = 0; i < 6u * n * n; i++) {
         float rgb[3];
         noh_reflection_direction(n, i / (n * n), i % n, i / n % n, b.direction);
-        if (level) {
-            blur_texel(&b, rgb);
-        } else {
-            memcpy(rgb, sources + 3u * (size_t)i, sizeof rgb);
-        }
+        blur_texel(&b, rgb);
         texels[i] = pack_texel(rgb);
+    }
+}
+
+static void make_levels(float *sources, uint32_t side, uint32_t *texels)
+{
+    ray *rays = (ray *)(void *)sources;
+    for (uint32_t i = 0; i < 6u * side * side; i++) texels[i] = pack_texel(sources + 3u * (size_t)i);
+    make_rays(side, rays);
+    for (uint32_t level = 1; level < NOH_REFLECTION_LEVELS; level++) {
+        blur_level(source_at(sources, side, 1, 0, 0, 0), rays, side, level, texels + noh_reflection_first(side, level));
     }
 }
 
@@ -246,9 +269,7 @@ noh_result noh_reflection_init(void *memory, size_t bytes, void *scratch, size_t
         return result;
     }
     make_sources(desc, side, scratch);
-    for (uint32_t level = 0; level < NOH_REFLECTION_LEVELS; level++) {
-        make_level(scratch, side, level, (uint32_t *)memory + noh_reflection_first(side, level));
-    }
+    make_levels(scratch, side, memory);
     out->side = side;
     out->texels = memory;
     return NOH_OK;
