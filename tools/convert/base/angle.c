@@ -42,7 +42,9 @@ double angle_arc_tangent(double ratio)
     /* arctan t = 2 arctan(t / (1 + sqrt(1 + t^2))): two halvings bring it below pi/16 */
     double t = ratio;
     for (int i = 0; i < 2; ++i) t = t / (1.0 + sqrt(1.0 + t * t));
+    static const double odd[] = { 1.0,      1.0 / 3,  1.0 / 5,  1.0 / 7,  1.0 / 9,  1.0 / 11, 1.0 / 13,
+                                  1.0 / 15, 1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23, 1.0 / 25 };
     double t2 = t * t, sum = 0.0;
-    for (int k = 12; k >= 0; --k) sum = 1.0 / (double)(2 * k + 1) - t2 * sum;
+    for (int k = 12; k >= 0; --k) sum = odd[k] - t2 * sum;
     return 4.0 * t * sum;
 }

@@ -109,9 +109,11 @@ static void use_columns(fold *f, uint32_t low, uint32_t high)
 {
     for (uint32_t c = low; c <= high; c++) {
         uint64_t *used = f->used + (size_t)c * f->words;
-        memset(used, 0, f->words * sizeof *used);
-        for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++)
-            for (uint32_t w = 0; w < f->words; w++) used[w] |= morph_row(f->vertices, f->line[i])[w];
+        for (uint32_t w = 0; w < f->words; w++) {
+            uint64_t any = 0;
+            for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++) any |= morph_row(f->vertices, f->line[i])[w];
+            used[w] = any;
+        }
     }
 }
 
@@ -144,8 +146,10 @@ static void turn(uint32_t *line, uint32_t low, uint32_t high)
 
 static int same_pattern(const fold *f, uint32_t a, uint32_t b)
 {
-    return memcmp(morph_row(f->vertices, f->line[a]), morph_row(f->vertices, f->line[b]),
-                  f->words * sizeof(uint64_t)) == 0;
+    const uint64_t *p = morph_row(f->vertices, f->line[a]), *q = morph_row(f->vertices, f->line[b]);
+    uint32_t w = 0;
+    while (w < f->words && p[w] == q[w]) w++; /* a word or two: quicker than memcmp */
+    return w == f->words;
 }
 
 /* The next place at or after `at`, at most `limit`, where the pattern changes. */

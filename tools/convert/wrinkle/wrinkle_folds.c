@@ -44,11 +44,17 @@ static double flip_of(const fold_zone *z, double x)
     return z->side != 0.0 ? z->side : z->rays && x < 0.0 ? -1.0 : 1.0;
 }
 
+static double radius_of(const fold_zone *z, const double p[3])
+{
+    const double x = flip_of(z, p[0]) * p[0] - z->middle[0], y = p[1] - z->middle[1];
+    return sqrt(x * x + y * y);
+}
+
 /* p: face coordinates */
 static fold_place place_of(const fold_zone *z, const double p[3])
 {
     const double x = flip_of(z, p[0]) * p[0] - z->middle[0], y = p[1] - z->middle[1];
-    fold_place at = { 0.0, 0.0, sqrt(x * x + y * y), degrees_of(x, y) };
+    fold_place at = { 0.0, 0.0, radius_of(z, p), degrees_of(x, y) };
     const double r = (2.0 * at.radius - z->radius[0] - z->radius[1]) / (z->radius[1] - z->radius[0]);
     const double a = (2.0 * at.angle - z->angle[0] - z->angle[1]) / (z->angle[1] - z->angle[0]);
     at.along = z->rays ? r : a;
@@ -275,6 +281,12 @@ static void texel_point(const wrinkle_field *f, const wrinkle_raster *r, const w
     wrinkle_face_point(face, sum, p);
 }
 
+/* An angle costs more than a radius, which decides for most of the face. */
+static int is_outside(const fold_zone *z, double radius)
+{
+    return radius < z->radius[0] || radius > z->radius[1];
+}
+
 /* The mean compression by bins across a zone, blurred. */
 static void measure_zone(const wrinkle_field *f, const wrinkle_raster *r, const wrinkle_face *face, const fold_zone *z,
                          double out[BINS])
@@ -286,9 +298,10 @@ static void measure_zone(const wrinkle_field *f, const wrinkle_raster *r, const 
         int bin;
         if (r->triangle[at] == MODEL_NONE) continue;
         texel_point(f, r, face, at, p);
+        if (p[2] < -BEHIND || is_outside(z, radius_of(z, p))) continue;
         in = place_of(z, p);
         bin = (int)floor(0.5 * (in.across + 1.0) * BINS);
-        if (bin < 0 || bin >= BINS || fabs(in.along) > 0.8 || p[2] < -BEHIND) continue;
+        if (bin < 0 || bin >= BINS || fabs(in.along) > 0.8) continue;
         sum[bin] += (double)f->largest[r->triangle[at]];
         count[bin] += 1.0;
     }
@@ -347,14 +360,32 @@ static double profile_of(const fold_zone *z, double far)
     return even > 0.0 ? even * even * (slow ? 1.0 : 1.0 - SHOULDER * at * at) : 0.0;
 }
 
+/* Whether a fold is even skin at this place across: the wave that moves it is at most 1. */
+static int is_far(const fold_zone *z, uint32_t fold, double across, double length)
+{
+    return (fabs(across - z->at[fold]) - WOBBLE * z->gap) * length > 1.001 * SLOW * z->width;
+}
+
+static int is_far_from_all(const fold_zone *z, const double p[3])
+{
+    const double radius = radius_of(z, p);
+    uint32_t k = 0;
+    if (z->rays) return is_outside(z, radius);
+    while (k < z->count && is_far(z, k, radius, 1.0)) k++;
+    return k == z->count;
+}
+
 /* Below the skin, face units; folds fade to their ends. */
 static double height_at(const wrinkle_folds *folds, const double p[3])
 {
     double height = 0.0;
     for (uint32_t i = 0; i < FOLD_ZONES; i++) {
         const fold_zone *z = &folds->zones[i];
-        const fold_place at = place_of(z, p);
+        fold_place at;
+        if (z->count == 0 || is_far_from_all(z, p)) continue;
+        at = place_of(z, p);
         for (uint32_t k = 0; k < z->count && fabs(at.along) < 1.0; k++) {
+            if (is_far(z, k, across_of(z, &at), length_of(z, &at))) continue;
             const double end = at.along / (1.0 - 0.12 * k), taper = 1.0 - end * end;
             double wave, cosine, far;
             angle_sin_cos_degrees(130.0 * at.along + 97.0 * k, &wave, &cosine);
