@@ -84,10 +84,13 @@ static float meets_triangle(const ray *r, const float *corners, float *u, float 
         return 0.0f; /* edge on, or without area */
     }
     scale = 1.0f / scale;
-    cross(s, e, q);
     *u = scale * dot(s, p);
+    if (*u < 0.0f || *u > 1.0f) {
+        return 0.0f;
+    }
+    cross(s, e, q);
     *v = scale * dot(r->direction, q);
-    if (*u < 0.0f || *v < 0.0f || *u + *v > 1.0f) {
+    if (*v < 0.0f || *u + *v > 1.0f) {
         return 0.0f;
     }
     distance = scale * dot(f, q);

@@ -32,10 +32,13 @@ static double largest(double a, double b)
 
 static void add(partial *p, double delta, double low, double high, int once, noh_half_mode mode)
 {
-    const double from = fmin(low * delta, high * delta), to = fmax(low * delta, high * delta);
+    double from, to;
+    if (delta == 0.0) return; /* most are */
+    from = fmin(low * delta, high * delta);
+    to = fmax(low * delta, high * delta);
     p->low += from;
     p->high += to;
-    if (once || delta == 0.0) return;
+    if (once) return;
     if (mode == NOH_HALF_UNKNOWN || mode == NOH_HALF_RTZ_RNE) p->error += spacing(largest(from, to));
     p->error += rounding(largest(p->low, p->high) + p->error, mode);
 }
