@@ -61,6 +61,38 @@ static const struct word {
     { "shoulder", SHOULDER },  { "hip", HIP },
 };
 
+/* MikuMikuDance's bones, without their sides, in UTF-8. */
+/* clang-format off */
+static const struct translation {
+    char own[13], english[9];
+} translations[] = {
+    { "\351\246\226", "neck" },
+    { "\351\240\255", "head" },
+    { "\343\202\273\343\203\263\343\202\277\343\203\274", "hips" },
+    { "\344\270\212\345\215\212\350\272\253", "spine" },
+    { "\344\270\212\345\215\212\350\272\253\062", "spine1" },
+    { "\344\270\212\345\215\212\350\272\253\063", "spine2" },
+    { "\350\202\251", "shoulder" },
+    { "\350\205\225", "upperarm" },
+    { "\343\201\262\343\201\230", "forearm" },
+    { "\346\211\213\351\246\226", "hand" },
+    { "\350\266\263", "thigh" },
+    { "\343\201\262\343\201\226", "shin" },
+    { "\350\266\263\351\246\226", "foot" },
+    { "\343\201\244\343\201\276\345\205\210", "toe" },
+};
+/* clang-format on */
+
+const char *noh_name_english(const char *name)
+{
+    const char *own = name;
+    if (noh_name_begins(own, NOH_LEFT_IN_JAPANESE) || noh_name_begins(own, NOH_RIGHT_IN_JAPANESE)) own += 3;
+    for (size_t i = 0; (unsigned char)*own >= 0x80u && i < sizeof translations / sizeof translations[0]; i++) {
+        if (noh_names_equal(own, translations[i].own)) return translations[i].english;
+    }
+    return name;
+}
+
 static char lower(char c)
 {
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
@@ -96,7 +128,7 @@ static part part_of(const char *name)
 
 static part name_at(const noh_ragdoll_source *s, uint32_t joint)
 {
-    return part_of(noh_pack_joint_name(s->pack, s->skeleton, joint));
+    return part_of(noh_name_english(noh_pack_joint_name(s->pack, s->skeleton, joint)));
 }
 
 /* Whether some joint of kind `below` has this joint as its nearest ancestor among the names `weak` and `means`. So

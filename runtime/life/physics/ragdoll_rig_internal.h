@@ -14,6 +14,13 @@
 extern "C" {
 #endif
 
+#define NOH_LEFT_IN_JAPANESE "\345\267\246" /* in UTF-8 */
+#define NOH_RIGHT_IN_JAPANESE "\345\217\263"
+
+/* The English word, in small letters, for a bone that MikuMikuDance names in Japanese, without its side; otherwise the
+ * name itself. */
+const char *noh_name_english(const char *name);
+
 /* Get a joint's transform in the bind pose, in the skeleton's unit. */
 void noh_ragdoll_bind(const noh_skeleton *skeleton, uint32_t joint, float position[3], float rotation[4]);
 

@@ -1,6 +1,7 @@
 /* bone_names.c: names of a person's bones in many programs. */
 #include <string.h>
 
+#include "life/physics/ragdoll_rig_internal.h"
 #include "life/reach/bone_names_internal.h"
 #include "noh/low_motion.h"
 
@@ -102,19 +103,19 @@ static size_t word_length(const char *at, size_t left)
 /* The word without a side that it is, or has at one end: what is left of it, from `from`. */
 static size_t take_side(const char *word, size_t length, char *side, size_t *from)
 {
-    static const char words[2][6] = { "left", "right" };
+    static const char words[4][6] = { "left", "right", NOH_LEFT_IN_JAPANESE, NOH_RIGHT_IN_JAPANESE };
     *from = 0;
     if (*side) return length;
     if (length == 1 && (*word == 'l' || *word == 'r')) {
         *side = *word;
         return 0;
     }
-    for (size_t i = 0; i < 2; i++) {
-        const size_t bytes = 4u + i;
+    for (size_t i = 0; i < 4; i++) {
+        const size_t bytes = i < 2 ? 4u + i : 3u;
         const int first = length >= bytes && memcmp(word, words[i], bytes) == 0;
         const int last = !first && length >= bytes && memcmp(word + length - bytes, words[i], bytes) == 0;
         if (!(first || last) || (length > bytes && length < bytes + 3u)) continue;
-        *side = words[i][0];
+        *side = "lr"[i & 1u];
         *from = first ? bytes : 0;
         return length - bytes;
     }
@@ -125,6 +126,7 @@ char noh_name_key(const char *name, char key[NOH_NAME_BYTES_MAX])
 {
     size_t left, count = 0;
     const char *at = core_of(name, &left);
+    const char *english;
     char side = 0;
     while (left) {
         const size_t length = word_length(at, left);
@@ -141,6 +143,10 @@ char noh_name_key(const char *name, char key[NOH_NAME_BYTES_MAX])
         left -= length ? length : 1u;
     }
     key[count] = '\0';
+    english = noh_name_english(key);
+    if (english != key) {
+        for (count = 0; (key[count] = english[count]) != '\0';) count++;
+    }
     return side;
 }
 

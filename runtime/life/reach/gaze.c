@@ -27,7 +27,7 @@
 static const char *name_of(const noh_ragdoll_source *s, uint32_t joint)
 {
     const char *name = noh_pack_joint_name(s->pack, s->skeleton, joint);
-    return name ? name : "";
+    return name ? noh_name_english(name) : "";
 }
 
 static int has_any(const char *name, const char *const *words)

@@ -127,6 +127,18 @@ static void joints_have_other_names(void **state)
         { "lowerleg01.R", "rightLowerLeg" },
         { "eye.L", "leftEye" },
         { "DEF-upper_arm.L", "leftUpperArm" },
+        { "左腕", "leftUpperArm" },
+        { "右足", "rightUpperLeg" },
+        { "右足首", "rightFoot" },
+        { "上半身2", "chest" },
+        { "センター", "hips" },
+        { "左目", "leftEye" },
+        { "左親指０", "leftThumbMetacarpal" },
+        { "右小指３", "rightLittleDistal" },
+        { "左足ＩＫ", NULL },
+        { "左足D", NULL },
+        { "右腕捩", NULL },
+        { "左", NULL },
         { "tail", NULL },
     };
     int is_own = 0;

@@ -187,37 +187,47 @@ static void rename_joint(skin_asset *a, const char *from, const char *to)
     fail_msg("no joint has the name %s", from);
 }
 
-/* Names of other tools: the joints are the same, so the rows are. Their pelvis is named as a hip too, their collar
- * bones as shoulders, and both have the limbs below them. */
-static void hips_and_shoulders_are_limbs_where_none_is_below(void **state)
+/* Names of other tools: the joints are the same, so the rows are. The pelvis of the first is named as a hip too, its
+ * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's. */
+static void other_names_find_the_same_limbs(void **state)
 {
-    static const char *const sides[2][2] = { { "Left", "L_" }, { "Right", "R_" } };
-    static const char *const names[][2] = { { "UpLeg", "Hip" },    { "Leg", "Knee" },      { "Foot", "Ankle" },
-                                            { "Arm", "Shoulder" }, { "ForeArm", "Elbow" }, { "Hand", "Wrist" } };
+    static const char *const sides[3][2] = { { "Left", "Right" }, { "L_", "R_" }, { "左", "右" } };
+    static const char *const names[][3] = { { "UpLeg", "Hip", "足" },       { "Leg", "Knee", "ひざ" },
+                                            { "Foot", "Ankle", "足首" },    { "Arm", "Shoulder", "腕" },
+                                            { "ForeArm", "Elbow", "ひじ" }, { "Hand", "Wrist", "手首" } };
     noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];
     uint32_t counts[2];
-    skin_asset a;
     (void)state;
-    skin_asset_open(&a, assets[0], NULL);
-    const noh_ragdoll_source s = source_of(&a.pack);
-    assert_int_equal(noh_ragdoll_find_rows(&s, before, &counts[0], NULL), NOH_OK);
-    char *strings = malloc(a.pack.string_bytes);
-    assert_non_null(strings);
-    a.pack.strings = memcpy(strings, a.pack.strings, a.pack.string_bytes);
-    for (int side = 0; side < 2; side++) {
-        for (size_t i = 0; i < TEST_COUNT(names); i++) {
+    for (int tool = 1; tool < 3; tool++) {
+        skin_asset a;
+        noh_gaze_rig gaze[2];
+        skin_asset_open(&a, assets[0], NULL);
+        const noh_ragdoll_source s = source_of(&a.pack);
+        assert_int_equal(noh_ragdoll_find_rows(&s, before, &counts[0], NULL), NOH_OK);
+        assert_int_equal(noh_gaze_rig_make(&a.pack, 0, &gaze[0], NULL), NOH_OK);
+        char *strings = malloc(a.pack.string_bytes);
+        assert_non_null(strings);
+        a.pack.strings = memcpy(strings, a.pack.strings, a.pack.string_bytes);
+        for (size_t i = 0; i < 2u * TEST_COUNT(names); i++) {
             char from[32], to[32];
-            (void)snprintf(from, sizeof from, "%s%s", sides[side][0], names[i][0]);
-            (void)snprintf(to, sizeof to, "%s%s", sides[side][1], names[i][1]);
+            (void)snprintf(from, sizeof from, "%s%s", sides[0][i % 2u], names[i / 2u][0]);
+            (void)snprintf(to, sizeof to, "%s%s", sides[tool][i % 2u], names[i / 2u][tool]);
             rename_joint(&a, from, to);
         }
+        if (tool == 2) {
+            rename_joint(&a, "Head", "頭");
+            rename_joint(&a, "Neck", "首");
+        }
+        assert_int_equal(noh_ragdoll_find_rows(&s, after, &counts[1], NULL), NOH_OK);
+        assert_int_equal(counts[0], 16);
+        assert_int_equal(counts[1], 16);
+        assert_memory_equal(before, after, sizeof before);
+        assert_int_equal(noh_gaze_rig_make(&a.pack, 0, &gaze[1], NULL), NOH_OK);
+        assert_int_equal(gaze[0].joint_count, gaze[1].joint_count);
+        assert_memory_equal(gaze[0].joints, gaze[1].joints, gaze[0].joint_count * sizeof *gaze[0].joints);
+        free((char *)(uintptr_t)a.pack.strings);
+        skin_asset_close(&a);
     }
-    assert_int_equal(noh_ragdoll_find_rows(&s, after, &counts[1], NULL), NOH_OK);
-    assert_int_equal(counts[0], 16);
-    assert_int_equal(counts[1], 16);
-    assert_memory_equal(before, after, sizeof before);
-    free((char *)(uintptr_t)a.pack.strings);
-    skin_asset_close(&a);
 }
 
 /* ---- falls ---- */
@@ -336,7 +346,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(scales_of_joints_count),
     cmocka_unit_test(sides_are_alike),
     cmocka_unit_test(rows_out_of_order_are_refused),
-    cmocka_unit_test(hips_and_shoulders_are_limbs_where_none_is_below),
+    cmocka_unit_test(other_names_find_the_same_limbs),
 };
 
 TEST_MAIN(tests, NULL, NULL)
