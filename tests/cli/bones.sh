@@ -92,6 +92,38 @@ noh build "$work/walk.bvh" -o "$work/x.noh" --facing auto
 expect 1 'no joint is left or right'
 says 'give --facing DEG'
 
+# A body that does not face +z is shown from its own front: left and right and both feet tell where that is.
+awk 'function joint(name, x, y, z, below) {
+        print "JOINT " name "\n{\nOFFSET " x, y, z "\nCHANNELS 3 Zrotation Xrotation Yrotation"
+        if (!below) print "End Site\n{\nOFFSET 0 0 4\n}\n}"
+        count++
+    }
+    BEGIN {
+        print "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
+        for (i = 0; i < 2; i++) {
+            side = i ? "Right" : "Left"
+            x = i ? -1 : 1
+            joint(side "UpLeg", 10 * x, -5, 0, 1); joint(side "Leg", 0, -40, 2, 1)
+            joint(side "Foot", 0, -40, -2, 1); joint(side "Toes", 2 * x, -5, 14, 0)
+            print "}\n}\n}"
+            joint(side "Arm", (i ? 15 : 20) * x, 50, 0, 1); joint(side "Hand", 50 * x, 0, 0, 0)
+            print "}"
+        }
+        print "}\nMOTION\nFrames: 1\nFrame Time: 0.0333333"
+        line = "0 90 0"
+        for (i = 0; i <= count; i++) line = line " 0 0 0"
+        print line
+    }' >"$work/body.bvh"
+for way in 0 90 180 -90; do
+    noh build "$work/body.bvh" -o "$work/body$way.noh" --facing "$way"
+    noh render "$work/body$way.noh" -o "$work/body$way.png" --camera full,30,5 --size 128x128
+    expect 0 "a body that faces $way degrees"
+    check 'is shown from its front' "$build/tests/gl/picture_diff" "$work/body0.png" "$work/body$way.png" 1 0.02
+done
+noh render "$work/body0.noh" -o "$work/plain0.png" --camera 30,5 --size 128x128
+noh render "$work/body180.noh" -o "$work/plain180.png" --camera 30,5 --size 128x128
+check 'a direction alone is of the axes' sh -c '! "$1" "$2" "$3" 1 0.02 >/dev/null' - "$build/tests/gl/picture_diff" "$work/plain0.png" "$work/plain180.png"
+
 # Sixty frames of an arm that swings, which is elsewhere for one frame and held for five.
 awk 'BEGIN {
     print "HIERARCHY\nROOT Hips\n{\n OFFSET 0 0 0\n CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"

@@ -159,7 +159,7 @@ static void close_scene(scene *s)
 
 static int pose_scene(scene *s)
 {
-    const view_options view = { "face", BENCH_FRAME_SIZE, BENCH_FRAME_SIZE, 0 };
+    const view_options view = { "face", BENCH_FRAME_SIZE, BENCH_FRAME_SIZE, 0, 0.0 };
     figure *f = &s->picture.figure;
     int status = figure_hold_all(f, EXPRESSION);
     if (!status) status = figure_pose(f);

@@ -134,7 +134,7 @@
         .name = "--light", .kind = OPTION_TEXT, .at = offsetof(T, m), .value = "NAME|FILE", .initial = text, \
         .what = "environment light: white, studio, room, sky, a panorama (.hdr, .png), or none "             \
                 "(one plain lamp); "                                                                         \
-                "auto: room for skin, sky for toons, otherwise studio; none for bones and --debug",         \
+                "auto: room for skin, sky for toons, otherwise studio; none for bones and --debug",          \
         .example = "room", __VA_ARGS__                                                                       \
     }
 
@@ -201,7 +201,7 @@
         .value = "auto|face|upper|full[,AZ,EL]|AZ,EL[,DIST]", .initial = text,                                       \
         .what = "what the camera frames (face: with its hair; upper: a body from the waist; full: all of it; auto: " \
                 "the face of a head and of a body whose clips move no joints, otherwise full), and its position: "   \
-                "azimuth and elevation in degrees, distance in model units",                                         \
+                "azimuth and elevation in degrees, distance in model units; a frame is seen from where feet point",  \
         .example = "face,30,10"                                                                                      \
     }
 

@@ -109,6 +109,12 @@ view_frame view_frame_of(const view_options *o)
     return frame;
 }
 
+int view_frames(const view_options *o)
+{
+    view_frame frame;
+    return !o->camera || after_frame(o->camera, &frame);
+}
+
 /* "AZ,EL,DIST": three numbers; the distance may be left out. */
 static int parse_orbit(const char *text, orbit *o)
 {
@@ -190,6 +196,7 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
                           "AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
                           o->camera);
     }
+    if (rest) at.azimuth += o->facing * 3.14159265358979 / 180.0;
     if (rest && direction) orbit_frame(&at, box, ORBIT_MARGIN);
     if (o->around) at.radius *= 8.0;
     orbit_camera(&at, camera);

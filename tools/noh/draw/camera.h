@@ -22,6 +22,8 @@ typedef struct view_options {
     const char *camera; /* OPTION_CAMERA; NULL: full */
     uint32_t width, height;
     int around; /* 1: also frames the surroundings of the box */
+    double
+        facing; /* degrees from +z towards +x: where the front is that a frame looks at; AZ,EL alone is of the axes */
 } view_options;
 
 #define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
@@ -48,5 +50,7 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera);
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
 /* What the options frame. */
 view_frame view_frame_of(const view_options *o);
+/* Whether they frame something, rather than give a direction alone. */
+int view_frames(const view_options *o);
 
 #endif

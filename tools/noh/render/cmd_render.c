@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw/facing.h"
 #include "draw/picture.h"
 #include "gpu/gpu_args.h"
 #include "cli/json.h"
@@ -230,6 +231,8 @@ static int render(render_args *a, const pack_file *file)
     const int shows_bones = picture_shows_bones(file, a->show_bones);
     const int lit = a->figure.view == NOH_VIEW_LIT && a->shows != DEBUG_JOINTS && a->shows != DEBUG_WEIGHTS;
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
+    if (view_frames(&a->view)) a->view.facing = pack_facing(&file->pack);
+    a->light.rotate += a->view.facing;
     if (!status && lighting_wanted(&a->light, &file->pack, !shows_bones && lit)) {
         status = lighting_open(&light, &a->light);
         if (status) return status;

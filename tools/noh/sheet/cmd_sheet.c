@@ -6,6 +6,7 @@
 #include "sheet_data.h"
 #include "sheet_lods.h"
 #include "sheet_tiles.h"
+#include "draw/facing.h"
 #include "draw/picture.h"
 #include "gpu/gpu_args.h"
 #include "draw/label.h"
@@ -27,6 +28,7 @@ typedef struct sheet {
     body_options body_wants;
     figure_body body;
     light_options light;
+    double facing; /* view_options.facing */
     lighting lit;
 } sheet;
 
@@ -90,7 +92,7 @@ static int measure_tiles(sheet *s, picture *p, view_frame frame)
 
 static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
 {
-    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->facing };
     double anchor[3];
     bounds box;
     find_anchor(s, p, anchor);
@@ -126,7 +128,7 @@ static int draw_tiles(sheet *s, picture *p)
 
 static int draw_sheet(sheet *s, const pack_file *file)
 {
-    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->facing };
     gpu g;
     picture p;
     int status = gpu_open_drawing(&g, s->driver);
@@ -299,6 +301,9 @@ static int run(void *args)
     int status = check_args(a);
     if (!status) status = pack_file_open(&file, a->s.pack);
     if (!status) {
+        const view_options o = { .camera = a->s.camera };
+        if (view_frames(&o)) a->s.facing = pack_facing(&file.pack);
+        a->s.light.rotate += a->s.facing;
         if (lighting_wanted(&a->s.light, &file.pack, !a->s.show_bones)) {
             status = lighting_open(&a->s.lit, &a->s.light);
             if (!status) a->s.figure.light = &a->s.lit;

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw/facing.h"
 #include "draw/label.h"
 #include "cli/message.h"
 #include "file/png_file.h"
@@ -197,7 +198,7 @@ static int make_picture(grid *g)
 static int place_camera(grid *g)
 {
     const sheet_lods *o = g->o;
-    const view_options view = { o->camera, o->tile, o->tile, 0 };
+    const view_options view = { o->camera, o->tile, o->tile, 0, pack_facing(&o->file->pack) };
     figure f;
     int status = figure_open(&f, &o->figure, NULL);
     if (status) {

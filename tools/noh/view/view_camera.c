@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "draw/facing.h"
 #include "view/view_app.h"
 
 /* ---- the picture in the window ---- */
@@ -117,6 +118,7 @@ void view_frame_all(view_app *a)
     uint32_t width, height;
     view_figure_pixels(a, &x, &y, &width, &height);
     a->camera.orbit = orbit_fit(&around, (double)width / (double)height);
+    a->camera.orbit.azimuth = pack_facing(&a->model->file.pack) * 3.14159265358979 / 180.0;
     a->camera.framed_box = around;
     a->ground.height = fabs(around.low[1]) < 0.05 * a->camera.orbit.radius ? 0.0 : around.low[1];
     a->camera.by_hand = 0;
