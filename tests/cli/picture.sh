@@ -33,6 +33,11 @@ done
     check 'unless it is to stand as modelled' sh -c '! cmp -s auto.png rest.png'
     noh render "$build/demo/puppet.noh" -o x.png $small --pose sit
     expect 2 'no other pose'
+    noh speak Hello -o line.noh --face "$build/demo/puppet.noh"
+    noh render "$build/demo/puppet.noh" -o told.png $small --anim line.noh --clip speech
+    expect 0 'a body in a clip of the face alone'
+    noh render "$build/demo/puppet.noh" -o as_made.png $small --anim line.noh --clip speech --pose rest
+    check 'it stands' sh -c '! cmp -s told.png as_made.png'
 }
 
 # as many nodes as a stage holds share a mesh: planning compares them in pairs, once

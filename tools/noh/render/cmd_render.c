@@ -73,7 +73,7 @@ static int choose_pose(render_args *a, const noh_pack *pack)
     if (!rest && strcmp(a->pose, "auto") != 0) return tool_usage("--pose must be auto or rest, not '%s'", a->pose);
     a->rests = !a->clips.count;
     if (rest || a->body.has_ground || a->show_bones || !figure_draws(pack)) return 0;
-    if (!a->rests && !(a->figure.alive && figure_rests(&a->figure, &a->clips))) return 0;
+    if (!a->rests && !figure_rests(&a->figure, &a->clips)) return 0;
     const char *idle = a->rests ? figure_idle_clip(pack) : NULL;
     if (idle) a->clips.items[a->clips.count++] = idle;
     a->figure.stands = !idle;
@@ -305,7 +305,7 @@ static const option options[] = {
       .value = "auto|rest",
       .initial = "auto",
       .what =
-          "how a figure stands without --clip: auto, as in the first frame of a clip named idle, otherwise with its "
+          "how a figure stands that no --clip poses: auto, as in the first frame of a clip named idle, otherwise with its "
           "arms lowered; rest, as it was modelled",
       .example = "rest" },
     OPTION_FACE(render_args, face, "off"),

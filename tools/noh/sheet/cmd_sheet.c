@@ -187,7 +187,7 @@ static int make_sheet(sheet *s, const pack_file *file)
     }
     if (!status && s->tiles.clip) {
         status = figure_open_anims(&anims, &s->tiles.anims, file, &s->figure);
-        s->figure.stands = s->figure.alive && !s->show_bones && figure_rests(&s->figure, &s->tiles.clips);
+        s->figure.stands = !s->show_bones && figure_rests(&s->figure, &s->tiles.clips);
     }
     if (!status) status = draw_sheet(s, file);
     if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
