@@ -8,8 +8,7 @@
  * is annealed once more, with that cost: short stretches are reversed and exchanged (2-opt and or-opt moves), and a
  * change is accepted if it costs nothing, else with a probability that falls with its cost and as the temperature
  * falls. The cost sums, over all columns, the targets that use them. A change affects only the columns of its stretch,
- * so `used` holds that set for every column: the cost before a change is a count of bits, and after it only the stretch
- * is read again. */
+ * so `used` holds that set for every column, and `cost` what it costs: only the stretch is read again. */
 #include "morph_internal.h"
 
 #include <stdlib.h>
@@ -25,15 +24,17 @@
 #define COST_MOST 1000u
 
 typedef struct fold {
-    const morph_bits *vertices;
-    uint32_t *line; /* place -> row of vertices */
+    const uint64_t *bits; /* of vertices */
+    uint32_t *line;       /* place -> row of vertices */
     uint32_t count, words, rect_cost;
     uint32_t columns;
     uint32_t *first;  /* [columns + 1] column -> place */
     uint32_t *column; /* place -> column */
     uint8_t *starts;  /* the column is the first of its strip, or a gap precedes it */
     uint64_t *used;   /* [columns][words] the targets that move a vertex of a column */
-    uint64_t *saved;  /* [STRETCH_MOST + 1][words] `used` of a stretch before it was moved */
+    uint32_t *cost;   /* [columns + 1] */
+    uint64_t *saved;  /* [STRETCH_MOST + 1][words] `used` of a stretch before it was moved, and `cost`: */
+    uint32_t *saved_cost;
     morph_random random;
 } fold;
 
@@ -105,32 +106,45 @@ void morph_fold_order(const uint32_t *line, const morph_region *r, uint32_t *ord
 
 /* ---- the cost of some columns ---- */
 
-static void use_columns(fold *f, uint32_t low, uint32_t high)
+/* Most meshes have at most 64 targets: with a known count of words, loops over them disappear. */
+#if defined(__GNUC__)
+#define FOLD_INLINE static inline __attribute__((always_inline))
+#else
+#define FOLD_INLINE static inline
+#endif
+
+/* A column's texels, and the rectangles that start there, summed over targets. */
+FOLD_INLINE uint32_t column_cost(const fold *f, uint32_t c, uint32_t words)
 {
-    for (uint32_t c = low; c <= high; c++) {
-        uint64_t *used = f->used + (size_t)c * f->words;
-        for (uint32_t w = 0; w < f->words; w++) {
-            uint64_t any = 0;
-            for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++) any |= morph_row(f->vertices, f->line[i])[w];
-            used[w] = any;
-        }
+    const uint64_t *here = f->used + (size_t)c * words, *before = f->starts[c] ? NULL : here - words;
+    uint32_t texels = 0, rects = 0;
+    for (uint32_t w = 0; w < words; w++) {
+        texels += morph_popcount(here[w]);
+        rects += morph_popcount(before ? here[w] & ~before[w] : here[w]);
     }
+    return (f->first[c + 1u] - f->first[c]) * texels + rects * f->rect_cost;
 }
 
-/* The cost of columns low to high: their texels, and the rectangles that start in low to high + 1, summed over targets.
- */
-static int64_t column_cost(const fold *f, uint32_t low, uint32_t high)
+/* Read the vertices of columns low to high. The column behind them starts other rectangles then. */
+FOLD_INLINE void use_columns(fold *f, uint32_t low, uint32_t high, uint32_t words)
 {
-    uint64_t texels = 0, rects = 0;
-    for (uint32_t c = low; c <= high + 1u && c < f->columns; c++) {
-        const uint32_t rows = c <= high ? f->first[c + 1u] - f->first[c] : 0u;
-        const uint64_t *here = f->used + (size_t)c * f->words, *before = f->starts[c] ? NULL : here - f->words;
-        for (uint32_t w = 0; w < f->words; w++) {
-            texels += (uint64_t)rows * morph_popcount(here[w]);
-            rects += morph_popcount(before ? here[w] & ~before[w] : here[w]);
+    for (uint32_t c = low; c <= high; c++) {
+        for (uint32_t w = 0; w < words; w++) {
+            uint64_t any = 0;
+            for (uint32_t i = f->first[c]; i < f->first[c + 1u]; i++) any |= f->bits[(size_t)f->line[i] * words + w];
+            f->used[(size_t)c * words + w] = any;
         }
+        f->cost[c] = column_cost(f, c, words);
     }
-    return (int64_t)(texels + rects * f->rect_cost);
+    if (high + 1u < f->columns) f->cost[high + 1u] = column_cost(f, high + 1u, words);
+}
+
+/* Of columns low to high and the one behind them. */
+static int64_t cost_of(const fold *f, uint32_t low, uint32_t high)
+{
+    int64_t sum = 0;
+    for (uint32_t c = low; c <= high + 1u && c < f->columns; c++) sum += f->cost[c];
+    return sum;
 }
 
 /* ---- annealing ---- */
@@ -144,50 +158,52 @@ static void turn(uint32_t *line, uint32_t low, uint32_t high)
     }
 }
 
-static int same_pattern(const fold *f, uint32_t a, uint32_t b)
+FOLD_INLINE int same_pattern(const fold *f, uint32_t a, uint32_t b, uint32_t words)
 {
-    const uint64_t *p = morph_row(f->vertices, f->line[a]), *q = morph_row(f->vertices, f->line[b]);
+    const uint64_t *p = f->bits + (size_t)f->line[a] * words, *q = f->bits + (size_t)f->line[b] * words;
     uint32_t w = 0;
-    while (w < f->words && p[w] == q[w]) w++; /* a word or two: quicker than memcmp */
-    return w == f->words;
+    while (w < words && p[w] == q[w]) w++;
+    return w == words;
 }
 
 /* The next place at or after `at`, at most `limit`, where the pattern changes. */
-static uint32_t next_change(const fold *f, uint32_t at, uint32_t limit)
+FOLD_INLINE uint32_t next_change(const fold *f, uint32_t at, uint32_t limit, uint32_t words)
 {
-    while (at < limit && at > 0u && same_pattern(f, at - 1u, at)) at++;
+    while (at < limit && at > 0u && same_pattern(f, at - 1u, at, words)) at++;
     return at;
 }
 
 /* Reverse [a, c), or exchange [a, b) and [b, c): both consist of reversals, and are undone by reversals. */
-static void step(fold *f, uint32_t odds)
+FOLD_INLINE void step(fold *f, uint32_t odds, uint32_t words)
 {
     uint32_t a = morph_random_below(&f->random, f->count), b, c, limit, low, high;
     const uint32_t kind = morph_random_below(&f->random, 4u);
-    size_t bytes;
-    int64_t old, cost;
+    size_t bytes, costs;
+    int64_t old;
     limit = a + STRETCH_MOST < f->count ? a + STRETCH_MOST : f->count;
-    if (kind & 1u) a = next_change(f, a, limit);
+    if (kind & 1u) a = next_change(f, a, limit, words);
     b = a + 1u + morph_random_below(&f->random, STRETCH_MOST / 2u);
     if (b >= limit) return;
-    if (kind & 1u) b = next_change(f, b, limit);
+    if (kind & 1u) b = next_change(f, b, limit, words);
     c = b + 1u + morph_random_below(&f->random, STRETCH_MOST / 2u);
     if (c > limit) c = limit;
-    if (kind & 1u && c < limit) c = next_change(f, c, limit);
+    if (kind & 1u && c < limit) c = next_change(f, c, limit, words);
     if (b >= c) return;
     if (kind & 2u) b = c;
     low = f->column[a];
     high = f->column[c - 1u];
-    bytes = (size_t)(high - low + 1u) * f->words * sizeof *f->used;
-    old = column_cost(f, low, high);
-    memcpy(f->saved, f->used + (size_t)low * f->words, bytes);
+    bytes = (size_t)(high - low + 1u) * words * sizeof *f->used;
+    costs = (size_t)(high - low + 2u) * sizeof *f->cost;
+    old = cost_of(f, low, high);
+    memcpy(f->saved, f->used + (size_t)low * words, bytes);
+    memcpy(f->saved_cost, f->cost + low, costs);
     turn(f->line, a, b);
     turn(f->line, b, c);
     if (b < c) turn(f->line, a, c);
-    use_columns(f, low, high);
-    cost = column_cost(f, low, high);
-    if (morph_accepts(&f->random, cost - old, odds)) return;
-    memcpy(f->used + (size_t)low * f->words, f->saved, bytes);
+    use_columns(f, low, high, words);
+    if (morph_accepts(&f->random, cost_of(f, low, high) - old, odds)) return;
+    memcpy(f->used + (size_t)low * words, f->saved, bytes);
+    memcpy(f->cost + low, f->saved_cost, costs);
     if (b < c) turn(f->line, a, c);
     turn(f->line, b, c);
     turn(f->line, a, b);
@@ -202,7 +218,12 @@ static void settle(fold *f)
     if (steps > STEPS_MOST / f->words) steps = STEPS_MOST / f->words;
     for (uint32_t stage = 0; stage < STAGES; stage++) {
         const uint32_t odds = stage < STAGES_WARM ? morph_odds(heat) : 0u;
-        for (uint64_t s = 0; s < steps / STAGES; s++) step(f, odds);
+        for (uint64_t s = 0; s < steps / STAGES; s++) {
+            if (f->words == 1u)
+                step(f, odds, 1u);
+            else
+                step(f, odds, f->words);
+        }
         heat -= heat / 12u;
     }
 }
@@ -215,10 +236,10 @@ static int settle_or_leave(fold *f)
     uint32_t *old = morph_alloc(f->count, sizeof *old);
     if (!old) return 1;
     memcpy(old, f->line, bytes);
-    use_columns(f, 0, f->columns - 1u);
-    before = column_cost(f, 0, f->columns - 1u);
+    use_columns(f, 0, f->columns - 1u, f->words);
+    before = cost_of(f, 0, f->columns - 1u);
     settle(f);
-    if (column_cost(f, 0, f->columns - 1u) > before) memcpy(f->line, old, bytes);
+    if (cost_of(f, 0, f->columns - 1u) > before) memcpy(f->line, old, bytes);
     free(old);
     return 0;
 }
@@ -234,7 +255,7 @@ int morph_fold_settle(const morph_bits *vertices, const morph_region *region, fl
     int failed;
     if (vertices->rows == 0u) return 0;
     memset(&f, 0, sizeof f);
-    f.vertices = vertices;
+    f.bits = vertices->bits;
     f.line = line;
     f.count = vertices->rows;
     f.words = vertices->words;
@@ -244,8 +265,10 @@ int morph_fold_settle(const morph_bits *vertices, const morph_region *region, fl
     f.column = morph_alloc(f.count, sizeof *f.column);
     f.starts = morph_alloc(most_columns(region), sizeof *f.starts);
     f.used = morph_alloc(most_columns(region) * f.words, sizeof *f.used);
+    f.cost = morph_alloc(most_columns(region) + 1u, sizeof *f.cost);
     f.saved = morph_alloc((STRETCH_MOST + 1u) * (size_t)f.words, sizeof *f.saved);
-    failed = !f.first || !f.column || !f.starts || !f.used || !f.saved;
+    f.saved_cost = morph_alloc(STRETCH_MOST + 2u, sizeof *f.saved_cost);
+    failed = !f.first || !f.column || !f.starts || !f.used || !f.cost || !f.saved || !f.saved_cost;
     if (!failed) {
         find_columns(&f, region);
         failed = settle_or_leave(&f);
@@ -254,6 +277,8 @@ int morph_fold_settle(const morph_bits *vertices, const morph_region *region, fl
     free(f.column);
     free(f.starts);
     free(f.used);
+    free(f.cost);
     free(f.saved);
+    free(f.saved_cost);
     return failed;
 }
