@@ -13,10 +13,11 @@ enum {
     CLOSED = 0,
     TEETH = 1,
     /* 1/256 octaves of probability that other lips must accumulate */
-    TO_CLOSED = 1100,
-    TO_TEETH = 1790,
-    TO_OTHER = 2585,
-    FROM_CLOSED = 1070,
+    TO_CLOSED = 620,
+    TO_TEETH = 1000,
+    TO_OTHER = 2160,
+    FROM_CLOSED = 710,
+    FADE = 1100,        /* 1/32768: the share of speech falls by this much a frame: all of it takes 0.3 s */
     LEAST_LIKELY = 128, /* 1/32768: minimum weight of a frame */
     OTHER_SHAPE = 3,    /* halves: the lead that another shape of the same lips needs */
     AROUND = 2,         /* frames on both sides whose weights are averaged, as far as they are known */
@@ -45,14 +46,15 @@ typedef struct ear {
     ear_read kept[KEPT]; /* the latest frame is last */
     /* 1/256 octave: of the likeliest path that ends with these lips; 0: the likeliest of all */
     int32_t cost[LIPS];
+    int32_t speech;                   /* 1/32768: the share of speech in the latest frame read */
     int32_t shapes[NOH_VISEME_COUNT]; /* 1/32768: decaying sums */
     uint8_t shape, lag;
 } ear;
 
 typedef char ear_fits[sizeof(ear) <= NOH_EAR_BYTES ? 1 : -1];
 
-/* 1/256 octaves that lips lose in each frame: synthesisers close and round theirs more than people do. */
-static const uint8_t less[LIPS] = { 26, 0, 174, 0, 0 };
+/* 1/256 octaves that lips lose in each frame: synthesisers round and open theirs more than people do. */
+static const int16_t less[LIPS] = { -20, -70, 250, 110, 0 };
 static const uint8_t opens[NOH_VISEME_COUNT] = { 0, 0, 10, 20, 20, 25, 15, 10, 20, 20, 100, 60, 30, 70, 25 };
 static const uint8_t rounds[NOH_VISEME_COUNT] = { 0, 0, 0, 0, 0, 0, 60, 0, 0, 40, 0, 0, 0, 80, 100 };
 static const uint8_t lips[NOH_VISEME_COUNT] = { CLOSED, CLOSED, TEETH, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
@@ -113,11 +115,13 @@ static void drop_first(void *bytes, size_t drop, size_t size)
     memcpy(bytes, rest, size - drop);
 }
 
-/* The network's weights; silence replaces what is too quiet to be speech, except p, b and m. */
-static void weigh(const ear *e, ear_read *read)
+/* The network's weights; silence replaces what is too quiet to be speech, except p, b and m. The closure of a stop is as
+ * quiet as a pause, but short: the share of speech falls slowly, so that t and k do not close the lips. */
+static void weigh(ear *e, ear_read *read)
 {
-    const int32_t speech = read->level * 6 > ONE ? ONE : read->level * 6;
-    int32_t weights[NOH_VISEME_COUNT], rest = ONE - 1;
+    int32_t weights[NOH_VISEME_COUNT], rest = ONE - 1, speech = read->level * 6 > ONE ? ONE : read->level * 6;
+    if (speech < e->speech - FADE) speech = e->speech - FADE;
+    e->speech = speech;
     noh_ear_read(&noh_ear_tables, (const int8_t(*)[EAR_FIRST])e->past, weights);
     for (uint32_t v = 1; v < NOH_VISEME_COUNT; v++) {
         if (v != NOH_VISEME_PP) weights[v] = (int32_t)((int64_t)weights[v] * speech / ONE);
@@ -183,8 +187,8 @@ static void analyse(ear *e)
     drop_first(e->samples, sizeof(int16_t) * EAR_HOP, sizeof e->samples);
     e->filled = EAR_WINDOW - EAR_HOP;
     if (e->heard >= EAR_AFTER) read_frame(e);
-    e->ready = e->heard >= EAR_AFTER + e->lag;
-    e->heard = (uint16_t)(e->heard + !e->ready);
+    e->heard = (uint16_t)(e->heard + (e->heard <= EAR_AFTER + e->lag));
+    e->ready = e->heard > EAR_AFTER + e->lag;
 }
 
 static void add_sample(ear *e, int64_t value)

@@ -15,6 +15,7 @@
 
 enum { MAX_FRAMES = 1200, SECOND = 16000 };
 
+static const uint8_t lip_class[V] = { 0, 0, 1, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
 static noh_ear_frame frames[MAX_FRAMES];
 static int16_t sound[48000 * 4];
 
@@ -160,6 +161,22 @@ static void every_rate_gives_a_hundred_frames_a_second(void **state)
     assert_non_null(strstr(error.what, "latency_ms must be 40 to 80"));
 }
 
+/* A voice with a t in each half second, 50 ms without sound and 30 ms of hiss; in the end it is silent. */
+static void lips_stay_open_in_a_stop_and_close_in_a_pause(void **state)
+{
+    uint32_t count, seed = 1;
+    (void)state;
+    make_voice(SECOND * 4, 16000);
+    for (size_t i = 0, at = 0; i < SECOND * 4; i++, at = (at + 1) % (SECOND / 2)) {
+        seed = seed * 1664525u + 1013904223u;
+        if (at < SECOND * 8 / 100) sound[i] = (int16_t)((int32_t)(seed >> 19) - 4096);
+        if (at < SECOND * 5 / 100 || i > SECOND * 3) sound[i] = 0;
+    }
+    count = hear_late(16000, NOH_EAR_LATENCY_MAX_MS, SECOND * 4);
+    for (uint32_t f = 50; f < 300; f++) assert_true(f % 50 > 4 || lip_class[frames[f].shape] > 0);
+    for (uint32_t f = 335; f < count; f++) assert_true(lip_class[frames[f].shape] == 0 && frames[f].open < 0.05f);
+}
+
 /* ---- the same whatever the chunks, the clone and the processor ---- */
 
 static uint32_t hash_frames(uint32_t count)
@@ -249,18 +266,34 @@ static void the_latency_is_as_stated(void **state)
     }
 }
 
+/* 10 ms more add a frame to the mean of the opening, and nothing else: the network reads the same frames of the past. */
+static void the_past_is_heard_at_every_latency(void **state)
+{
+    static float open[MAX_FRAMES];
+    float apart[3] = { 0 };
+    (void)state;
+    make_voice(SECOND * 4, 16000);
+    for (uint32_t i = 0; i < 3; i++) {
+        const uint32_t count = hear_late(16000, NOH_EAR_LATENCY_MIN_MS + 10 * i, SECOND * 4);
+        for (uint32_t f = 0; f < count; f++) {
+            apart[i] += fabsf(frames[f].open - open[f]);
+            open[f] = frames[f].open;
+        }
+    }
+    assert_true(apart[1] < 1.5f * apart[2]);
+}
+
 /* One number for all processors: change it together with the tables or the arithmetic, and with nothing else. */
 static void every_processor_has_the_same_bits(void **state)
 {
     (void)state;
     make_voice(SECOND * 4, 16000);
-    assert_int_equal(hash_frames(hear_late(16000, 40, SECOND * 4)), 0x47db929du);
-    assert_int_equal(hash_frames(hear_late(16000, 80, SECOND * 4)), 0xaeee02fdu);
+    assert_int_equal(hash_frames(hear_late(16000, 40, SECOND * 4)), 0xf9dea09du);
+    assert_int_equal(hash_frames(hear_late(16000, 80, SECOND * 4)), 0xc8d1a4fdu);
 }
 
 /* ---- people ---- */
 
-static const uint8_t lip_class[V] = { 0, 0, 1, 4, 4, 4, 4, 4, 4, 4, 3, 3, 4, 2, 2 };
 static const float opens[V] = { 0, 0, .1f, .2f, .2f, .25f, .15f, .1f, .2f, .2f, 1, .6f, .3f, .7f, .25f };
 
 typedef struct score {
@@ -394,7 +427,7 @@ static void people_are_read_as_well_as_measured(void **state)
     static const struct {
         uint32_t latency_ms;
         double five, opening, shut, shut_vowels, changes;
-    } limits[] = { { 40, .675, .74, .8, .057, 8.8 }, { 80, .705, .77, .95, .05, 8.1 } };
+    } limits[] = { { 40, .70, .77, .9, .05, 8.0 }, { 80, .74, .77, .95, .05, 8.0 } };
     (void)state;
     for (int i = 0; i < 2; i++) {
         score s;
@@ -420,12 +453,14 @@ int main(int argc, char **argv)
         cmocka_unit_test(silence_and_direct_current_keep_it_shut),
         cmocka_unit_test(clipped_and_loud_sound_stays_in_range),
         cmocka_unit_test(music_stays_in_range),
+        cmocka_unit_test(lips_stay_open_in_a_stop_and_close_in_a_pause),
         cmocka_unit_test(it_is_as_small_as_it_says),
         cmocka_unit_test(every_rate_gives_a_hundred_frames_a_second),
         cmocka_unit_test(chunks_of_any_size_give_the_same_frames),
         cmocka_unit_test(a_clone_goes_on_as_its_original_does),
         cmocka_unit_test(a_restart_keeps_what_was_learnt),
         cmocka_unit_test(the_latency_is_as_stated),
+        cmocka_unit_test(the_past_is_heard_at_every_latency),
         cmocka_unit_test(every_processor_has_the_same_bits),
         cmocka_unit_test(people_are_read_as_well_as_measured),
     };
