@@ -9,7 +9,7 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 
-/* A hip is a thigh, and a shoulder an upper arm, if no joint below it is. */
+/* A hip is a thigh, and a shoulder an upper arm, if no joint below it is; an arm below an upper arm is a forearm. */
 typedef enum part {
     NONE,
     HEAD,
@@ -147,11 +147,15 @@ static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part we
     return 0;
 }
 
+static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means);
+
 static part part_at(const noh_ragdoll_source *s, uint32_t joint)
 {
     const part name = name_at(s, joint);
     if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
     if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
+    if (name == UPPER_ARM && is_nearest_above(s, joint, UPPER_ARM, FOREARM, HAND) && !is_first(s, joint, UPPER_ARM))
+        return FOREARM;
     return name;
 }
 
@@ -178,6 +182,14 @@ static uint32_t where_meet(const noh_ragdoll_source *s, part means)
         }
     }
     return count > 1 && meet != NOH_JOINT_ROOT ? meet : NOH_NONE;
+}
+
+/* The lowest joint above both: the pelvis itself, or what it hangs from beside the spine; the pelvis if there is none. */
+static uint32_t above_both(const noh_skeleton *k, uint32_t pelvis, uint32_t chest)
+{
+    uint32_t at = pelvis;
+    while (at != NOH_JOINT_ROOT && !noh_joint_is_above(k, at, chest)) at = k->parents[at];
+    return at == NOH_JOINT_ROOT ? pelvis : at;
 }
 
 /* The child of `from` on the way to `to`. */
@@ -238,6 +250,7 @@ noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_r
     *count = rows_of_pack(source, rows);
     if (*count) return NOH_OK;
     t = (trunk){ where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
+    if (t.pelvis != NOH_NONE && t.chest != NOH_NONE) t.pelvis = above_both(&source->joints, t.pelvis, t.chest);
     if (t.pelvis == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no two joints have the names of thighs: build the pack with --ragdoll FILE", 0, 0);

@@ -219,8 +219,20 @@ static int is_above(const uint16_t *parents, uint32_t above, uint32_t joint)
     return joint != NOH_JOINT_ROOT;
 }
 
+/* Of a limb's three bones the second, where another tool gives its name to the first. */
+static void find_middle(const uint16_t *parents, uint16_t limb[3])
+{
+    if (limb[0] == NOH_JOINT_ROOT || limb[1] != NOH_JOINT_ROOT || limb[2] == NOH_JOINT_ROOT) return;
+    const uint16_t at = parents[limb[2]];
+    if (at != NOH_JOINT_ROOT && at != limb[0] && is_above(parents, limb[0], at)) limb[1] = at;
+}
+
 void noh_bones_find_trunk(const uint16_t *parents, uint16_t *bones)
 {
+    for (uint32_t side = 0; side <= NOH_BONE_RIGHT; side += NOH_BONE_RIGHT) {
+        find_middle(parents, bones + NOH_BONE_UPPER_ARM + side);
+        find_middle(parents, bones + NOH_BONE_UPPER_LEG + side);
+    }
     const uint16_t left = bones[NOH_BONE_UPPER_LEG], right = bones[NOH_BONE_UPPER_LEG + NOH_BONE_RIGHT];
     uint16_t at = left == NOH_JOINT_ROOT || right == NOH_JOINT_ROOT ? NOH_JOINT_ROOT : parents[left];
     while (at != NOH_JOINT_ROOT && !is_above(parents, at, right)) at = parents[at];

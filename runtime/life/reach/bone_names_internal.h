@@ -37,7 +37,8 @@ int noh_name_cut(char *key, const char *part, size_t part_bytes);
 /* The bone of a joint with this name; NOH_BONES: none. */
 uint32_t noh_bone_of(const char *name);
 
-/* Hips are above both thighs, whatever joint has their name; the topmost joint above them is the root if none is yet.
+/* Hips are above both thighs, whatever joint has their name; the topmost joint above them is the root if none is yet. A
+ * forearm or shin that no name has told is what its hand or foot hangs from.
  * shapes  parents[] of joints, NOH_JOINT_ROOT for those without one; bones[NOH_BONES] */
 void noh_bones_find_trunk(const uint16_t *parents, uint16_t *bones);
 

@@ -188,17 +188,20 @@ static void rename_joint(skin_asset *a, const char *from, const char *to)
 }
 
 /* Names of other tools: the joints are the same, so the rows are. The pelvis of the first is named as a hip too, its
- * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's. */
+ * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's. The third calls a
+ * forearm an arm. */
 static void other_names_find_the_same_limbs(void **state)
 {
-    static const char *const sides[3][2] = { { "Left", "Right" }, { "L_", "R_" }, { "左", "右" } };
-    static const char *const names[][3] = { { "UpLeg", "Hip", "足" },       { "Leg", "Knee", "ひざ" },
-                                            { "Foot", "Ankle", "足首" },    { "Arm", "Shoulder", "腕" },
-                                            { "ForeArm", "Elbow", "ひじ" }, { "Hand", "Wrist", "手首" } };
+    static const char *const sides[4][2] = { { "Left", "Right" }, { "L_", "R_" }, { "左", "右" }, { "Left", "Right" } };
+    static const char *const names[][4] = {
+        { "UpLeg", "Hip", "足", "UpperLeg" },  { "Leg", "Knee", "ひざ", "Leg" },
+        { "Foot", "Ankle", "足首", "Foot" },   { "Arm", "Shoulder", "腕", "UpperArm" },
+        { "ForeArm", "Elbow", "ひじ", "Arm" }, { "Hand", "Wrist", "手首", "Hand" }
+    };
     noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];
     uint32_t counts[2];
     (void)state;
-    for (int tool = 1; tool < 3; tool++) {
+    for (int tool = 1; tool < 4; tool++) {
         skin_asset a;
         noh_gaze_rig gaze[2];
         skin_asset_open(&a, assets[0], NULL);
@@ -228,6 +231,34 @@ static void other_names_find_the_same_limbs(void **state)
         free((char *)(uintptr_t)a.pack.strings);
         skin_asset_close(&a);
     }
+}
+
+/* Legs may hang from a joint beside the spine, below what carries both. */
+static void a_pelvis_is_above_legs_and_spine(void **state)
+{
+    noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t counts[2], hips = NOH_NONE;
+    skin_asset a;
+    (void)state;
+    skin_asset_open(&a, assets[0], NULL);
+    noh_ragdoll_source s = source_of(&a.pack);
+    uint16_t *parents = test_zeros(s.joints.joint_count * sizeof *parents);
+    memcpy(parents, s.joints.parents, s.joints.joint_count * sizeof *parents);
+    assert_int_equal(noh_ragdoll_find_rows(&s, before, &counts[0], NULL), NOH_OK);
+    for (uint32_t j = 0; j < s.joints.joint_count; j++) {
+        const char *name = noh_pack_joint_name(&a.pack, 0, j);
+        if (strcmp(name, "LHipJoint") == 0) hips = j;
+        if (strcmp(name, "RightUpLeg") == 0) {
+            assert_int_not_equal(hips, NOH_NONE);
+            parents[j] = (uint16_t)hips;
+        }
+    }
+    s.joints.parents = parents;
+    assert_int_equal(noh_ragdoll_find_rows(&s, after, &counts[1], NULL), NOH_OK);
+    assert_int_equal(counts[1], counts[0]);
+    assert_memory_equal(before, after, sizeof before);
+    free(parents);
+    skin_asset_close(&a);
 }
 
 /* ---- falls ---- */
@@ -347,6 +378,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sides_are_alike),
     cmocka_unit_test(rows_out_of_order_are_refused),
     cmocka_unit_test(other_names_find_the_same_limbs),
+    cmocka_unit_test(a_pelvis_is_above_legs_and_spine),
 };
 
 TEST_MAIN(tests, NULL, NULL)
