@@ -69,8 +69,34 @@ static void lips_are_found_in_any_order(void **state)
     }
 }
 
+/* A joint may open lips, too, and no target then says how far: their light is as if they were apart. */
+static void a_jaw_that_is_a_joint_keeps_lips_lit(void **state)
+{
+    (void)state;
+    for (uint16_t jaw = 0; jaw < 2; jaw++) {
+        model *m = face_of(0);
+        model_mesh *mesh = m->meshes;
+        const size_t slots = (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX;
+        float rest = 0.24f;
+        mesh->joints = test_zeros(slots * sizeof *mesh->joints);
+        mesh->joint_weights = test_zeros(slots * sizeof *mesh->joint_weights);
+        for (uint32_t v = 0; v < mesh->vertex_count; v++) {
+            const size_t slot = (size_t)v * MODEL_INFLUENCES_MAX;
+            mesh->joints[slot] = v / COLUMNS < ROWS / 2u ? jaw : 0;
+            mesh->joint_weights[slot] = 1.0f;
+        }
+        assert_int_equal(lip_gaps_find(m, 10.0f, &rest), 0);
+        if (jaw)
+            assert_true(rest == 0.24f);
+        else
+            assert_true(rest < 0.1f);
+        model_free(m);
+    }
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = { cmocka_unit_test(lips_are_found_in_any_order) };
+    const struct CMUnitTest tests[] = { cmocka_unit_test(lips_are_found_in_any_order),
+                                        cmocka_unit_test(a_jaw_that_is_a_joint_keeps_lips_lit) };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -228,6 +228,7 @@ void lip_rim_free(lip_rim *h)
 /* ---- gaps ---- */
 
 #define MIDDLE 0.35 /* of the way to a corner */
+#define JOINTS_SHARED 0.75
 
 /* By how much a target moves the upper lip from the lower one in the middle of the mouth. */
 static double opens_by(const lip_rim *h, const model_target *t, const double up[3])
@@ -267,13 +268,41 @@ static int find_up(lip_rim *h, const noh_face_link *links, uint32_t count, doubl
     return vec_normalize(up);
 }
 
+/* The share of a vertex's joints that another one has, too. */
+static double shared_joints(const model_mesh *mesh, uint32_t a, uint32_t b)
+{
+    const size_t at[2] = { (size_t)a * MODEL_INFLUENCES_MAX, (size_t)b * MODEL_INFLUENCES_MAX };
+    double sum = 0.0;
+    for (size_t i = 0; i < MODEL_INFLUENCES_MAX; i++) {
+        for (size_t k = 0; k < MODEL_INFLUENCES_MAX; k++) {
+            if (mesh->joints[at[0] + i] != mesh->joints[at[1] + k]) continue;
+            sum += (double)fminf(mesh->joint_weights[at[0] + i], mesh->joint_weights[at[1] + k]);
+        }
+    }
+    return sum;
+}
+
+/* Whether joints, such as a jaw, move one lip without the other. */
+static int joints_part(const lip_rim *h)
+{
+    double shared = 0.0, at[3];
+    uint32_t count = 0;
+    for (uint32_t r = 0; r < h->rim_count && h->mesh->joints; r++) {
+        vec_posed(h->mesh->position, NULL, h->rim[r], at);
+        if (lip_aside(h, at) > MIDDLE) continue;
+        shared += shared_joints(h->mesh, h->rim[r], h->upper[r]);
+        count++;
+    }
+    return count && shared < JOINTS_SHARED * count;
+}
+
 static void measure_gaps(model *m, lip_rim *h, float slope, float *rest)
 {
     noh_face_link links[LINKS_MAX];
     const uint32_t count = links_of(h->mesh, links);
     double up[3], apart;
     if (!find_up(h, links, count, up, &apart)) return;
-    *rest = fmaxf((float)(0.5 * apart) * slope, CLOSED);
+    *rest = fmaxf((float)(0.5 * apart) * slope, joints_part(h) ? *rest : CLOSED);
     for (uint32_t t = 0; t < h->mesh->target_count; t++) {
         const float by = (float)(0.5 * opens_by(h, &h->mesh->targets[t], up)) * slope;
         for (uint32_t i = 0; i < m->mesh_count; i++) {
