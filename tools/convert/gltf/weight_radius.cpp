@@ -11,22 +11,28 @@
 namespace gltf
 {
 
-static double length(const float *v)
+static double square(const float *v)
 {
     double x = static_cast<double>(v[0]), y = static_cast<double>(v[1]), z = static_cast<double>(v[2]);
-    return std::sqrt(x * x + y * y + z * z);
+    return x * x + y * y + z * z;
 }
 
 std::vector<double> target_sizes(const model_mesh &mesh)
 {
     std::vector<double> sizes(mesh.target_count, 0.0);
     const double per_uv = mesh.uv && mesh.vertex_count ? model_uv_length(&mesh) : 0.0;
-    for (uint32_t t = 0; t < mesh.target_count; ++t)
+    for (uint32_t t = 0; t < mesh.target_count; ++t) {
+        double largest = 0.0;
         for (size_t v = 0; v < mesh.vertex_count; ++v) {
-            const float *uv = mesh.targets[t].uv ? mesh.targets[t].uv + v * 2 : nullptr;
-            sizes[t] = std::fmax(sizes[t], length(mesh.targets[t].position + v * 3));
-            if (uv) sizes[t] = std::fmax(sizes[t], per_uv * std::hypot(double{ uv[0] }, double{ uv[1] }));
+            const double one = square(mesh.targets[t].position + v * 3);
+            largest = one > largest ? one : largest;
         }
+        sizes[t] = std::sqrt(largest);
+        for (size_t v = 0; v < mesh.vertex_count && mesh.targets[t].uv; ++v) {
+            const float *uv = mesh.targets[t].uv + v * 2;
+            sizes[t] = std::fmax(sizes[t], per_uv * std::hypot(double{ uv[0] }, double{ uv[1] }));
+        }
+    }
     return sizes;
 }
 
