@@ -282,7 +282,7 @@ static void smooth(const ear *e, int32_t *weights)
 static float jaw(const ear *e, const int32_t *weights)
 {
     const int32_t loudness = e->kept[KEPT - 1u - e->lag].level;
-    const int32_t quiet = loudness * 6, loud = ONE * 2 / 5 + loudness / 5 * 3;
+    const int32_t quiet = loudness * 6, loud = ONE * 3 / 5 + loudness / 5 * 2;
     int64_t open = 0;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) open += weights[v] * opens[v] / 100;
     open = open * (quiet < loud ? quiet : loud) / ONE;
