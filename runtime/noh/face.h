@@ -533,7 +533,8 @@ void noh_complexion_random(uint32_t seed, float amount, float user[4]);
  * each phone dominates a stretch of time around its middle, rising and falling at the rates of its class, and shapes
  * are weighted by dominance (Cohen and Massaro, "Modeling coarticulation in synthetic visual speech", 1993). Closed
  * lips are applied last, after all smoothing: p, b and m for at least 34 ms, one frame at 30 Hz, whatever their
- * neighbours; then the lip on the teeth of f and v, in the time that p, b and m leave.
+ * neighbours; then the lip on the teeth of f and v, in the time that p, b and m leave. Lips close a wide open mouth in
+ * 80 ms, a narrow one in 30 ms.
  *
  * Threads: no state; any thread. */
 

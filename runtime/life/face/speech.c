@@ -11,6 +11,7 @@
 #define NEIGHBOURS 8u        /* phones on each side of a tick that can affect it */
 #define HARD_TICKS 1632      /* 34 ms */
 #define HARD_RAMP_TICKS 1440 /* 30 ms, on each side */
+#define OPEN_RAMP_TICKS 2400 /* 50 ms more, if the mouth is wide open: lips move no faster */
 #define MEET_TICKS 576       /* 12 ms: the shortest contact */
 
 /* How long before its middle a phone begins to dominate, how fast its influence decays (1/s), and its strength. */
@@ -102,11 +103,19 @@ static float ramp(int64_t ticks, int64_t length)
     return ticks < length ? 1.0f - (float)ticks / (float)length : 0.0f;
 }
 
+/* How long lips take to close what is open. */
+static int64_t ramp_ticks(const float *visemes)
+{
+    const float open = visemes[NOH_VISEME_AA] + 0.6f * visemes[NOH_VISEME_E] + 0.7f * visemes[NOH_VISEME_OH];
+    return HARD_RAMP_TICKS + (int64_t)((float)OPEN_RAMP_TICKS * open);
+}
+
 /* Closed lips reduce all other shapes. Next to a lip on teeth, closed lips open and close faster, down to MEET_TICKS,
  * so that two neighbouring contacts each have their time. */
 static void shut_lips(const noh_speech *s, uint32_t first, uint32_t end, int64_t tick, float *visemes)
 {
-    int64_t away[2] = { HARD_RAMP_TICKS, HARD_RAMP_TICKS };
+    const int64_t slow = ramp_ticks(visemes);
+    int64_t away[2] = { slow, slow };
     float met, bitten;
     for (uint32_t i = first; i < end; i++) {
         const uint32_t v = s->phones[i].viseme;
@@ -115,8 +124,8 @@ static void shut_lips(const noh_speech *s, uint32_t first, uint32_t end, int64_t
             away[v - NOH_VISEME_PP] = now < away[v - NOH_VISEME_PP] ? now : away[v - NOH_VISEME_PP];
         }
     }
-    met = ramp(away[0], MEET_TICKS + (HARD_RAMP_TICKS - MEET_TICKS) * away[1] / HARD_RAMP_TICKS);
-    bitten = ramp(away[1], HARD_RAMP_TICKS);
+    met = ramp(away[0], MEET_TICKS + (slow - MEET_TICKS) * away[1] / slow);
+    bitten = ramp(away[1], slow);
     bitten = bitten < 1.0f - met ? bitten : 1.0f - met;
     for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) visemes[v] *= 1.0f - (met + bitten);
     visemes[NOH_VISEME_PP] += met;

@@ -141,6 +141,28 @@ static void nothing_leaps(void **state)
     }
 }
 
+/* Lips that close on a wide open mouth take more than a frame at 30 Hz, so that nothing pops. */
+static void lips_close_no_faster_than_people_do(void **state)
+{
+    test_random r = test_random_from(5);
+    noh_phone phones[100];
+    noh_speech s = { phones, 100, 0 };
+    float most = 0.0f;
+    (void)state;
+    for (uint32_t i = 0; i < 100; i++) {
+        phones[i].start = s.end;
+        phones[i].viseme = i % 2u ? PP + (i / 2u) % 2u : AA;
+        s.end += MS * (60u + test_random_below(&r, 140));
+    }
+    for (uint32_t tick = 0; tick + 33u * MS < s.end; tick += MS) {
+        float v[NOH_VISEME_COUNT], w[NOH_VISEME_COUNT];
+        visemes_at(&s, tick, v);
+        visemes_at(&s, tick + 33u * MS, w);
+        most = fmaxf(most, fabsf(w[AA] - v[AA]));
+    }
+    assert_true(most > 0.3f && most < 0.5f);
+}
+
 static void bad_speech_is_refused(void **state)
 {
     const noh_phone falls[] = { { 100, AA }, { 100, OU } }, unknown[] = { { 0, AA }, { 10, NOH_VISEME_COUNT } };
@@ -275,6 +297,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(rounding_begins_before_its_sound),
         cmocka_unit_test(it_is_silent_before_and_after),
         cmocka_unit_test(nothing_leaps),
+        cmocka_unit_test(lips_close_no_faster_than_people_do),
         cmocka_unit_test(bad_speech_is_refused),
         cmocka_unit_test(phones_have_shapes),
         cmocka_unit_test(real_speech_is_followed),
