@@ -233,7 +233,7 @@ static void other_names_find_the_same_limbs(void **state)
     }
 }
 
-/* Legs may hang from a joint beside the spine, below what carries both. */
+/* Legs may hang from a joint next to the spine, below what carries both. */
 static void a_pelvis_is_above_legs_and_spine(void **state)
 {
     noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];

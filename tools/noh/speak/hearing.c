@@ -8,6 +8,7 @@
 #include "noh/face.h"
 
 #define RATE 16000u
+#define OPEN_STEP 0.125f /* of a mouth, in a frame of a track: as fast as speech.c closes lips */
 #define WINDOW_FRAMES (SPEECH_TRACK_RATE / NOH_AMPLITUDE_RATE) /* of a track, in a window of face.h */
 
 typedef struct listening {
@@ -58,6 +59,29 @@ static void hear_ear(listening *l, noh_ear *ear)
     }
 }
 
+static float open_of(const float *visemes)
+{
+    float open = 0.0f;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) open += visemes[v] * viseme_open(v);
+    return open;
+}
+
+/* Leave a frame no more than a step more open than its neighbour, by a blend with it. */
+static void close_towards(speech_track_frame *f, const speech_track_frame *neighbour)
+{
+    const float more = open_of(f->visemes) - open_of(neighbour->visemes);
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT && more > OPEN_STEP; v++) {
+        f->visemes[v] = neighbour->visemes[v] + OPEN_STEP / more * (f->visemes[v] - neighbour->visemes[v]);
+    }
+}
+
+/* The ear shuts lips from one frame to the next; a recording's track knows before that they will. */
+static void slow_lips(speech_track *t)
+{
+    for (uint32_t f = 1; f < t->frame_count; f++) close_towards(&t->frames[f], &t->frames[f - 1u]);
+    for (uint32_t f = t->frame_count; f > 1; f--) close_towards(&t->frames[f - 2u], &t->frames[f - 1u]);
+}
+
 static void by_ear(listening *l, const hearing *how)
 {
     noh_ear ear;
@@ -68,6 +92,7 @@ static void by_ear(listening *l, const hearing *how)
         noh_ear_restart(&ear);
     }
     hear_ear(l, &ear);
+    if (!how->live) slow_lips(l->track);
 }
 
 /* ---- loudness ---- */
