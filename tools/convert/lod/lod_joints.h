@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define LOD_JOINTS_MAX 16u /* 768 bytes of matrices for each instance */
+#define LOD_JOINTS_MAX NOH_FAR_JOINTS_MAX /* 1,536 bytes of matrices for each instance */
 
 typedef struct lod_joints {
     uint32_t level;       /* the finest one that they move; 0: there are none, and all that follows is 0 */

@@ -5,33 +5,37 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "lod_joints_weights.h"
 
 #define ROUNDS 60u
-#define CANDIDATES 8u /* joints of a point that are tried in all combinations */
-#define RIDGE 1e-6    /* of a diagonal element */
+#define RIDGE 1e-3  /* of a diagonal element */
+#define RESTING 0.1 /* points that rest at a joint's centre: what moves hardly anything moves little */
 #define LAWSON_MOST 400.0
 
-/* One fit: the joints as numbers that are not rounded yet, and the least that any round was off by. */
+/* The results of the round that was off the least. */
+typedef struct fit_round {
+    double off;    /* squared */
+    float *motion; /* [joint_count][target_count][6] */
+    float *centre; /* [joint_count][3] */
+    uint8_t *joint;
+    float *weight; /* [count][JOINTS_PER_VERTEX] both */
+} fit_round;
+
 typedef struct fit_state {
     const joint_fit_points *points;
     joint_fit *out;
-    float *motion;      /* [joint_count][target_count][6] */
-    float *best;        /* the same, of the best round */
-    float *best_centre; /* [joint_count][3] */
-    float *predicted;   /* [joint_count][target_count][3] what each joint alone does to a point */
+    fit_round best;
+    float *motion;      /* [joint_count][target_count][6] as numbers that are read from the rounded ones */
+    float *predicted;   /* [joint_count][target_count][6] what each joint alone does to a point and to its normal, which
+                         * counts by its length */
+    float *wanted;      /* [target_count][6] what targets do to it */
+    float *left;        /* [target_count][6] */
+    uint32_t *same;     /* [count] the first point that lies there and is moved alike */
     double *importance; /* [count] */
     double *off;        /* [count] the farthest off in any target, squared */
     double *matrix;     /* [6 joint_count][6 joint_count] */
     double *right;      /* [target_count][6 joint_count] */
-    double best_off;
 } fit_state;
-
-static double dot(const float *a, const float *b, size_t count)
-{
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++) sum += (double)a[i] * (double)b[i];
-    return sum;
-}
 
 static void apply(const float *motion, const float *centre, const float *p, float out[3])
 {
@@ -49,7 +53,8 @@ static float squared_apart(const joint_fit_points *p, uint32_t a, uint32_t b)
     float sum = 0.0f;
     for (size_t i = 0; i < width; i++) {
         const float d = p->move[a * width + i] - p->move[b * width + i];
-        sum += d * d;
+        const float turn = p->normal_length * (p->turn[a * width + i] - p->turn[b * width + i]);
+        sum += d * d + turn * turn;
     }
     return sum;
 }
@@ -76,7 +81,7 @@ static int seed(fit_state *s, uint32_t joint_max)
     const size_t width = 3u * (size_t)p->target_count;
     if (!apart) return 1;
     for (uint32_t v = 0; v < p->count; v++) {
-        apart[v] = (float)dot(p->move + v * width, p->move + v * width, width);
+        apart[v] = (float)joint_dot(p->move + v * width, p->move + v * width, width);
     }
     while (s->out->joint_count < joint_max) {
         uint32_t farthest = 0;
@@ -92,142 +97,46 @@ static int seed(fit_state *s, uint32_t joint_max)
     return 0;
 }
 
-/* ---- weights of one point ---- */
+/* ---- weights of all points ---- */
 
-typedef struct choice {
-    uint32_t count, joint[CANDIDATES];
-    double gram[CANDIDATES][CANDIDATES], with[CANDIDATES];
-} choice;
-
-/* Those that come nearest alone. */
-static void choose(const fit_state *s, uint32_t v, double share, choice *c)
+static void cross(const float *a, const float *b, float times, float out[3])
 {
-    const size_t width = 3u * (size_t)s->points->target_count;
-    const float *move = s->points->move + v * width;
-    double gain[CANDIDATES];
-    c->count = 0;
-    for (uint32_t j = 0; j < s->out->joint_count; j++) {
-        const float *own = s->predicted + j * width;
-        double with, length, w, least;
-        uint32_t at;
-        if (s->out->parent[j] != s->points->parent[v]) continue;
-        with = dot(own, move, width);
-        length = dot(own, own, width);
-        w = length > 0.0 && with > 0.0 ? with / length : 0.0;
-        w = w < share ? w : share;
-        least = w * (w * length - 2.0 * with);
-        at = c->count < CANDIDATES ? c->count++ : CANDIDATES;
-        while (at && least < gain[at - 1u]) {
-            if (at < CANDIDATES) {
-                gain[at] = gain[at - 1u];
-                c->joint[at] = c->joint[at - 1u];
-            }
-            at--;
-        }
-        if (at < CANDIDATES) {
-            gain[at] = least;
-            c->joint[at] = j;
-        }
-    }
-    for (uint32_t i = 0; i < c->count; i++) {
-        const float *own = s->predicted + c->joint[i] * width;
-        c->with[i] = dot(own, move, width);
-        for (uint32_t k = 0; k <= i; k++) {
-            c->gram[i][k] = c->gram[k][i] = dot(own, s->predicted + c->joint[k] * width, width);
-        }
-    }
+    out[0] = times * (a[1] * b[2] - a[2] * b[1]);
+    out[1] = times * (a[2] * b[0] - a[0] * b[2]);
+    out[2] = times * (a[0] * b[1] - a[1] * b[0]);
 }
 
-/* Two right sides at once, by elimination; the matrix is positive once its diagonal has grown a little. */
-static void solve_small(double a[JOINTS_PER_VERTEX][JOINTS_PER_VERTEX], double b[JOINTS_PER_VERTEX][2], uint32_t n)
-{
-    for (uint32_t i = 0; i < n; i++) {
-        for (uint32_t r = i + 1u; r < n; r++) {
-            const double times = a[r][i] / a[i][i];
-            for (uint32_t k = i; k < n; k++) a[r][k] -= times * a[i][k];
-            b[r][0] -= times * b[i][0];
-            b[r][1] -= times * b[i][1];
-        }
-    }
-    for (uint32_t i = n; i-- > 0u;) {
-        for (uint32_t e = 0; e < 2u; e++) {
-            for (uint32_t k = i + 1u; k < n; k++) b[i][e] -= a[i][k] * b[k][e];
-            b[i][e] /= a[i][i];
-        }
-    }
-}
-
-/* Weights of a set of candidates that come nearest: none below 0, their sum at most the share, or all of it where no
- * slot is left for the parent. Returns the change of the squared distance; above 0: another set is better. */
-static double weigh(const choice *c, const uint32_t *set, uint32_t n, double share, int whole,
-                    double w[JOINTS_PER_VERTEX])
-{
-    double a[JOINTS_PER_VERTEX][JOINTS_PER_VERTEX], b[JOINTS_PER_VERTEX][2], sum = 0.0, ones = 0.0, change = 0.0;
-    for (uint32_t i = 0; i < n; i++) {
-        for (uint32_t k = 0; k < n; k++) a[i][k] = c->gram[set[i]][set[k]];
-        a[i][i] += RIDGE * a[i][i] + 1e-20;
-        b[i][0] = c->with[set[i]];
-        b[i][1] = 1.0;
-    }
-    solve_small(a, b, n);
-    for (uint32_t i = 0; i < n; i++) {
-        sum += b[i][0];
-        ones += b[i][1];
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        w[i] = sum > share || whole ? b[i][0] - (sum - share) / ones * b[i][1] : b[i][0];
-        if (!(w[i] >= 0.0)) return 1.0;
-    }
-    for (uint32_t i = 0; i < n; i++) {
-        change -= 2.0 * w[i] * c->with[set[i]];
-        for (uint32_t k = 0; k < n; k++) change += w[i] * w[k] * c->gram[set[i]][set[k]];
-    }
-    return change;
-}
-
-/* All sets of candidates are tried: with eight there are 162 of at most four. */
-static void weigh_point(fit_state *s, uint32_t v)
-{
-    const double share = (double)s->points->share[v];
-    uint8_t *joint = s->out->joint + v * (size_t)JOINTS_PER_VERTEX;
-    float *weight = s->out->weight + v * (size_t)JOINTS_PER_VERTEX;
-    double best = 0.0;
-    choice c;
-    choose(s, v, share, &c);
-    memset(joint, 0, JOINTS_PER_VERTEX);
-    memset(weight, 0, JOINTS_PER_VERTEX * sizeof *weight);
-    for (uint32_t bits = 1; bits < 1u << c.count; bits++) {
-        uint32_t set[JOINTS_PER_VERTEX], n = 0, count = 0;
-        double w[JOINTS_PER_VERTEX], change;
-        for (uint32_t i = 0; i < c.count; i++) count += bits >> i & 1u;
-        if (count > s->points->slots[v]) continue;
-        for (uint32_t i = 0; i < c.count; i++) {
-            if (bits >> i & 1u) set[n++] = i;
-        }
-        change = weigh(&c, set, n, share, n == s->points->slots[v], w);
-        if (change < best) {
-            best = change;
-            memset(weight, 0, JOINTS_PER_VERTEX * sizeof *weight);
-            for (uint32_t i = 0; i < n; i++) {
-                joint[i] = (uint8_t)c.joint[set[i]];
-                weight[i] = (float)w[i];
-            }
-        }
-    }
-}
-
-static double farthest_off(const fit_state *s, uint32_t v)
+static void fill_columns(fit_state *s, uint32_t v)
 {
     const joint_fit_points *p = s->points;
-    const size_t width = 3u * (size_t)p->target_count;
+    const size_t targets = p->target_count;
+    const float *place = p->place + 3u * (size_t)v, *normal = p->normal + 3u * (size_t)v;
+    for (size_t t = 0; t < targets; t++) {
+        const size_t from = 3u * (v * targets + t);
+        memcpy(s->wanted + 6u * t, p->move + from, 3u * sizeof(float));
+        for (size_t k = 0; k < 3u; k++) s->wanted[6u * t + 3u + k] = p->normal_length * p->turn[from + k];
+    }
+    for (uint32_t j = 0; j < s->out->joint_count; j++) {
+        for (size_t t = 0; t < targets; t++) {
+            const size_t at = 6u * (j * targets + t);
+            apply(s->motion + at, s->out->centre + 3u * j, place, s->predicted + at);
+            cross(s->motion + at + 3u, normal, p->normal_length, s->predicted + at + 3u);
+        }
+    }
+}
+
+/* The farthest that any target takes the point off, squared. */
+static double farthest_off(const fit_state *s, uint32_t v)
+{
+    const size_t targets = s->points->target_count;
     double most = 0.0;
-    for (size_t t = 0; t < p->target_count; t++) {
+    for (size_t t = 0; t < targets; t++) {
         double square = 0.0;
         for (size_t k = 0; k < 3u; k++) {
-            double d = -(double)p->move[v * width + 3u * t + k];
+            double d = -(double)s->wanted[6u * t + k];
             for (size_t i = 0; i < JOINTS_PER_VERTEX; i++) {
                 const size_t at = v * (size_t)JOINTS_PER_VERTEX + i;
-                d += (double)s->out->weight[at] * (double)s->predicted[s->out->joint[at] * width + 3u * t + k];
+                d += (double)s->out->weight[at] * (double)s->predicted[6u * (s->out->joint[at] * targets + t) + k];
             }
             square += d * d;
         }
@@ -236,20 +145,32 @@ static double farthest_off(const fit_state *s, uint32_t v)
     return most;
 }
 
+static void weigh_point(fit_state *s, uint32_t v)
+{
+    uint8_t *joint = s->out->joint + v * (size_t)JOINTS_PER_VERTEX;
+    float *weight = s->out->weight + v * (size_t)JOINTS_PER_VERTEX;
+    const size_t first = s->same[v] * (size_t)JOINTS_PER_VERTEX;
+    if (s->same[v] != v) { /* whose normal may be another: the surface stays closed */
+        memcpy(joint, s->out->joint + first, JOINTS_PER_VERTEX);
+        memcpy(weight, s->out->weight + first, JOINTS_PER_VERTEX * sizeof *weight);
+        s->off[v] = s->off[s->same[v]];
+        return;
+    }
+    fill_columns(s, v);
+    const joint_columns columns = {
+        s->out->joint_count,  6u * (size_t)s->points->target_count, s->predicted,       s->wanted, s->out->parent,
+        s->points->parent[v], (double)s->points->share[v],          s->points->slots[v]
+    };
+    joint_weigh(&columns, joint, weight, s->left);
+    s->off[v] = farthest_off(s, v);
+}
+
 /* Returns the farthest that any point is off, squared. */
 static double weigh_all(fit_state *s)
 {
-    const joint_fit_points *p = s->points;
     double most = 0.0;
-    for (uint32_t v = 0; v < p->count; v++) {
-        for (uint32_t j = 0; j < s->out->joint_count; j++) {
-            for (size_t t = 0; t < p->target_count; t++) {
-                const size_t at = j * (size_t)p->target_count + t;
-                apply(s->motion + 6u * at, s->out->centre + 3u * j, p->place + 3u * (size_t)v, s->predicted + 3u * at);
-            }
-        }
+    for (uint32_t v = 0; v < s->points->count; v++) {
         weigh_point(s, v);
-        s->off[v] = farthest_off(s, v);
         most = s->off[v] > most ? s->off[v] : most;
     }
     return most;
@@ -319,10 +240,12 @@ static void add_point(fit_state *s, uint32_t v)
     }
 }
 
-/* Cholesky's, in place: the lower half. */
-static void factor(double *a, size_t size)
+/* Cholesky's, in place: the lower half. length: what a turn of 1 counts as */
+static void factor(double *a, size_t size, double length)
 {
-    for (size_t i = 0; i < size; i++) a[i * size + i] += a[i * size + i] > 0.0 ? RIDGE * a[i * size + i] : 1.0;
+    for (size_t i = 0; i < size; i++) {
+        a[i * size + i] += RIDGE * a[i * size + i] + RESTING * (i % 6u < 3u ? 1.0 : length * length);
+    }
     for (size_t i = 0; i < size; i++) {
         for (size_t k = 0; k <= i; k++) {
             double sum = a[i * size + k];
@@ -351,7 +274,7 @@ static void move_joints(fit_state *s)
     memset(s->matrix, 0, size * size * sizeof *s->matrix);
     memset(s->right, 0, targets * size * sizeof *s->right);
     for (uint32_t v = 0; v < s->points->count; v++) add_point(s, v);
-    factor(s->matrix, size);
+    factor(s->matrix, size, (double)s->points->normal_length);
     for (size_t t = 0; t < targets; t++) {
         solve(s->matrix, size, s->right + t * size);
         for (size_t i = 0; i < size; i++) {
@@ -396,26 +319,59 @@ static void round_joint(fit_state *s, uint32_t j)
     }
 }
 
+static void find_same(fit_state *s)
+{
+    const joint_fit_points *p = s->points;
+    const size_t width = 3u * (size_t)p->target_count;
+    for (uint32_t v = 0; v < p->count; v++) {
+        uint32_t u = 0;
+        while (u < v && (memcmp(p->place + 3u * u, p->place + 3u * v, 3u * sizeof(float)) ||
+                         memcmp(p->move + u * width, p->move + v * width, width * sizeof(float)) ||
+                         p->parent[u] != p->parent[v] || p->share[u] != p->share[v] || p->slots[u] != p->slots[v])) {
+            u++;
+        }
+        s->same[v] = u;
+    }
+}
+
+/* Copy a round's results from or to the best ones. */
+static void copy_round(fit_state *s, int restore)
+{
+    const size_t joints = s->out->joint_count, count = s->points->count;
+    const struct {
+        void *now, *best;
+        size_t bytes;
+    } arrays[] = { { s->motion, s->best.motion, 6u * joints * s->points->target_count * sizeof *s->motion },
+                   { s->out->centre, s->best.centre, 3u * joints * sizeof *s->out->centre },
+                   { s->out->joint, s->best.joint, count * JOINTS_PER_VERTEX },
+                   { s->out->weight, s->best.weight, count * JOINTS_PER_VERTEX * sizeof *s->out->weight } };
+    for (size_t i = 0; i < sizeof arrays / sizeof arrays[0]; i++) {
+        memcpy(restore ? arrays[i].now : arrays[i].best, restore ? arrays[i].best : arrays[i].now, arrays[i].bytes);
+    }
+}
+
+static void round_joints(fit_state *s)
+{
+    for (uint32_t j = 0; j < s->out->joint_count; j++) round_joint(s, j);
+}
+
 static void run(fit_state *s)
 {
-    const size_t numbers = 6u * (size_t)s->out->joint_count * s->points->target_count * sizeof *s->motion;
-    const size_t centres = 3u * (size_t)s->out->joint_count * sizeof(float);
+    find_same(s);
     for (uint32_t v = 0; v < s->points->count; v++) s->importance[v] = 1.0;
-    s->best_off = HUGE_VAL;
+    s->best.off = HUGE_VAL;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         const double off = weigh_all(s);
-        if (round && off < s->best_off) {
-            s->best_off = off;
-            memcpy(s->best, s->motion, numbers);
-            memcpy(s->best_centre, s->out->centre, centres);
+        if (round && off < s->best.off) {
+            s->best.off = off;
+            copy_round(s, 0);
         }
         if (round) weigh_importance(s);
         move_joints(s);
+        round_joints(s);
     }
-    memcpy(s->motion, s->best, numbers);
-    memcpy(s->out->centre, s->best_centre, centres);
-    for (uint32_t j = 0; j < s->out->joint_count; j++) round_joint(s, j);
-    (void)weigh_all(s);
+    copy_round(s, 1);
+    round_joints(s);
 }
 
 static int allocate(fit_state *s, uint32_t joint_max)
@@ -430,15 +386,21 @@ static int allocate(fit_state *s, uint32_t joint_max)
     f->joint = model_zeros(count, JOINTS_PER_VERTEX * sizeof *f->joint);
     f->weight = model_zeros(count, JOINTS_PER_VERTEX * sizeof *f->weight);
     s->motion = model_zeros(joints * targets, 6u * sizeof *s->motion);
-    s->best = model_zeros(joints * targets, 6u * sizeof *s->best);
-    s->best_centre = model_zeros(joints, 3u * sizeof *s->best_centre);
-    s->predicted = model_zeros(joints * targets, 3u * sizeof *s->predicted);
+    s->best.motion = model_zeros(joints * targets, 6u * sizeof *s->best.motion);
+    s->best.centre = model_zeros(joints, 3u * sizeof *s->best.centre);
+    s->best.joint = model_zeros(count, JOINTS_PER_VERTEX * sizeof *s->best.joint);
+    s->best.weight = model_zeros(count, JOINTS_PER_VERTEX * sizeof *s->best.weight);
+    s->predicted = model_zeros(joints * targets, 6u * sizeof *s->predicted);
+    s->wanted = model_zeros(targets, 6u * sizeof *s->wanted);
+    s->left = model_zeros(targets, 6u * sizeof *s->left);
+    s->same = model_zeros(count, sizeof *s->same);
     s->importance = model_zeros(count, sizeof *s->importance);
     s->off = model_zeros(count, sizeof *s->off);
     s->matrix = model_zeros(36u * joints * joints, sizeof *s->matrix);
     s->right = model_zeros(6u * joints * targets, sizeof *s->right);
-    return !f->parent || !f->centre || !f->scale || !f->motion || !f->joint || !f->weight || !s->motion || !s->best ||
-           !s->best_centre || !s->predicted || !s->importance || !s->off || !s->matrix || !s->right;
+    return !f->parent || !f->centre || !f->scale || !f->motion || !f->joint || !f->weight || !s->motion ||
+           !s->best.motion || !s->best.centre || !s->best.joint || !s->best.weight || !s->predicted || !s->wanted ||
+           !s->left || !s->same || !s->importance || !s->off || !s->matrix || !s->right;
 }
 
 int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit *out)
@@ -452,9 +414,14 @@ int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit
     failed = allocate(&s, joint_max) || seed(&s, joint_max);
     if (!failed && out->joint_count) run(&s);
     free(s.motion);
-    free(s.best);
-    free(s.best_centre);
+    free(s.best.motion);
+    free(s.best.centre);
+    free(s.best.joint);
+    free(s.best.weight);
     free(s.predicted);
+    free(s.wanted);
+    free(s.left);
+    free(s.same);
     free(s.importance);
     free(s.off);
     free(s.matrix);

@@ -15,7 +15,7 @@
 
 #define JOINTS_PER_VERTEX 4u
 
-/* Points that lie at one place and are moved alike get the same weights: normals do not change these. */
+/* Points that lie at one place and are moved alike get the same weights, fitted to the first one's normal. */
 typedef struct joint_fit_points {
     uint32_t count, target_count;
     const float *place, *normal; /* [count][3] */
