@@ -43,10 +43,10 @@ expect 0 'verify of levels by error'
 
 # ---- vertices of their own ----
 
-noh build "$arm" -o "$work/own.noh" --lod 4
-expect 0 'build --lod 4'
-noh build "$arm" -o "$work/shared.noh" --lod 4 --lod-own 0
-expect 0 'build --lod 4 --lod-own 0'
+noh build "$arm" -o "$work/own.noh" --lod 3
+expect 0 'build --lod 3'
+noh build "$arm" -o "$work/shared.noh" --lod 3 --lod-own 0
+expect 0 'build --lod 3 --lod-own 0'
 check 'without vertices of their own the pack is smaller' test "$(wc -c <"$work/shared.noh")" -lt "$(wc -c <"$work/own.noh")"
 noh verify "$work/own.noh"
 expect 0 'verify of vertices of their own'

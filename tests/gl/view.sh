@@ -81,7 +81,7 @@ printf '0 0 0 0 0 0 0 0 0\n0 0 100 0 0 0 0 0 0\n100 0 0 0 0 0 0 0 0\n' >>"$work/
 run_for() { # FRAMES OUT ARGUMENTS...
     frames=$1 out=$2
     shift 2
-    noh view "$work/run.bvh" --frames "$frames" --clip run --size 1200x1000 --screenshot "$work/$out.png" "$@"
+    noh view "$work/run.bvh" --frames "$frames" --clip run --size 820x600 --screenshot "$work/$out.png" "$@"
     expect 0 "$frames frames of a run, $out"
 }
 changed() { # pixels of a hundred thousand in which a screenshot differs from the first
@@ -156,7 +156,7 @@ close_viewer() { # NAME
 }
 
 cd "$work" || exit 1
-open_viewer 1280x800
+open_viewer 1000x600
 check 'a window opens' test -n "$window"
 if [ -z "$window" ]; then
     sed 's/^/# /' "$work/err"
@@ -168,24 +168,24 @@ rest=$shot
 check 'F11 saves the figure' test -f "$rest"
 "$build/noh" render "$mask" -o "$work/render.png" --size "$(png_size "$rest")" --camera full --pose rest >/dev/null
 check 'which is what noh render draws' same "$rest" "$work/render.png"
-drag 610 300 500 350
+drag 470 230 360 280
 check 'a drag turns the camera' differ "$rest" "$shot"
 xdotool key f
 figure
 check 'F goes back to where it was' same "$rest" "$shot"
-xdotool mousemove 610 300 click 4
+xdotool mousemove 470 230 click 4
 figure
 check 'the wheel brings it nearer' differ "$rest" "$shot"
 xdotool key f
 xdotool key Tab
 figure
-check 'Tab takes the panels away' test "$(png_size "$shot")" = 1280x800
+check 'Tab takes the panels away' test "$(png_size "$shot")" = 1000x600
 xdotool key Tab
 xdotool key F12
 shots=$((shots + 1))
 tries=0
 while [ ! -f "$work/noh-window-$shots.png" ] && [ $tries -lt 6000 ] && kill -0 $viewer 2>/dev/null; do sleep 0.1; tries=$((tries + 1)); done
-check 'F12 saves the window' test "$(png_size "noh-window-$shots.png")" = 1280x800
+check 'F12 saves the window' test "$(png_size "noh-window-$shots.png")" = 1000x600
 lose
 check 'F10 loses the context, and a new one comes' test "${window:-$lost}" != "$lost"
 figure
@@ -214,11 +214,11 @@ fi
 xprop -root -f RESOURCE_MANAGER 8s -set RESOURCE_MANAGER 'Xft.dpi: 192'
 rm -f "$work"/noh-*.png
 shots=0
-open_viewer 860x480
+open_viewer 780x330
 figure
 sized=$shot
-check 'a dense screen gets more pixels of the figure' test "$(png_size "$shot")" = 400x728
-drag 800 300 700 350
+check 'a dense screen gets more pixels of the figure' test "$(png_size "$shot")" = 240x428
+drag 780 250 700 290
 check 'and drags where they are seen' differ "$sized" "$shot"
 close_viewer 'Escape ends this one too'
 finish

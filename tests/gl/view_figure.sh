@@ -65,7 +65,7 @@ check 'a clip plays' differ speak_1.png speak_2.png
 check 'space pauses it' same paused_1.png paused_2.png
 check 'its time can be scrubbed' differ paused_2.png scrubbed.png
 check 'another path draws the same figure' alike scrubbed.png mrt.png
-check 'Tab takes the panels away' test "$(png_size wide.png)" = 900x600
+check 'Tab takes the panels away' test "$(png_size wide.png)" = 820x500
 check 'after a lost context all is as it was' alike mrt.png lost.png
 
 # ---- light ----
@@ -153,7 +153,7 @@ check 'which is chosen again' same far.png far_again.png
 
 # ---- a body: picking, layers, a blend space ----
 
-hand 'picking and layers' "$puppet" --play off <<'HAND'
+view_size=900x600 hand 'picking and layers' "$puppet" --play off <<'HAND'
 save rest.png
 click 422 134
 expect "picked mesh 'mask', submesh 0 'paint', triangle "
@@ -286,7 +286,7 @@ HAND
 hand 'pushes' "$build/demo/puppet_falls.noh" --clip walk <<'HAND'
 expect "body stands"
 save standing.png
-alt-click 418 220
+alt-click 380 175
 until "body falls" 60
 expect-not picked
 save falling.png

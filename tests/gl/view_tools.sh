@@ -165,7 +165,7 @@ frames 5
 expect-not "film noh"
 HAND
 check 'are there, one for each fifth of a second' sh -c 'test -f "$1/noh_0006.png" && ! test -f "$1/noh_0007.png"' - "$work"
-check 'of the size of the picture' test "$(png_size noh_0003.png)" = 240x484
+check 'of the size of the picture' test "$(png_size noh_0003.png)" = 160x384
 check 'and move' differ noh_0000.png noh_0003.png
 rm -f "$work"/noh_*.png
 hand 'a film that is stopped' "$mask" --play off <<'HAND'

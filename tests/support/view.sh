@@ -37,7 +37,7 @@ hand() {
     name=$1
     shift
     cat >"$work/hand.txt"
-    (cd "$work" && "$build/noh" view "$@" --face off --size "${view_size:-900x600}" --script hand.txt) \
+    (cd "$work" && "$build/noh" view "$@" --face off --size "${view_size:-820x500}" --script hand.txt) \
         >"$work/out" 2>"$work/err"
     code=$?
     expect 0 "$name"
