@@ -251,20 +251,23 @@ static void the_iris_lies_behind_the_cornea(void **state)
     scene_close(&s);
 }
 
-/* Lids darken the ball towards their edges, and only where they are known. */
+/* Lids darken the ball towards their edges, and only where they are known; so, too, in a mesh that has z up. */
 static void lids_darken_the_ball(void **state)
 {
+    static const float z_up[12] = { 1, 0, 0, 0, 0, 0, 1, 0, 0, -1, 0, 0 };
     model_material eye = eye_of(0.5f, 0.5f, 0.5f);
-    uint8_t *rgba[2];
+    uint8_t *rgba[3];
     (void)state;
-    for (int i = 0; i < 2; i++) {
+    for (int i = 0; i < 3; i++) {
         scene s;
+        eye.surface_values[1] = i == 2 ? -IRIS : 0.0f;
+        eye.surface_values[2] = i == 2 ? 0.0f : IRIS;
         eye.surface_more[0] = i ? 0.5f : 0.0f;
         eye.surface_more[3] = i ? -0.4f : 0.0f;
         scene_open(&s, &eye, NULL, 0, NULL);
         s.key[1] = 0.6f;
         s.key[2] = -0.8f; /* from behind: no lamp in the eye */
-        rgba[i] = scene_draw(&s, SPHERE, scene_identity, NULL);
+        rgba[i] = scene_draw(&s, SPHERE, i == 2 ? z_up : scene_identity, NULL);
         scene_close(&s);
     }
     for (int i = 0; i < 2; i++) {
@@ -273,9 +276,9 @@ static void lids_darken_the_ball(void **state)
         const double share = decoded(rgba[1][p]) / decoded(rgba[0][p]);
         print_message("# %s: %.3f of the light\n", i ? "in the middle of the eye" : "close to the upper lid", share);
         assert_true(i ? share > 0.88 : share < 0.85);
+        assert_true(fabs(decoded(rgba[2][p]) / decoded(rgba[1][p]) - 1.0) < 0.02);
     }
-    free(rgba[0]);
-    free(rgba[1]);
+    for (int i = 0; i < 3; i++) free(rgba[i]);
 }
 
 /* The dark rim of an iris takes as much light, wherever it lies between the pixels: its edges are a pixel wide at least,

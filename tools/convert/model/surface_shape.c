@@ -356,8 +356,8 @@ static int add_eyes(const model *m, const model_mesh *mesh, const model_submesh 
         if (!used[v] || island[v] != v) continue;
         count = islands_list(islands->next, v, mesh->vertex_count, islands->room);
         if (eye_ball_fit(mesh->position, islands->room, count, &b.sphere) || !find_ways(&b) || !find_iris(&b)) continue;
-        /* for shaders y is up, and the sign of a vertex's x is its side of the nose */
-        if (b.above[1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
+        /* for shaders y is up, or z if the gaze is along y, and the sign of a vertex's x is its side of the nose */
+        if (b.above[fabs(b.gaze[1]) > 0.7 ? 2 : 1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
         add_eye(&b, mean);
     }
     free(used);
