@@ -1,6 +1,7 @@
 /* gltf_left_out.cpp: warnings about features that the model does not store, one for each kind. */
 #include "gltf_internal.h"
 
+#include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -116,9 +117,52 @@ static std::vector<bool> hidden_nodes(const file &f)
     return hidden;
 }
 
-/* A mesh that only hidden nodes have is not kept; its materials and textures are. */
+static std::array<uint32_t *, 10> maps_of(model_material &m)
+{
+    return { &m.base_color_texture, &m.normal_texture,   &m.surface_texture,  &m.emissive_texture, &m.wrinkle_texture,
+             &m.more_textures[0],   &m.more_textures[1], &m.more_textures[2], &m.specular_texture, &m.color_texture };
+}
+
+static std::set<uint32_t> materials_of(const model &m)
+{
+    std::set<uint32_t> all;
+    for (uint32_t i = 0; i < m.mesh_count; ++i)
+        for (uint32_t k = 0; k < m.meshes[i].submesh_count; ++k) all.insert(m.meshes[i].submeshes[k].material);
+    return all;
+}
+
+/* Textures that only materials of dropped meshes have. Those materials stay, without maps: numbers of materials do not
+ * change. had: the materials of meshes before */
+static void drop_textures(model &m, const std::set<uint32_t> &had)
+{
+    const std::set<uint32_t> has = materials_of(m);
+    if (had == has) return;
+    std::vector<uint32_t> moved(m.texture_count, MODEL_NONE);
+    for (uint32_t i = 0; i < m.material_count; ++i)
+        for (uint32_t *map : maps_of(m.materials[i])) {
+            if (had.count(i) && !has.count(i)) *map = MODEL_NONE;
+            if (*map != MODEL_NONE) moved[*map] = 0;
+        }
+    uint32_t kept = 0;
+    for (uint32_t i = 0; i < m.texture_count; ++i) {
+        if (moved[i] != MODEL_NONE) {
+            std::swap(m.textures[moved[i] = kept++], m.textures[i]);
+            continue;
+        }
+        free(m.textures[i].name);
+        free(m.textures[i].rgba);
+        m.textures[i] = {};
+    }
+    m.texture_count = kept;
+    for (uint32_t i = 0; i < m.material_count; ++i)
+        for (uint32_t *map : maps_of(m.materials[i]))
+            if (*map != MODEL_NONE) *map = moved[*map];
+}
+
+/* A mesh that only hidden nodes have is not kept, nor are textures that only such meshes have. */
 static void drop_hidden_meshes(file &f, std::vector<bool> &was_hidden)
 {
+    const std::set<uint32_t> had = materials_of(*f.out);
     for (size_t i = 0; i < f.out->node_count; ++i)
         if (f.out->nodes[i].mesh != MODEL_NONE) was_hidden[f.out->nodes[i].mesh] = false;
     for (uint32_t mesh = f.out->mesh_count; mesh-- > 0;) {
@@ -127,6 +171,7 @@ static void drop_hidden_meshes(file &f, std::vector<bool> &was_hidden)
         for (uint32_t &own : f.mesh_of)
             if (own != MODEL_NONE && own >= mesh) own = own == mesh ? MODEL_NONE : own - 1;
     }
+    drop_textures(*f.out, had);
 }
 
 /* A file that shows nothing is drawn whole. */
