@@ -14,6 +14,7 @@
 #define FOLLOW 0.9f     /* share of a point's correction that is removed from the velocity of the previous one */
 #define SPEED_MAX 20.0f /* metres per second; exceeded only after a teleport without reset */
 #define PASSES 4        /* over spheres that overlap */
+#define SEAM 0.02f      /* share of a sphere's squared radius that hair may be inside of it where another overlaps it */
 #define GUST_STEPS 24u  /* between values of the noise: 0.4 s */
 #define BEND 2.6f       /* radians that a hair bends at most from root to tip, more than at rest: no loops */
 #define LEAN_ROOT 0.98f /* the least cosine of a segment and itself at rest, at the root */
@@ -135,15 +136,17 @@ static NOH_NEVER_INLINE lane3 any_side(lanes mask, lane3 way, lane3 side)
 }
 
 /* Turn directions away from a sphere until the point at `length` along them from `head` is outside the sphere. The
- * heads are outside, so such a direction always exists; lengths do not change. Returns the lanes that were inside. */
-NOH_ALWAYS_INLINE lanes turn_away(const obstacles *o, uint32_t i, lane3 head, lanes length, lane3 *direction)
+ * heads are outside, so such a direction always exists; lengths do not change. Returns the lanes that were inside, and
+ * adds those that were deep inside: turns away from spheres that overlap only approach the seam between them. */
+NOH_ALWAYS_INLINE lanes turn_away(const obstacles *o, uint32_t i, lane3 head, lanes length, lane3 *direction,
+                                  lanes *deep)
 {
     const lanes zero = lanes_set(0.0f), one = lanes_set(1.0f), twice = lanes_add(length, length);
     lane3 way = lane3_sub(lane3_set(o->spheres[i].centre), head);
     const lanes square = lane3_dot(way, way);
     const lanes reach = lanes_sub(lanes_add(lanes_mul(length, length), square), o->square[i]);
-    const lanes in = lanes_and(lanes_less(reach, lanes_mul(twice, lane3_dot(*direction, way))),
-                               lanes_less(zero, square));
+    const lanes toward = lanes_mul(twice, lane3_dot(*direction, way));
+    const lanes in = lanes_and(lanes_less(reach, toward), lanes_less(zero, square));
     if (!lanes_any(in)) return in;
     const lanes inverse = lanes_inverse_root(in, square);
     const lanes most = lanes_mul(lanes_div(reach, twice), inverse), hit = lanes_and(in, lanes_less(most, one));
@@ -156,6 +159,8 @@ NOH_ALWAYS_INLINE lanes turn_away(const obstacles *o, uint32_t i, lane3 head, la
     const lanes cosine = lanes_max(most, lanes_set(-1.0f)), rest = lanes_sub(one, lanes_mul(cosine, cosine));
     const lanes sine = lanes_sqrt(lanes_max(rest, zero));
     *direction = lane3_choose(hit, lane3_madd(lane3_scale(way, cosine), sine, side), *direction);
+    const lanes depth = lanes_sub(toward, reach), seam = lanes_mul(lanes_set(SEAM), o->square[i]);
+    *deep = lanes_or(*deep, lanes_and(hit, lanes_less(seam, depth)));
     return hit;
 }
 
@@ -170,14 +175,17 @@ NOH_ALWAYS_INLINE lane3 follow(const obstacles *o, lane3 head, lanes length, lan
 {
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
     lane3 direction = unit_or(lane3_sub(p, head), lane3_set(down));
-    lanes turned = lanes_less(lanes_set(0.0f), lanes_set(1.0f));
+    const lanes none = lanes_less(lanes_set(0.0f), lanes_set(0.0f));
+    lanes turned = lanes_less(lanes_set(0.0f), lanes_set(1.0f)), deep = none;
     for (int pass = 0; pass < PASSES && lanes_any(turned); pass++) {
-        turned = lanes_less(lanes_set(0.0f), lanes_set(0.0f));
-        for (uint32_t i = 0; i < o->count; i++) turned = lanes_or(turned, turn_away(o, i, head, length, &direction));
+        turned = deep = none;
+        for (uint32_t i = 0; i < o->count; i++) {
+            turned = lanes_or(turned, turn_away(o, i, head, length, &direction, &deep));
+        }
     }
-    if (o->count > 1u && lanes_any(turned)) { /* between spheres: away from all of them */
+    if (o->count > 1u && lanes_any(deep)) { /* between spheres: away from all of them */
         const lane3 away = unit_or(lane3_sub(head, lane3_set(o->middle)), lane3_set(down));
-        direction = lane3_choose(turned, away, direction);
+        direction = lane3_choose(deep, away, direction);
     }
     return lane3_madd(head, length, direction);
 }
