@@ -60,6 +60,19 @@ vec3 noh_fresnel(vec3 f0, float f90, float cosine)
     return f0 + (f90 - f0) * (away2 * away2 * away);
 }
 
+#ifndef NOH_HAIR
+/* The cosine between a normal and the view. The slopes of a normal map that graze the view cover next to nothing of a
+ * pixel on a surface that faces it: creases are no white lines. */
+float noh_seen(noh_surface s, float cosine)
+{
+#ifdef NOH_NORMAL_MAP
+    return max(cosine, 0.5 * abs(dot(s.geometric, s.view)));
+#else
+    return cosine;
+#endif
+}
+#endif
+
 #ifdef NOH_HAIR
 /* Hair: matte light around the strand, and two highlights, one of the cuticle, white and nearer to the root, one that
  * has been through the strand, wider, of its colour and nearer to the tip (Kajiya, Kay 1989; the shifts as Scheuermann,
@@ -262,7 +275,7 @@ vec3 noh_light(noh_surface s)
 #endif
     float roughness = clamp(s.roughness, 0.08, 1.0);
     float across = dot(mirror, s.view);
-    float nv = clamp(abs(across), 1e-3, 1.0); /* outlines of thin parts, past grazing, are no mirrors */
+    float nv = clamp(noh_seen(s, abs(across)), 1e-3, 1.0); /* outlines of thin parts, past grazing, are no mirrors */
     vec3 f0 = mix(s.f0, s.albedo, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec2 part = noh_albedo_of(roughness, nv);
@@ -373,7 +386,7 @@ vec3 noh_light(noh_surface s)
 #else
     vec3 h = normalize(noh_key + s.view);
 #endif
-    float nv = max(dot(mirror, s.view), 1e-3);
+    float nv = max(noh_seen(s, dot(mirror, s.view)), 1e-3);
 #ifdef NOH_PHONE
     vec3 fresnel = f0;
 #else

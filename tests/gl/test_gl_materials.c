@@ -51,6 +51,22 @@ static void normal_maps_turn_the_normal(void **state)
     }
 }
 
+/* A slope of the map that grazes the view, on a surface that faces it. The quad is black: all that it shows is what it
+ * mirrors. */
+static void creases_of_a_map_are_no_mirrors(void **state)
+{
+    static const uint8_t slopes[2][4] = { { 254, 128, 134, 255 }, { 128, 2, 136, 255 } };
+    (void)state;
+    for (int i = 0; i < 2; i++) {
+        lit_quad q = mapped(slopes[i], 1.0f);
+        double off, other;
+        q.normal_scale = 1.0f;
+        q.base[0] = q.base[1] = q.base[2] = q.metallic = 0.0f;
+        compare(&q, FRAME_AS_IT_IS, &off, &other);
+        assert_true(off < LIT_QUAD_CLOSE);
+    }
+}
+
 /* C12.4: normals morph and tangents stay, and nothing makes them orthogonal again. Here the quad's normals differ from
  * corner to corner and its tangents do not. */
 static void a_skewed_frame_is_made_orthogonal(void **state)
@@ -464,6 +480,7 @@ static void features_follow_material_and_mesh(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(normal_maps_turn_the_normal),
+    cmocka_unit_test(creases_of_a_map_are_no_mirrors),
     cmocka_unit_test(a_skewed_frame_is_made_orthogonal),
     cmocka_unit_test(a_mirror_turns_the_frame_along),
     cmocka_unit_test(light_and_frame_are_in_one_space),

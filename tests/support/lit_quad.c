@@ -249,7 +249,8 @@ typedef struct cosines {
     double lit, wrapped, nv, nh, edge, up;
 } cosines;
 
-static cosines cosines_of(const lit_quad *q, const double n[3], const double at[3], int held)
+/* n: of the maps; surface: without them */
+static cosines cosines_of(const lit_quad *q, const double n[3], const double surface[3], const double at[3], int held)
 {
     const double key[3] = { (double)q->camera.key[0], (double)q->camera.key[1], (double)q->camera.key[2] };
     const double nl = dot(n, key);
@@ -265,7 +266,7 @@ static cosines cosines_of(const lit_quad *q, const double n[3], const double at[
     unit(h);
     c.lit = held ? fmax(nl, 0.0) : nl;
     c.wrapped = held ? fmax((nl + 0.18) / 1.18, 0.0) : nl;
-    c.nv = fmax(dot(n, v), 1e-3);
+    c.nv = fmax(fmax(dot(n, v), q->normal_map ? 0.5 * fabs(dot(surface, v)) : 0.0), 1e-3);
     c.nh = fmax(dot(n, h), 0.0);
     c.edge = pow(1.0 - fmax(dot(h, v), 0.0), 5.0);
     c.up = 0.5 * n[1] + 0.5;
@@ -345,13 +346,16 @@ void lit_quad_normal(const lit_quad *q, uint32_t column, lit_quad_normals by, do
 void lit_quad_pixel(const lit_quad *q, uint32_t column, lit_quad_normals by, int held, double out[3])
 {
     const double at[3] = { (double)(q->world[0] * x_of(q, column)), 0.0, 0.0 };
-    double n[3];
+    double n[3], surface[3];
     cosines c;
+    lit_quad bare = *q;
+    bare.normal_map = NULL;
     lit_quad_normal(q, column, by, n);
+    lit_quad_normal(&bare, column, NORMALS_BY_INVERSE_TRANSPOSE, surface);
     for (int i = 0; q->world[10] > 0.0f && i < 3; i++) { /* seen from behind: the normal of that side */
         n[i] = -n[i];
     }
-    c = cosines_of(q, n, at, held);
+    c = cosines_of(q, n, surface, at, held);
     for (int i = 0; i < 3; i++) {
         out[i] = encoded(shade(q, &c, i));
     }
