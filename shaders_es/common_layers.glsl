@@ -7,10 +7,10 @@
 /* no layers */
 #elif defined(NOH_LAYERS_UINT)
 uniform highp usampler2DArray noh_layers;
-#define NOH_LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(noh_layers, ivec3(texel, layer), 0).xyz)
+#define NOH_LAYER_FETCH(texel, layer) uintBitsToFloat(texelFetch(noh_layers, ivec3(texel, layer), 0))
 #else
 uniform highp sampler2DArray noh_layers;
-#define NOH_LAYER_FETCH(texel, layer) texelFetch(noh_layers, ivec3(texel, layer), 0).xyz
+#define NOH_LAYER_FETCH(texel, layer) texelFetch(noh_layers, ivec3(texel, layer), 0)
 #endif
 uniform highp ivec4 noh_morph; /* tile x, tile y, width log2, touched vertices; with NOH_DIRECT: noh_morph_sums */
 
@@ -57,15 +57,16 @@ noh_sums noh_morph_sums(ivec4 tile, int i)
     uint block = uint((tile.x | tile.y << 16) + (y >> 2 << (across - 2)) + (x >> 2));
     return noh_walk(block, ivec2(x, y) & 3, 8 + (tile.z >> 4 & 3), 8 + (tile.z >> 6 & 3));
 }
-#ifdef NOH_OCCLUSION
-float noh_morph_occlusion = 0.0; /* of the vertex that noh_morph_fetch_tile fetched last */
-#endif
 #else
 /* The position of accumulation texel i of a tile in the layers. */
 ivec2 noh_morph_texel(ivec4 tile, int i)
 {
     return tile.xy + ivec2(i & ((1 << tile.z) - 1), i >> tile.z);
 }
+#endif
+
+#ifdef NOH_OCCLUSION
+float noh_morph_occlusion = 0.0; /* how targets change the occlusion of the vertex that was fetched last */
 #endif
 
 /* Add a vertex's deltas from an instance's tile, given by the four numbers of noh_morph. Texel i of the tile belongs to
@@ -90,11 +91,15 @@ bool noh_morph_fetch_tile(ivec4 tile, int vertex, inout vec3 position, inout vec
 #endif
 #else
         ivec2 texel = noh_morph_texel(tile, vertex);
-        position += NOH_LAYER_FETCH(texel, 0);
+        vec4 first = NOH_LAYER_FETCH(texel, 0);
+        position += first.xyz;
+#ifdef NOH_OCCLUSION
+        noh_morph_occlusion = first.w;
+#endif
 #ifndef NOH_DEPTH_ONLY
-        normal += NOH_LAYER_FETCH(texel, 1);
+        normal += NOH_LAYER_FETCH(texel, 1).xyz;
 #ifndef NOH_TWO_LAYERS
-        tangent += NOH_LAYER_FETCH(texel, 2);
+        tangent += NOH_LAYER_FETCH(texel, 2).xyz;
 #endif
 #endif
 #endif

@@ -234,7 +234,7 @@ vec3 noh_matte_light(noh_surface s, float shadow)
 float noh_key_glossed(float nh, float nl, float nv, float roughness)
 {
 #ifdef NOH_SKIN
-    vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
+    vec2 lobes = noh_lobes_at(roughness);
     return nl * mix(noh_gloss(nh, nl, nv, lobes.y), noh_gloss(nh, nl, nv, lobes.x), noh_narrow_lobe);
 #elif defined(NOH_EYE)
     return nl > 0.0 ? 3.14159265 * noh_lamp(nh) : 0.0;
@@ -330,7 +330,7 @@ float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
 {
     float nl = max(dot(normal, noh_key), 0.0), nh = max(dot(normal, h), 0.0);
 #ifdef NOH_SKIN
-    vec2 lobes = clamp(noh_lobes * roughness, 0.08, 1.0);
+    vec2 lobes = noh_lobes_at(roughness);
     return nl * mix(noh_highlight(nh, nl, nv, lobes.y), noh_highlight(nh, nl, nv, lobes.x), noh_narrow_lobe);
 #elif defined(NOH_EYE)
     return nl > 0.0 ? noh_lamp(nh) : 0.0;

@@ -164,7 +164,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.occlusion = 1.0;
     s.emissive = vec3(0.0);
     s.wrinkles = vec3(0.0);
-    s.geometric = normalize(normal);
+    s.geometric = normal * (side * inversesqrt(dot(normal, normal))); /* on the visible side, and unit, in five products */
     s.normal = s.geometric;
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
     vec3 mapped = vec3(0.0, 0.0, 1.0);
@@ -175,15 +175,14 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.wrinkles = noh_wrinkle_by_model(uv);
     mapped = noh_wrinkled(mapped, texture(noh_wrinkle_texture, uv).rgb, s.wrinkles);
 #endif
+    mapped.x *= side;
     s.normal = noh_map_normal(mapped, s.geometric, tangent);
 #endif
-    s.geometric *= side;
 #ifdef NOH_HAIR
     /* A tuft has no side that is seen at a grazing angle, and a card looks the same from both sides. */
+    s.normal *= side;
     s.normal = normalize(s.normal + (1.5 - dot(s.normal, s.view)) * s.view);
     s.strand = noh_strand(position, s.normal, uv);
-#else
-    s.normal *= side;
 #endif
 #ifdef NOH_SURFACE_MAP
     vec4 map = texture(noh_surface_texture, uv);

@@ -59,8 +59,12 @@ float noh_pore_roughness(float roughness, vec3 normal)
 #endif
 }
 
-/* Skin has two specular lobes, of its oil and of the skin below, narrower and wider than the map's roughness. Their
- * factors and the share of the narrow one: */
-const vec2 noh_lobes = vec2(0.80, 1.30);
+/* The roughness of the two specular lobes of skin, of its oil and of the skin below, narrower and wider than the map's,
+ * which is from 0.08 to 1; and the share of the narrow one. */
+vec2 noh_lobes_at(float roughness)
+{
+    return vec2(max(0.80 * roughness, 0.08), min(1.30 * roughness, 1.0));
+}
+
 const float noh_narrow_lobe = 0.45;
 #endif

@@ -22,23 +22,19 @@ struct noh_lobe {
     float shape[NOH_TRANSFER];
 };
 
-/* The change of a vertex's occlusion by targets, stored or summed with the positions that noh_morph_fetch_tile adds. */
-float noh_fetch_occlusion(ivec4 tile, int vertex)
+/* The second half of a vertex's record: shape of bands 4 and 5, and the axis. */
+ivec4 noh_more_lobe()
 {
-#if defined(NOH_VERTICES)
-    return 0.0;
-#elif defined(NOH_DIRECT)
-    return noh_morph_occlusion;
+#ifdef NOH_TRANSFER_ON_NORMAL
+#if NOH_TRANSFER == 6
+    return ivec4(noh_a_more_lobe, 0, 0);
 #else
-    if (vertex >= tile.w) {
-        return 0.0;
-    }
-    ivec3 texel = ivec3(noh_morph_texel(tile, vertex), 0);
-#ifdef NOH_LAYERS_UINT
-    return uintBitsToFloat(texelFetch(noh_layers, texel, 0).w);
-#else
-    return texelFetch(noh_layers, texel, 0).w;
+    return ivec4(0);
 #endif
+#elif NOH_TRANSFER == 6
+    return noh_a_more_lobe;
+#else
+    return ivec4(0, 0, noh_a_more_lobe);
 #endif
 }
 
@@ -54,28 +50,46 @@ vec3 noh_lobe_turn(vec3 axis, vec3 from, vec3 to)
     return normalize(axis * cosine + cross(across, axis) + across * (dot(across, axis) / (1.0 + cosine)));
 }
 
-/* The vertex's lobe. from, to: its normal in the bind pose and now, unit, model space */
-noh_lobe noh_lobe_of(vec3 from, vec3 to)
+/* The vertex's lobe from the two halves of its record. from, to: its normal in the bind pose and now, unit, model
+ * space */
+noh_lobe noh_lobe_of(ivec4 first, ivec4 more, vec3 from, vec3 to)
 {
     noh_lobe lobe;
-    vec3 low = vec3(noh_a_lobe.yzw) / 127.0;
-    lobe.occlusion = float(noh_a_lobe.x & 255) / 255.0;
+    vec3 low = vec3(first.yzw) / 127.0;
+    lobe.occlusion = float(first.x & 255) / 255.0;
     lobe.shape[0] = 1.0;
     lobe.shape[1] = low.x;
     lobe.shape[2] = low.y;
     lobe.shape[3] = low.z;
 #if NOH_TRANSFER == 6
-    lobe.shape[4] = float(noh_a_more_lobe.x) / 127.0;
-    lobe.shape[5] = float(noh_a_more_lobe.y) / 127.0;
+    lobe.shape[4] = float(more.x) / 127.0;
+    lobe.shape[5] = float(more.y) / 127.0;
 #endif
 #ifdef NOH_TRANSFER_ON_NORMAL
     lobe.axis = to;
-#elif NOH_TRANSFER == 6
-    lobe.axis = noh_lobe_turn(noh_unfold(vec2(noh_a_more_lobe.zw) / 127.0), from, to);
 #else
-    lobe.axis = noh_lobe_turn(noh_unfold(vec2(noh_a_more_lobe) / 127.0), from, to);
+    lobe.axis = noh_lobe_turn(noh_unfold(vec2(more.zw) / 127.0), from, to);
 #endif
     return lobe;
+}
+
+/* Adds the terms of one m. Compilers unroll a loop of known bounds; a loop around it they would not, and each turn would
+ * fetch its coefficients by a computed index. first: the product of the odd numbers below 2 m */
+void noh_lobe_add(noh_lobe lobe, vec3 axis, int m, float first, inout vec2 power, inout vec3 sum)
+{
+    float before = 0.0, now = first;
+    for (int l = m; l < NOH_TRANSFER; l++) {
+        int middle = l * (l + 1);
+        vec3 light = noh_rest[middle + m].rgb * power.x;
+        if (m > 0) {
+            light += noh_rest[middle - m].rgb * power.y;
+        }
+        sum += light * (now * lobe.shape[l]);
+        float next = (axis.z * float(2 * l + 1) * now - float(l + m) * before) / float(l + 1 - m);
+        before = now;
+        now = next;
+    }
+    power = vec2(power.x * axis.x - power.y * axis.y, power.x * axis.y + power.y * axis.x);
 }
 
 /* The light received by the lobe, and its occlusion. axis: of the lobe, in the world, unit. The basis is noh_sh_basis,
@@ -84,23 +98,14 @@ vec4 noh_lobe_shade(noh_lobe lobe, vec3 axis)
 {
     vec3 sum = vec3(0.0);
     vec2 power = vec2(1.0, 0.0);
-    float first = 1.0;
-    for (int m = 0; m < NOH_TRANSFER; m++) {
-        float before = 0.0, now = first;
-        for (int l = m; l < NOH_TRANSFER; l++) {
-            int middle = l * (l + 1);
-            vec3 light = noh_rest[middle + m].rgb * power.x;
-            if (m > 0) {
-                light += noh_rest[middle - m].rgb * power.y;
-            }
-            sum += light * (now * lobe.shape[l]);
-            float next = (axis.z * float(2 * l + 1) * now - float(l + m) * before) / float(l + 1 - m);
-            before = now;
-            now = next;
-        }
-        power = vec2(power.x * axis.x - power.y * axis.y, power.x * axis.y + power.y * axis.x);
-        first *= float(2 * m + 1);
-    }
+    noh_lobe_add(lobe, axis, 0, 1.0, power, sum);
+    noh_lobe_add(lobe, axis, 1, 1.0, power, sum);
+    noh_lobe_add(lobe, axis, 2, 3.0, power, sum);
+    noh_lobe_add(lobe, axis, 3, 15.0, power, sum);
+#if NOH_TRANSFER == 6
+    noh_lobe_add(lobe, axis, 4, 105.0, power, sum);
+    noh_lobe_add(lobe, axis, 5, 945.0, power, sum);
+#endif
     return vec4(sum * lobe.occlusion, lobe.occlusion);
 }
 #endif

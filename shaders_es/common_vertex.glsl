@@ -105,19 +105,24 @@ vec4 noh_regions_of(int map)
 #endif
 }
 
+float noh_largest(vec4 v)
+{
+    return max(max(v.x, v.y), max(v.z, v.w));
+}
+
 /* The wrinkle strength of a vertex by regions and by channels. */
 void noh_wrinkle_vertex(vec2 uv)
 {
     noh_v_wrinkles = vec2(0.0);
     if ((noh_wrinkle_models.x & 6) != 0) {
         vec4 regions = noh_regions_of(0), first = textureLod(noh_wrinkle_weights_0, uv, 0.0);
-        if ((noh_wrinkle_models.x & 2) != 0) {
-            vec4 second = textureLod(noh_wrinkle_weights_1, uv, 0.0) * noh_regions_of(1);
-            vec4 all = max(first * regions, max(second, textureLod(noh_wrinkle_weights_2, uv, 0.0) * noh_regions_of(2)));
-            noh_v_wrinkles.x = max(max(all.x, all.y), max(all.z, all.w));
-        }
         if ((noh_wrinkle_models.x & 4) != 0) {
             noh_v_wrinkles.y = min(dot(first.rgb, vec3(1.0, regions.yz)), 1.0);
+        }
+        if ((noh_wrinkle_models.x & 2) != 0) {
+            float most = noh_largest(first * regions);
+            most = max(most, noh_largest(textureLod(noh_wrinkle_weights_1, uv, 0.0) * noh_regions_of(1)));
+            noh_v_wrinkles.x = max(most, noh_largest(textureLod(noh_wrinkle_weights_2, uv, 0.0) * noh_regions_of(2)));
         }
     }
 }
@@ -172,10 +177,9 @@ ivec4 noh_tile_row()
 uniform int noh_blends; /* bits: 1: the material blends: the tint's alpha applies; 2: its colour does not;
                          * 4 times the part of a complexion that it shows */
 
-/* Decode a tint of 8-bit sRGB and alpha. */
-vec4 noh_tint_of(ivec4 row)
+/* Decode a tint of 8-bit sRGB and alpha. left: white minus the tint */
+vec4 noh_tint_of(ivec4 left)
 {
-    ivec4 left = ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16);
     vec4 tint = vec4(1.0);
     if (left != ivec4(0)) {
         tint -= vec4(left) / 255.0;
@@ -208,23 +212,51 @@ vec2 noh_uv_of(ivec4 tile)
 }
 #endif
 
-/* In an order that needs few registers: the joints' matrix is used up before the rows of the world are fetched, these
- * before the loops of transfer, and what needs neither comes last. Otherwise a Mali spills, and the vertices of a crowd
- * cost up to five times as much (tools/phones). */
+/* Four bytes from where they are read to where they are used: in a crowd, whose vertices need the most registers, in one
+ * instead of four. */
+#ifdef NOH_CROWD
+#define noh_kept int
+int noh_keep(ivec4 bytes)
+{
+    bytes &= 255;
+    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
+}
+
+ivec4 noh_bytes(int kept)
+{
+    return ivec4(kept << 24, kept << 16, kept << 8, kept) >> 24;
+}
+#else
+#define noh_kept ivec4
+#define noh_keep(bytes) (bytes)
+#define noh_bytes(kept) (kept)
+#endif
+
+/* In an order that needs few registers: what is read early and used late is packed or used up before the targets are
+ * read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up before
+ * the rows of the world are fetched, these before transfer, and what needs neither comes last. Otherwise a V3D or a Mali
+ * spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
     ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
+    noh_kept tint = noh_keep(ivec4(row.x >> 16, row.y >> 16, row.z >> 8, row.z >> 16));
+#if NOH_TRANSFER > 0
+    noh_kept first = noh_keep(noh_a_lobe), more = noh_keep(noh_more_lobe());
+#endif
 #ifndef NOH_DEPTH_ONLY
+#ifdef NOH_TEETH
+    noh_face_vertex(noh_a_rest);
+#endif
+#ifdef NOH_SKIN
+    noh_face_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
+#endif
     v.normal = noh_direction_of_pair(noh_a_normal);
     v.tangent = noh_tangent_of_pair(noh_a_tangent);
 #endif
     if (noh_morph_fetch_tile(tile, noh_morph_vertex(), v.model, v.normal, v.tangent.xyz)) {
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
-#if NOH_TRANSFER > 0
-    float occlusion = noh_fetch_occlusion(tile, noh_morph_vertex());
-#endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_WRINKLES
     noh_v_moved = v.model - noh_a_rest;
@@ -234,19 +266,13 @@ noh_vertex noh_fetch()
     vec4 up;
     noh_gaze_vertex(v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, gaze, up);
 #endif
-#ifdef NOH_TEETH
-    noh_face_vertex(noh_a_rest);
-#endif
-#ifdef NOH_SKIN
-    noh_face_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
-#endif
 #endif
     noh_skin_vertex(v.model, v.normal, v.tangent);
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
-    noh_lobe lobe = noh_lobe_of(noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
+    noh_lobe lobe = noh_lobe_of(noh_bytes(first), noh_bytes(more), noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
     vec3 axis = normalize(noh_world_normal(x, y, z, lobe.axis));
-    lobe.occlusion = clamp(lobe.occlusion + occlusion, 0.0, 1.0);
+    lobe.occlusion = clamp(lobe.occlusion + noh_morph_occlusion, 0.0, 1.0);
 #endif
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY
@@ -283,7 +309,7 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
-    v.tint = noh_tint_of(row);
+    v.tint = noh_tint_of(noh_bytes(tint) & 255);
 #endif
 #ifdef NOH_OUTLINE
     v.position += noh_outline_step(v, length(x.xyz));

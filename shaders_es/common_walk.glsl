@@ -5,13 +5,13 @@
  *   NOH_TWO_LAYERS   defined: tangents are not summed
  *   NOH_DEPTH_ONLY   defined: only positions are summed
  *   NOH_OCCLUSION    defined: so are changes of occlusion (light.h) */
-#if defined(NOH_GATHER) || defined(NOH_DIRECT)
 #ifdef NOH_TRANSFER
 #if NOH_TRANSFER > 0
 #define NOH_OCCLUSION
 #endif
 #endif
 
+#if defined(NOH_GATHER) || defined(NOH_DIRECT)
 uniform highp usampler2D noh_deltas; /* delta words in tiles of 4 x 4; with NOH_OCCLUSION, its delta as float bits */
 uniform highp usampler2D noh_lists;  /* entries (common_delta.glsl); the top bit of a fourth word: the list ends here */
 uniform highp usampler2D noh_starts; /* where each block's list begins */
