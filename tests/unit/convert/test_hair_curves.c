@@ -142,6 +142,29 @@ static void hair_between_curves_is_between_them(void **state)
     hair_free(hair);
 }
 
+/* Combed over the top of a skull, hair lies at its height over it, not ever farther away along a tangent. */
+static void combed_hair_lies_on_the_skull(void **state)
+{
+    static const char text[] = "skull 0 0 0 0.09 0.09 0.09\ncomb 0 -0.45 -0.9\nlength 0.3 0.3\nlift 0.004\n";
+    hair_text *hair = NULL;
+    hair_grown grown;
+    model_error error = { "", "" };
+    uint32_t line = 0;
+    float most = 0.0f;
+    (void)state;
+    test_write_file(test_path("plain.hair"), text, sizeof text - 1u);
+    assert_int_equal(hair_read(test_path("plain.hair"), &hair, &line, &error), 0);
+    assert_int_equal(hair_grow(hair, &grown), 0);
+    for (uint32_t i = 0; i < grown.hair_count * grown.point_count; i++) {
+        const float *p = grown.points + 3 * i;
+        if (p[1] > 0.06f) most = fmaxf(most, sqrtf(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]));
+    }
+    print_message("# at most %.1f mm over the skull\n", 1e3 * ((double)most - 0.09));
+    assert_true(most > 0.0925f && most < 0.0980f);
+    hair_grown_free(&grown);
+    hair_free(hair);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -150,6 +173,7 @@ int main(void)
         cmocka_unit_test(without_curves_it_is_refused),
         cmocka_unit_test(hair_takes_the_shape_of_curves),
         cmocka_unit_test(hair_between_curves_is_between_them),
+        cmocka_unit_test(combed_hair_lies_on_the_skull),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -8,7 +8,8 @@
 #define RADIANS (3.14159265358979 / 180.0)
 #define ROOTED 0.98 /* of the radii: roots are in the skin */
 #define CURVES_NEAR 3u
-#define CROWN 4.0 /* degrees: the innermost row is no point */
+#define SETTLE 0.010 /* metres above its height at which hair turns back at 45 degrees */
+#define CROWN 4.0    /* degrees: the innermost row is no point */
 
 typedef struct vec {
     double x, y, z;
@@ -99,13 +100,15 @@ static vec root_at(const hair_text *t, const skull *s, double azimuth, double sh
     return from_within(s, (vec){ sin(angle) * sin(azimuth), cos(angle), sin(angle) * cos(azimuth) }, ROOTED);
 }
 
-/* Where hair wants to go from here: along the comb on the skull, down where that falls away. */
-static vec way_at(const skull *s, vec comb, vec p)
+/* Where hair wants to go from here: along the comb on the skull and back to its height over it, down where that falls
+ * away. */
+static vec way_at(const skull *s, vec comb, vec p, double height)
 {
     const vec n = normal_at(s, p), q = within(s, p), down = { 0.0, -1.0, 0.0 };
     const double away = sqrt(dot(q, q)) - 1.0;
     const double falls = fmax(smooth(0.1, -0.5, n.y), smooth(0.15, 0.4, away));
-    const vec along = unit(add(comb, -dot(comb, n), n));
+    const double above = fmin(fmax((away * s->mean - height) / SETTLE, 0.0), 1.0);
+    const vec along = unit(add(unit(add(comb, -dot(comb, n), n)), -above, n));
     return unit(add(add((vec){ 0.0, 0.0, 0.0 }, 1.0 - falls, along), falls, down));
 }
 
@@ -114,15 +117,16 @@ static void grow_hair(const hair_text *t, const skull *s, vec p, double length, 
     const uint32_t count = (uint32_t)t->points;
     const double step = length / ((count - 1u) * SUBSTEPS);
     const vec comb = unit((vec){ t->comb[0], t->comb[1], t->comb[2] });
-    vec way = unit(add(way_at(s, comb, p), 0.4, normal_at(s, p)));
+    vec way = unit(add(way_at(s, comb, p, 0.0), 0.4, normal_at(s, p)));
     double grown = 0.0;
     for (uint32_t i = 0; i < count; i++) {
         points[3u * i] = (float)p.x, points[3u * i + 1u] = (float)p.y, points[3u * i + 2u] = (float)p.z;
         for (int k = 0; k < SUBSTEPS; k++) {
             const vec before = p;
             grown += step;
-            way = unit(add(way, 0.35, way_at(s, comb, p)));
-            p = push_out(t, s, add(p, step, way), t->lift * smooth(0.0, 0.12, grown));
+            const double height = t->lift * smooth(0.0, 0.12, grown);
+            way = unit(add(way, 0.35, way_at(s, comb, p, height)));
+            p = push_out(t, s, add(p, step, way), height);
             way = unit(add(p, -1.0, before));
             p = add(before, step, way);
         }
