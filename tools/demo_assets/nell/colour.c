@@ -122,7 +122,7 @@ static V3 colour_of(const Seed *seed, V3 at, double front)
     case ON_BROW: return v3_mix(dark, brown, 0.6);
     case ON_SCALP:
     case ON_LOCK: return hair_colour(seed, open);
-    case ON_CLOTH: return shade(seed->k < 12 ? v3_scale(wool, 0.9) : wool, mix(open, 1, 0.3));
+    case ON_CLOTH: return shade(v3_scale(wool, 1 + 0.35 * fmin(sweater_rib(seed), 0)), mix(open, 1, 0.3));
     default: return skin_colour(seed, open);
     }
 }

@@ -11,14 +11,14 @@
 /* ---- cap ---- */
 
 /* Clumps run from the crown to the hem, each ACROSS columns wide, so that edges lie in the valleys between them. */
-enum { CLUMPS = 24, ACROSS = 5, CAP_COLUMNS = CLUMPS * ACROSS, CAP_ROWS = 18 };
+enum { CLUMPS = 24, ACROSS = 5, CAP_COLUMNS = CLUMPS * ACROSS, CAP_ROWS = 16 };
 
 /* Height of the hairline at s. */
 static double hairline(double s)
 {
     static const Key line[] = { { 0, 0.084 },     { 0.030, 0.080 },  { 0.052, 0.064 },  { 0.066, 0.040 },
-                                { 0.078, 0.014 }, { 0.087, 0.000 },  { 0.097, 0.020 },  { 0.114, 0.029 },
-                                { 0.128, 0.018 }, { 0.139, -0.016 }, { 0.150, -0.046 }, { 0.160, -0.074 },
+                                { 0.078, 0.014 }, { 0.087, 0.000 },  { 0.097, 0.018 },  { 0.110, 0.022 },
+                                { 0.120, 0.000 }, { 0.130, -0.036 }, { 0.142, -0.060 }, { 0.158, -0.076 },
                                 { 0.200, -0.084 } };
     return curve(line, COUNT(line), fabs(s));
 }
@@ -167,6 +167,6 @@ void nell_hair_build(Model *model)
     cap_build(model);
     for (int i = 0; i < COUNT(locks); i++) {
         Seed seed = { .region = ON_LOCK, .k = i, .eye = 1 };
-        stroke_build(model, PART_HAIR, seed, 14, LOCK_SIDES);
+        stroke_build(model, PART_HAIR, seed, 19, LOCK_SIDES);
     }
 }

@@ -28,6 +28,8 @@ double nell_hair_past(double s, double t);
 
 void sweater_build(Model *model);
 V3 sweater_place(const Seed *seed);
+/* Of the collar: 1 on its ribs, -1 in the grooves between them, 0 elsewhere. */
+double sweater_rib(const Seed *seed);
 
 /* A tube of `rings` rings with `segments` points each, between two end points; its seeds are `seed` with s and t. */
 void stroke_build(Model *model, int part, Seed seed, int rings, int segments);

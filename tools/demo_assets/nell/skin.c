@@ -105,7 +105,7 @@ static double on_ball(SkinPoint p)
     double out = fabs(p.s) - EYE_S, up = p.t - lids_line(p.s);
     double across = fabs(out) / (out > 0 ? 0.0330 : 0.0265);
     if (up < 0) {
-        return smooth(1, 0.50, across) * smooth(0.014, 0.0010, -up);
+        return smooth(1, 0.50, across) * smooth(0.021, 0.0010, -up);
     }
     return smooth(1, 0.45, sqrt(across * across + up * up / (0.027 * 0.027)));
 }
@@ -119,7 +119,7 @@ typedef struct {
 
 static const Hill hills[] = {
     { 27, 27, 30, 15, 1.6 },       /* brow */
-    { 34, -20, 27, 13, 1.7 },      /* under the eye */
+    { 34, -22, 30, 17, 1.2 },      /* under the eye */
     { 40, -31, 32, 27, 4.4 },      /* cheek */
     { 54, -16, 26, 24, 1.6 },      /* cheekbone */
     { 0, -43, 32, 26, 2.2 },       /* the round of the teeth (counts twice) */
@@ -136,7 +136,7 @@ static double nose(double s, double t)
                                   { -0.0180, 0.0150 }, { -0.0130, 0.0128 }, { -0.0050, 0.0076 }, { 0.0060, 0.0038 },
                                   { 0.0200, 0.0014 },  { 0.0320, 0 } };
     static const Key width[] = {
-        { -0.0280, 0.0130 }, { -0.0180, 0.0140 }, { -0.0100, 0.0118 }, { 0.0060, 0.0110 }, { 0.0320, 0.0160 }
+        { -0.0280, 0.0130 }, { -0.0180, 0.0142 }, { -0.0100, 0.0132 }, { 0.0060, 0.0150 }, { 0.0320, 0.0200 }
     };
     return curve(height, COUNT(height), t) * bump(s / curve(width, COUNT(width), t));
 }

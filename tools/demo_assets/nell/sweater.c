@@ -15,6 +15,11 @@ static const double profile[PROFILE][6] = {
     { -270, -270, 129, 68, -97, 0.7 },
 };
 
+double sweater_rib(const Seed *seed)
+{
+    return bump((seed->k / STEPS - 4) / 2.4) * cos(SEGMENTS * seed->t / 2);
+}
+
 V3 sweater_place(const Seed *seed)
 {
     double r[6];
@@ -30,7 +35,7 @@ V3 sweater_place(const Seed *seed)
     double square = 1 + 0.25 * r[5] * (1 - pow(fabs(across), 4)) * fabs(across);
     double y = (r[0] + r[1]) / 2 + (r[0] - r[1]) / 2 * ahead, middle = -20;
     double z = middle + (ahead > 0 ? r[3] - middle : middle - r[4]) * ahead;
-    double knit = bump((seed->k / STEPS - 4) / 2.4) * 0.7 * cos(SEGMENTS * seed->t / 2);
+    double knit = 1.2 * sweater_rib(seed);
     return v3(0.001 * (r[2] * across * square + knit * across), 0.001 * y, 0.001 * (z + knit * ahead));
 }
 
