@@ -61,7 +61,7 @@ vec3 noh_fresnel(vec3 f0, float f90, float cosine)
 }
 
 #ifndef NOH_HAIR
-/* The cosine between a normal and the view. The slopes of a normal map that graze the view cover next to nothing of a
+/* The cosine between a normal and the view. The slopes of a normal map that graze the view cover hardly any part of a
  * pixel on a surface that faces it: creases are no white lines. */
 float noh_seen(noh_surface s, float cosine)
 {

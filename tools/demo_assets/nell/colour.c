@@ -54,7 +54,7 @@ static V3 fold_colour(const Seed *seed)
     if (seed->region == ON_LID_FOLD) {
         double corner = smooth(-0.50, -0.80, (fabs(seed->s) - EYE_S) / EYE_REACH);
         V3 edge = seed->eye > 0 ? v3(0.10, 0.030, 0.018) : v3(0.55, 0.24, 0.18);
-        V3 wet = v3_mix(v3(0.66, 0.38, 0.32), v3_scale(white, 0.72), smooth(0, 1, seed->k)); /* the ball's white goes on */
+        V3 wet = v3_mix(v3(0.66, 0.38, 0.32), v3_scale(white, 0.72), smooth(0, 1, seed->k)); /* as the ball */
         return v3_mix(edge, wet, corner);
     }
     return v3_mix(v3_scale(lip, 0.85), v3(0.30, 0.07, 0.06), seed->k / 4);
