@@ -38,6 +38,20 @@ ivec4 noh_more_lobe()
 #endif
 }
 
+#ifdef NOH_CROWD
+/* Four bytes in one register, and as they were. */
+int noh_lobe_word(ivec4 bytes)
+{
+    bytes &= 255;
+    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
+}
+
+ivec4 noh_lobe_bytes(int word)
+{
+    return ivec4(word << 24, word << 16, word << 8, word) >> 24;
+}
+#endif
+
 /* Rotate `axis` by the smallest rotation from `from` to `to`, both unit: Rodrigues' formula, with the sine as the
  * length of the cross product. Opposite directions do not rotate. */
 vec3 noh_lobe_turn(vec3 axis, vec3 from, vec3 to)
@@ -73,8 +87,7 @@ noh_lobe noh_lobe_of(ivec4 first, ivec4 more, vec3 from, vec3 to)
     return lobe;
 }
 
-/* Adds the terms of one m. Compilers unroll a loop of known bounds; a loop around it they would not, and each turn would
- * fetch its coefficients by a computed index. first: the product of the odd numbers below 2 m */
+/* Adds the terms of one m. first: the product of the odd numbers below 2 m */
 void noh_lobe_add(noh_lobe lobe, vec3 axis, int m, float first, inout vec2 power, inout vec3 sum)
 {
     float before = 0.0, now = first;
@@ -98,13 +111,18 @@ vec4 noh_lobe_shade(noh_lobe lobe, vec3 axis)
 {
     vec3 sum = vec3(0.0);
     vec2 power = vec2(1.0, 0.0);
+#if NOH_TRANSFER == 4
+    /* Compilers unroll no loop around a loop, and would look up each coefficient by its index. */
     noh_lobe_add(lobe, axis, 0, 1.0, power, sum);
     noh_lobe_add(lobe, axis, 1, 1.0, power, sum);
     noh_lobe_add(lobe, axis, 2, 3.0, power, sum);
     noh_lobe_add(lobe, axis, 3, 15.0, power, sum);
-#if NOH_TRANSFER == 6
-    noh_lobe_add(lobe, axis, 4, 105.0, power, sum);
-    noh_lobe_add(lobe, axis, 5, 945.0, power, sum);
+#else
+    float first = 1.0;
+    for (int m = 0; m < NOH_TRANSFER; m++) { /* 36 terms in a row would spill registers of a Mali */
+        noh_lobe_add(lobe, axis, m, first, power, sum);
+        first *= float(2 * m + 1);
+    }
 #endif
     return vec4(sum * lobe.occlusion, lobe.occlusion);
 }

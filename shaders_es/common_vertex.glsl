@@ -212,37 +212,19 @@ vec2 noh_uv_of(ivec4 tile)
 }
 #endif
 
-/* Four bytes from where they are read to where they are used: in a crowd, whose vertices need the most registers, in one
- * instead of four. */
-#ifdef NOH_CROWD
-#define noh_kept int
-int noh_keep(ivec4 bytes)
-{
-    bytes &= 255;
-    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
-}
-
-ivec4 noh_bytes(int kept)
-{
-    return ivec4(kept << 24, kept << 16, kept << 8, kept) >> 24;
-}
-#else
-#define noh_kept ivec4
-#define noh_keep(bytes) (bytes)
-#define noh_bytes(kept) (kept)
-#endif
-
-/* In an order that needs few registers: what is read early and used late is packed or used up before the targets are
- * read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up before
+/* In an order that needs few registers: what a crowd's vertices read early and use late is packed before the targets
+ * are read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up before
  * the rows of the world are fetched, these before transfer, and what needs neither comes last. Otherwise a V3D or a Mali
  * spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
     ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
-    noh_kept tint = noh_keep(ivec4(row.x >> 16, row.y >> 16, row.z >> 8, row.z >> 16));
+#ifdef NOH_CROWD
+    int tint = row.x >> 16 | row.y >> 16 << 8 | row.z >> 8 << 16;
 #if NOH_TRANSFER > 0
-    noh_kept first = noh_keep(noh_a_lobe), more = noh_keep(noh_more_lobe());
+    int first = noh_lobe_word(noh_a_lobe), more = noh_lobe_word(noh_more_lobe());
+#endif
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_TEETH
@@ -270,7 +252,12 @@ noh_vertex noh_fetch()
     noh_skin_vertex(v.model, v.normal, v.tangent);
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
-    noh_lobe lobe = noh_lobe_of(noh_bytes(first), noh_bytes(more), noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
+#ifdef NOH_CROWD
+    ivec4 low = noh_lobe_bytes(first), high = noh_lobe_bytes(more);
+#else
+    ivec4 low = noh_a_lobe, high = noh_more_lobe();
+#endif
+    noh_lobe lobe = noh_lobe_of(low, high, noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
     vec3 axis = normalize(noh_world_normal(x, y, z, lobe.axis));
     lobe.occlusion = clamp(lobe.occlusion + noh_morph_occlusion, 0.0, 1.0);
 #endif
@@ -309,7 +296,11 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
-    v.tint = noh_tint_of(noh_bytes(tint) & 255);
+#ifdef NOH_CROWD
+    v.tint = noh_tint_of(ivec4(tint, tint >> 8, tint >> 16, tint >> 24) & 255);
+#else
+    v.tint = noh_tint_of(ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16));
+#endif
 #endif
 #ifdef NOH_OUTLINE
     v.position += noh_outline_step(v, length(x.xyz));
