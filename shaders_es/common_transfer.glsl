@@ -38,7 +38,8 @@ ivec4 noh_more_lobe()
 #endif
 }
 
-#ifdef NOH_CROWD
+#if defined(NOH_CROWD) && NOH_TRANSFER == 4
+#define NOH_PACKED /* noh_fetch: a V3D spills none then; a Mali spills more with order 6, so it is left out there */
 /* Four bytes in one register, and as they were. */
 int noh_lobe_word(ivec4 bytes)
 {

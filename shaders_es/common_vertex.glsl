@@ -220,11 +220,9 @@ noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
     ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
-#ifdef NOH_CROWD
+#ifdef NOH_PACKED
     int tint = row.x >> 16 | row.y >> 16 << 8 | row.z >> 8 << 16;
-#if NOH_TRANSFER > 0
     int first = noh_lobe_word(noh_a_lobe), more = noh_lobe_word(noh_more_lobe());
-#endif
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_TEETH
@@ -252,7 +250,7 @@ noh_vertex noh_fetch()
     noh_skin_vertex(v.model, v.normal, v.tangent);
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
-#ifdef NOH_CROWD
+#ifdef NOH_PACKED
     ivec4 low = noh_lobe_bytes(first), high = noh_lobe_bytes(more);
 #else
     ivec4 low = noh_a_lobe, high = noh_more_lobe();
@@ -296,7 +294,7 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
-#ifdef NOH_CROWD
+#ifdef NOH_PACKED
     v.tint = noh_tint_of(ivec4(tint, tint >> 8, tint >> 16, tint >> 24) & 255);
 #else
     v.tint = noh_tint_of(ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16));
