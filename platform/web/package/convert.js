@@ -1,5 +1,5 @@
 // convert.js: converts a visitor's files to packs. Models go through the converter, which is loaded when first needed
-// and runs in a worker (tools/web_convert), without blocking the page. Packs equal `noh build`'s, byte for byte.
+// and runs in a worker (tools/web_convert), without blocking the page. With the same options, packs equal `noh build`'s.
 import { reach } from './reach.js';
 
 const packs = /\.nohz?$/i;
@@ -7,6 +7,7 @@ const figures = /\.(glb|gltf|vrm|fbx|obj)$/i;
 const motions = /\.(bvh|csv|trc|c3d|vrma)$/i;
 const alone = /\.(glb|vrm|fbx)$/i; // in one file
 const mostKept = 8;
+const quick = ['--effort', '1']; // a visitor waits: clips take a quarter of the time, and a few more bytes
 export const kinds = ['.noh', '.nohz', '.glb', '.gltf', '.vrm', '.fbx', '.obj', '.bvh', '.csv', '.trc', '.c3d', '.vrma'];
 
 // Detect files that cannot be shown, before loading anything. names: of files given together.
@@ -77,7 +78,7 @@ export async function convertAddress(address, { progress, ...settings }) {
     const file = new File(parts, decodeURIComponent(new URL(address, document.baseURI).pathname.split('/').pop())), place = await placeOf(await file.arrayBuffer());
     const kept = place && await place[0].match(place[1]);
     if (kept) return new Uint8Array(await kept.arrayBuffer());
-    const pack = await convert([file], settings);
+    const pack = await convert([file], { ...settings, options: quick });
     if (place) await keep(...place, pack).catch(() => {}); // there may be no room
     return pack;
 }
@@ -103,7 +104,7 @@ export class Visitor {
             return files[0];
         }
         if (!has(figures) && !this.model.length) throw new Error('it has motion alone: drop it together with its model, or after it');
-        const all = has(figures) ? files : [...this.model, ...files], pack = await convert(all, settings);
+        const all = has(figures) ? files : [...this.model, ...files], pack = await convert(all, { ...settings, options: quick });
         this.model = all;
         return pack;
     }

@@ -214,7 +214,7 @@ static int draw_place(const crowd_args *a, const noh_field *ground)
     int status = scene_of(a->place) ? tool_usage("--place %s cannot be drawn: -o needs --place FILE", a->place) : 0;
     if (!status) status = place_read(a->place, &place);
     if (!status) place->ground = ground;
-    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) status = pack_file_open_draft(&file, a->pack);
     if (!status) {
         status = draw_place_of(&file, place, a);
         pack_file_close(&file);
@@ -275,7 +275,7 @@ static int run_on(crowd_args *a, const noh_field *ground)
     if (!a->pack) return tool_usage("noh crowd -o OUT.png needs a PACK with the bodies to draw");
     status = check_args(a);
     if (!status && a->place) return draw_place(a, ground);
-    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) status = pack_file_open_draft(&file, a->pack);
     if (!status) {
         status = draw_pack(&file, a);
         pack_file_close(&file);

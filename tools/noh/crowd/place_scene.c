@@ -156,7 +156,7 @@ static int open_all(place_scene *s, gpu *g)
                      ? 0
                      : tool_usage("--light none cannot draw a place: choose another light");
     if (!status) status = lighting_open(&s->light, &light);
-    if (!status && o->scenery) status = pack_file_open(&s->scenery, o->scenery);
+    if (!status && o->scenery) status = pack_file_open_draft(&s->scenery, o->scenery);
     if (!status) status = place_life_open(s->place, o->agents, o->seed, &s->life);
     if (!status)
         status = place_people_make(&s->people, s->file, s->place, o->agents, o->hit.is_given ? PLACE_RAGDOLLS : 0u);

@@ -34,7 +34,7 @@ int figure_open_clips(pack_file *opened, const char *path, const pack_file *file
     if (!path) {
         return 0;
     }
-    status = pack_file_open(opened, path);
+    status = pack_file_open_draft(opened, path);
     if (status) {
         return status;
     }
@@ -55,7 +55,7 @@ int figure_open_anims(figure_anims *a, const option_list *paths, const pack_file
         return tool_usage("--anim may be given at most %u times", FIGURE_ANIM_MAX);
     }
     for (int i = 0; i < paths->count; i++) {
-        const int status = pack_file_open(&a->files[a->count], paths->items[i]);
+        const int status = pack_file_open_draft(&a->files[a->count], paths->items[i]);
         if (status) return status;
         if (!a->files[a->count++].pack.runs[NOH_CHUNK_CLIP].count) {
             return tool_fail(paths->items[i], "the pack has no clips for %s", file->path);

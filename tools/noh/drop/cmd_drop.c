@@ -135,7 +135,7 @@ static int run(void *args)
     pack_file file;
     drop_scene scene;
     int status = check_args(a);
-    if (!status) status = pack_file_open(&file, a->pack);
+    if (!status) status = pack_file_open_draft(&file, a->pack);
     if (status) return status;
     status = drop_scene_open(&scene, &file, (uint32_t)a->dolls, a->seconds, (uint32_t)a->substeps, (uint32_t)a->seed);
     if (!status) {

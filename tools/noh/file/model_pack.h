@@ -1,5 +1,4 @@
-/* model_pack.h: the pack of a model file for verbs that read packs: built as by `noh build` without options, and kept
- * in a cache.
+/* model_pack.h: the pack of a model file for verbs that read packs: built as by `noh build`, and kept in a cache.
  *
  * The cache is a folder: $NOH_CACHE, else $XDG_CACHE_HOME/noh, else ~/.cache/noh. A pack's name is a hash of everything
  * that it depends on: this program, the options, the model's name, and the contents of the model and of all files that

@@ -19,11 +19,6 @@
 #include "noh/low_motion.h"
 #include "noh/pack.h"
 
-int pack_file_open(pack_file *file, const char *path)
-{
-    return pack_file_open_as(file, path, path);
-}
-
 static int is_wire(const noh_file *file)
 {
     return file->bytes >= 4 && memcmp(file->data, "NOHZ", 4) == 0;
@@ -62,9 +57,13 @@ static int unpack(pack_file *file, const char *subject)
     return 0;
 }
 
-static int build(pack_file *file, const char *subject)
+static int build(pack_file *file, const char *subject, int draft)
 {
-    const model_pack_desc desc = { .path = file->path, .progress = isatty(STDERR_FILENO) ? stderr : NULL };
+    static const char *const quick[] = { "--effort", "1" };
+    const model_pack_desc desc = { .path = file->path,
+                                   .options = quick,
+                                   .option_count = draft ? 2 : 0,
+                                   .progress = isatty(STDERR_FILENO) ? stderr : NULL };
     noh_error error = { NOH_OK, "", 0, 0 };
     convert_failure failure;
     byte_buffer pack;
@@ -112,7 +111,7 @@ static int fail_missing(const char *path, const char *subject, const noh_error *
                      : tool_fail(subject, "%s (did you mean %s?)", error->what, found);
 }
 
-int pack_file_open_as(pack_file *file, const char *path, const char *subject)
+static int open_file(pack_file *file, const char *path, const char *subject, int draft)
 {
     noh_error error = { NOH_OK, "", 0, 0 };
     const file_kind *kind;
@@ -124,7 +123,7 @@ int pack_file_open_as(pack_file *file, const char *path, const char *subject)
     }
     kind = file_kind_of(path);
     if (file_kind_is_built(kind) || is_wire(&file->file)) {
-        const int status = is_wire(&file->file) ? unpack(file, subject) : build(file, subject);
+        const int status = is_wire(&file->file) ? unpack(file, subject) : build(file, subject, draft);
         noh_file_unmap(&file->file);
         if (status) pack_file_close(file);
         return status;
@@ -138,6 +137,21 @@ int pack_file_open_as(pack_file *file, const char *path, const char *subject)
         return tool_fail_error(subject, &error);
     }
     return 0;
+}
+
+int pack_file_open(pack_file *file, const char *path)
+{
+    return open_file(file, path, path, 0);
+}
+
+int pack_file_open_draft(pack_file *file, const char *path)
+{
+    return open_file(file, path, path, 1);
+}
+
+int pack_file_open_as(pack_file *file, const char *path, const char *subject)
+{
+    return open_file(file, path, subject, 0);
 }
 
 void pack_file_close(pack_file *file)

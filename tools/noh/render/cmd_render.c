@@ -262,7 +262,7 @@ static int run(void *args)
     pack_file file;
     int status = check_args(a);
     if (!status) {
-        status = pack_file_open(&file, a->pack);
+        status = pack_file_open_draft(&file, a->pack);
         if (!status) {
             status = name_output(a);
             if (!status) status = render(a, &file);

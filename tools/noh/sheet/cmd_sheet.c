@@ -299,7 +299,7 @@ static int run(void *args)
     sheet_args *a = args;
     pack_file file;
     int status = check_args(a);
-    if (!status) status = pack_file_open(&file, a->s.pack);
+    if (!status) status = pack_file_open_draft(&file, a->s.pack);
     if (!status) {
         const view_options o = { .camera = a->s.camera };
         if (view_frames(&o)) a->s.facing = pack_facing(&file.pack);

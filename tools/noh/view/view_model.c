@@ -197,7 +197,7 @@ int view_model_open(gpu *g, const view_model_desc *desc, view_model **out)
         return tool_fail(desc->path, m ? "the path is too long" : "out of memory");
     }
     strcpy(m->path, desc->path);
-    status = desc->converted ? open_converted(m, desc->converted) : pack_file_open(&m->file, m->path);
+    status = desc->converted ? open_converted(m, desc->converted) : pack_file_open_draft(&m->file, m->path);
     if (!status) status = open_model(m, g, desc);
     if (status) {
         view_model_close(m);
