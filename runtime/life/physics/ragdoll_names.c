@@ -147,16 +147,21 @@ static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part we
     return 0;
 }
 
-static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means);
+/* Whether a joint above this one has a name of that kind. */
+static int is_below_name(const noh_ragdoll_source *s, uint32_t joint, part name)
+{
+    uint32_t up = s->joints.parents[joint];
+    while (up != NOH_JOINT_ROOT && name_at(s, up) != name) up = s->joints.parents[up];
+    return up != NOH_JOINT_ROOT;
+}
 
 static part part_at(const noh_ragdoll_source *s, uint32_t joint)
 {
     const part name = name_at(s, joint);
     if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
     if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
-    if (name == UPPER_ARM && is_nearest_above(s, joint, UPPER_ARM, FOREARM, HAND) && !is_first(s, joint, UPPER_ARM))
-        return FOREARM;
-    return name;
+    if (name != UPPER_ARM || !is_below_name(s, joint, UPPER_ARM)) return name;
+    return is_nearest_above(s, joint, UPPER_ARM, FOREARM, HAND) ? FOREARM : name;
 }
 
 /* The topmost joint of its kind in its chain: fingers' names contain "hand" too. */

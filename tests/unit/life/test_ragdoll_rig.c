@@ -13,6 +13,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "support/support.h"
 #include "support/skin_asset.h"
@@ -233,6 +234,33 @@ static void other_names_find_the_same_limbs(void **state)
     }
 }
 
+/* Each arm of a chain has a hand. The time must not double with each arm: this took 20 s. */
+static void chains_of_arms_are_refused_at_once(void **state)
+{
+    skin_asset a;
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t count;
+    (void)state;
+    skin_asset_open(&a, "khronos/RobotExpressive.glb", NULL);
+    noh_ragdoll_source s = source_of(&a.pack);
+    const uint32_t arms = s.joints.joint_count / 2u;
+    uint16_t *parents = test_zeros(s.joints.joint_count * sizeof *parents);
+    char *strings = malloc(a.pack.string_bytes);
+    assert_non_null(strings);
+    a.pack.strings = memcpy(strings, a.pack.strings, a.pack.string_bytes);
+    for (uint32_t j = 0; j < s.joints.joint_count; j++) {
+        parents[j] = j == 0 ? NOH_JOINT_ROOT : (uint16_t)(j < arms ? j - 1u : (j - arms) % arms);
+        rename_joint(&a, noh_pack_joint_name(&a.pack, 0, j), j < arms ? "Arm" : "Hand");
+    }
+    s.joints.parents = parents;
+    const clock_t begin = clock();
+    assert_int_equal(noh_ragdoll_find_rows(&s, rows, &count, NULL), NOH_ERR_NOT_FOUND);
+    assert_true(clock() - begin < 3 * CLOCKS_PER_SEC);
+    free(parents);
+    free((char *)(uintptr_t)a.pack.strings);
+    skin_asset_close(&a);
+}
+
 /* Legs may hang from a joint next to the spine, below what carries both. */
 static void a_pelvis_is_above_legs_and_spine(void **state)
 {
@@ -378,6 +406,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(sides_are_alike),
     cmocka_unit_test(rows_out_of_order_are_refused),
     cmocka_unit_test(other_names_find_the_same_limbs),
+    cmocka_unit_test(chains_of_arms_are_refused_at_once),
     cmocka_unit_test(a_pelvis_is_above_legs_and_spine),
 };
 
