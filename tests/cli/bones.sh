@@ -119,6 +119,8 @@ for way in 0 90 180 -90; do
     noh render "$work/body$way.noh" -o "$work/body$way.png" --camera full,30,5 --size 128x128
     expect 0 "a body that faces $way degrees"
     check 'is shown from its front' "$build/tests/gl/picture_diff" "$work/body0.png" "$work/body$way.png" 1 0.02
+    noh render "$work/body$way.noh" -o "$work/full$way.png" --camera full --size 128x128
+    check 'as large' "$build/tests/gl/picture_diff" "$work/full0.png" "$work/full$way.png" 1 0.02
 done
 noh render "$work/body0.noh" -o "$work/plain0.png" --camera 30,5 --size 128x128
 noh render "$work/body180.noh" -o "$work/plain180.png" --camera 30,5 --size 128x128

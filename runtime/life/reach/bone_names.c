@@ -219,7 +219,7 @@ static int is_above(const uint16_t *parents, uint32_t above, uint32_t joint)
     return joint != NOH_JOINT_ROOT;
 }
 
-/* Of a limb's three bones the second, where another tool gives its name to the first. */
+/* The middle of three bones, if its name means the first: an arm below an upper arm is a forearm. */
 static void find_middle(const uint16_t *parents, uint16_t limb[3])
 {
     if (limb[0] == NOH_JOINT_ROOT || limb[1] != NOH_JOINT_ROOT || limb[2] == NOH_JOINT_ROOT) return;

@@ -141,7 +141,7 @@ static int copy_pack(scene *s, const pack_file *from, unsigned keeps)
 static int open_light(scene *s, const look *l)
 {
     const light_options o = { l->light,      l->tonemap, l->shadow, l->keeps & KEEP_TRANSFER ? "on" : "off",
-                              l->background, 0.0 };
+                              l->background, 0.0,        0.0 };
     int status = 0;
     if (l->light) {
         status = lighting_open(&s->light, &o);

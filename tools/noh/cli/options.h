@@ -195,14 +195,14 @@
         .needs = "--clip", .excludes = "--bones"                                                            \
     }
 
-#define OPTION_CAMERA(T, m, text)                                                                                    \
-    {                                                                                                                \
-        .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m),                                               \
-        .value = "auto|face|upper|full[,AZ,EL]|AZ,EL[,DIST]", .initial = text,                                       \
-        .what = "what the camera frames (face: with its hair; upper: a body from the waist; full: all of it; auto: " \
-                "the face of a head and of a body whose clips move no joints, otherwise full), and its position: "   \
-                "azimuth and elevation in degrees, distance in model units; a frame is seen from where feet point",  \
-        .example = "face,30,10"                                                                                      \
+#define OPTION_CAMERA(T, m, text)                                                                                      \
+    {                                                                                                                  \
+        .name = "--camera", .kind = OPTION_TEXT, .at = offsetof(T, m),                                                 \
+        .value = "auto|face|upper|full[,AZ,EL]|AZ,EL[,DIST]", .initial = text,                                         \
+        .what = "what the camera frames (face: with its hair; upper: a body from the waist; full: all of it; auto: "   \
+                "the face of a head and of a body whose clips move no joints, otherwise full), and its position: "     \
+                "azimuth and elevation in degrees, distance in model units; a frame is seen from the front of a body", \
+        .example = "face,30,10"                                                                                        \
     }
 
 #define OPTION_INSTANCES(T, m, text, ...)                                                                  \

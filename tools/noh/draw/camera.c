@@ -7,6 +7,8 @@
 #include "cli/args.h"
 #include "cli/message.h"
 
+#define PI 3.14159265358979
+
 static void grow(bounds *b, const double p[3])
 {
     for (int c = 0; c < 3; c++) {
@@ -20,6 +22,18 @@ bounds bounds_union(bounds a, bounds b)
     grow(&a, b.low);
     grow(&a, b.high);
     return a;
+}
+
+bounds bounds_turned(bounds b, double degrees)
+{
+    const double s = round(sin(degrees * PI / 180.0)), c = round(cos(degrees * PI / 180.0));
+    const double a[2] = { c * b.low[0] + s * b.low[2], c * b.high[0] + s * b.high[2] };
+    const double d[2] = { c * b.low[2] - s * b.low[0], c * b.high[2] - s * b.high[0] };
+    b.low[0] = fmin(a[0], a[1]);
+    b.high[0] = fmax(a[0], a[1]);
+    b.low[2] = fmin(d[0], d[1]);
+    b.high[2] = fmax(d[0], d[1]);
+    return b;
 }
 
 /* Column-major product of a 4x4 projection and a 4x4 view. */
@@ -139,8 +153,8 @@ static int parse_orbit(const char *text, orbit *o)
             return 1;
         }
     }
-    o->azimuth = values[0] * 3.14159265358979 / 180.0;
-    o->elevation = values[1] * 3.14159265358979 / 180.0;
+    o->azimuth = values[0] * PI / 180.0;
+    o->elevation = values[1] * PI / 180.0;
     o->distance = count == 3 ? values[2] : o->distance;
     return count < 2 || fabs(values[1]) > 89.9 || o->distance <= 0.0;
 }
@@ -167,13 +181,14 @@ void orbit_frame(orbit *o, const bounds *box, double margin)
     o->distance = fmax(distance, o->radius * 1.02);
 }
 
-orbit orbit_fit(const bounds *box, double aspect)
+orbit orbit_fit(const bounds *box, double aspect, double facing)
 {
-    orbit at = { 0.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
+    orbit at = { facing * PI / 180.0, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
+    const bounds own = bounds_turned(*box, -facing);
     double half[3], need;
     for (int c = 0; c < 3; c++) {
         at.center[c] = (box->low[c] + box->high[c]) / 2.0;
-        half[c] = (box->high[c] - box->low[c]) / 2.0;
+        half[c] = (own.high[c] - own.low[c]) / 2.0;
     }
     at.radius = fmax(sqrt(half[0] * half[0] + half[1] * half[1] + half[2] * half[2]), 1e-6);
     need = fmax(half[1], fmax(half[0], half[2] * 0.7) / at.aspect) * 1.05;
@@ -186,9 +201,9 @@ orbit orbit_fit(const bounds *box, double aspect)
 
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
 {
-    orbit at = orbit_fit(box, (double)o->width / (double)o->height);
     view_frame frame = FRAME_FULL;
     const char *rest = o->camera ? after_frame(o->camera, &frame) : "";
+    orbit at = orbit_fit(box, (double)o->width / (double)o->height, rest ? o->facing : 0.0);
     const char *direction = !rest ? o->camera : *rest ? rest + 1 : frame == FRAME_AUTO ? AUTO_DIRECTION : NULL;
     const double fitted = at.distance;
     if (direction && (parse_orbit(direction, &at) || (rest && at.distance != fitted))) {
@@ -196,8 +211,10 @@ int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera)
                           "AZIMUTH,ELEVATION[,DISTANCE] (degrees, elevation -89 to 89; distance over 0), not '%s'",
                           o->camera);
     }
-    if (rest) at.azimuth += o->facing * 3.14159265358979 / 180.0;
-    if (rest && direction) orbit_frame(&at, box, ORBIT_MARGIN);
+    if (rest && direction) {
+        at.azimuth += o->facing * PI / 180.0;
+        orbit_frame(&at, box, ORBIT_MARGIN);
+    }
     if (o->around) at.radius *= 8.0;
     orbit_camera(&at, camera);
     return 0;

@@ -9,6 +9,8 @@ typedef struct bounds {
 } bounds;
 
 bounds bounds_union(bounds a, bounds b);
+/* About the vertical axis, from +z towards +x, by a multiple of 90 degrees. */
+bounds bounds_turned(bounds b, double degrees);
 
 /* What a camera frames. */
 typedef enum view_frame {
@@ -21,9 +23,8 @@ typedef enum view_frame {
 typedef struct view_options {
     const char *camera; /* OPTION_CAMERA; NULL: full */
     uint32_t width, height;
-    int around; /* 1: also frames the surroundings of the box */
-    double
-        facing; /* degrees from +z towards +x: where the front is that a frame looks at; AZ,EL alone is of the axes */
+    int around;    /* 1: also frames the surroundings of the box */
+    double facing; /* where the front is, in degrees from +z towards +x; AZ,EL without a frame does not turn with it */
 } view_options;
 
 #define ORBIT_VIEW_RAD 0.5235987755982988 /* the height of the view: 30 degrees */
@@ -35,8 +36,8 @@ typedef struct orbit {
     double aspect;            /* width over height */
 } orbit;
 
-/* An orbit from the front that frames the box. */
-orbit orbit_fit(const bounds *box, double aspect);
+/* An orbit from the front that frames the box. facing: where the front is, as in view_options */
+orbit orbit_fit(const bounds *box, double aspect, double facing);
 /* margin: the share of the picture that stays free at each border; as orbit_fit: 0.024 */
 #define ORBIT_MARGIN 0.024
 /* Look at the middle of the box from where the orbit looks; all of it is in the picture. */
@@ -50,7 +51,7 @@ void orbit_camera(const orbit *o, noh_gl_camera *camera);
 int view_camera(const view_options *o, const bounds *box, noh_gl_camera *camera);
 /* What the options frame. */
 view_frame view_frame_of(const view_options *o);
-/* Whether they frame something, rather than give a direction alone. */
+/* Whether they frame something; 0: they give a direction alone. */
 int view_frames(const view_options *o);
 
 #endif

@@ -8,7 +8,7 @@
 
 #define SAME_WAY 0.8 /* cosine */
 
-/* In the bind pose, from one bone to another, on the ground. 0: it lacks one, or they lie above each other. */
+/* The way in the bind pose from one bone to another, on the ground. 0: one is missing, or they lie above each other. */
 static int way_between(const noh_retarget_rig *rig, uint32_t from, uint32_t to, double way[2])
 {
     float a[3], b[3], unused[4];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "facing.h"
 
 #define SETTLE_S 2.0
 
@@ -169,6 +170,7 @@ int figure_plan(figure *f, const figure_desc *desc, const noh_gl_caps *caps)
     int status;
     memset(f, 0, sizeof *f);
     f->desc = *desc;
+    f->facing = pack_facing(&desc->file->pack);
     f->own_layers[0] = (noh_layer_desc){ "body", NOH_LAYER_BASE, NULL, NULL, desc->track_count };
     f->own_layers[1] = (noh_layer_desc){ "face", NOH_LAYER_OVER, "", NULL, desc->track_count };
     for (uint32_t i = 0; desc->more_clip_count && i <= desc->more_clip_count; i++) {

@@ -123,6 +123,7 @@ typedef struct figure {
     int shows_floor;       /* 1: it casts one now */
     float floor;           /* y of the ground where the body has none */
     double height;         /* at rest */
+    double facing;         /* of its first kind: pack_facing */
     noh_stage_view seen;   /* of figure_views */
     noh_actor actors[NOH_STAGE_KINDS_MAX];
     noh_appearance look; /* of all actors */

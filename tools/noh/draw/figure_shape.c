@@ -269,11 +269,13 @@ bounds figure_bounds(const figure *f, view_frame frame)
     const bounds all = measure(f, 0), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     if (all.low[0] > all.high[0]) return none;
     if (frame == FRAME_FULL) return all;
+    const bounds own = bounds_turned(all, -f->facing);
     bounds face = measure(f, 1);
-    const int has_face = face.low[0] <= face.high[0];
-    if (has_face && (frame == FRAME_FACE || is_head(&all, &face))) return around_face(f, &all, face);
+    if (face.low[0] <= face.high[0] && (frame == FRAME_FACE || is_head(&all, &face))) {
+        return bounds_turned(around_face(f, &own, bounds_turned(face, -f->facing)), f->facing);
+    }
     if (frame == FRAME_FACE && head_by_joint(f, &all, &face)) return around_head(&all, face);
-    return frame == FRAME_UPPER ? upper_of(all) : all;
+    return frame == FRAME_UPPER ? bounds_turned(upper_of(own), f->facing) : all;
 }
 
 const noh_clip_entry *figure_clip(const figure *f, uint32_t kind, const char *name)

@@ -108,7 +108,7 @@ int lighting_open(lighting *l, const light_options *o)
     l->told.tonemap = tonemap == 0 ? NOH_TONEMAP_NEUTRAL : tonemap == 1 ? NOH_TONEMAP_FILMIC : NOH_TONEMAP_NONE;
     l->desc.reflection = &l->reflection;
     l->desc.shadow_px = l->has_shadow ? LIGHTING_SHADOW_PX : 0;
-    lighting_turn(l, o->rotate);
+    lighting_turn(l, o->rotate, o->facing);
     return 0;
 }
 
@@ -118,14 +118,22 @@ void lighting_close(lighting *l)
     memset(l, 0, sizeof *l);
 }
 
-void lighting_turn(lighting *l, double degrees)
+static void rotate(double degrees, float rotation[9])
 {
     const float s = (float)sin(degrees * PI / 180.0), c = (float)cos(degrees * PI / 180.0);
-    const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    const float turn[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    memcpy(rotation, turn, sizeof turn);
+}
+
+void lighting_turn(lighting *l, double degrees, double facing)
+{
+    float rotation[9];
     const noh_tonemap tonemap = l->told.tonemap;
     l->degrees = degrees;
+    rotate(degrees + facing, rotation);
     noh_lighting_make(&l->light, rotation, l->has_shadow, &l->told);
     l->told.tonemap = tonemap;
+    rotate(degrees, rotation);
     l->told.exposure = noh_light_exposure(&l->light, rotation);
 }
 

@@ -11,6 +11,7 @@
 typedef struct light_options {
     const char *light, *tonemap, *shadow, *transfer, *background; /* of OPTIONS_LIGHT; NULL: their defaults */
     double rotate;                                                /* degrees about the vertical axis */
+    double facing;                                                /* view_options.facing: it turns with the front */
 } light_options;
 
 #define LIGHTING_SHADOW_PX 512u
@@ -26,7 +27,7 @@ typedef struct lighting {
     noh_gl_light_desc desc;
     noh_lighting told;
     int has_shadow, has_blobs, without_transfer;
-    double degrees;  /* how far it is turned */
+    double degrees;  /* how far it is turned, seen from the front */
     float sphere[4]; /* what casts its shadow: of lighting_shadow_view */
     lighting_background background;
 } lighting;
@@ -38,8 +39,8 @@ int lighting_wanted(light_options *o, const noh_pack *pack, int shows_surfaces);
 /* Read or bake the environment. Prints an error and returns an exit code; 0 on success. */
 int lighting_open(lighting *l, const light_options *o);
 void lighting_close(lighting *l);
-/* Turn it. */
-void lighting_turn(lighting *l, double degrees);
+/* Turn it, and expose it for faces that look to the front. facing: of light_options */
+void lighting_turn(lighting *l, double degrees, double facing);
 
 /* The view of the shadow map, for the contents of the box; also passed to shaders. */
 noh_stage_view lighting_shadow_view(lighting *l, const bounds *box);

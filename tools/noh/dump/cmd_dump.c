@@ -139,7 +139,7 @@ static int dump_meshes(byte_buffer *out, const figure *f, readback *r)
 static int look_at_all(figure *f)
 {
     const bounds box = figure_bounds(f, FRAME_FULL);
-    const orbit at = orbit_fit(&box, 1.0);
+    const orbit at = orbit_fit(&box, 1.0, 0.0);
     noh_gl_camera camera;
     orbit_camera(&at, &camera);
     return figure_look(f, &camera, 512);

@@ -232,7 +232,7 @@ static int render(render_args *a, const pack_file *file)
     const int lit = a->figure.view == NOH_VIEW_LIT && a->shows != DEBUG_JOINTS && a->shows != DEBUG_WEIGHTS;
     int status = shows_bones < 0 ? EXIT_FAILED : 0;
     if (view_frames(&a->view)) a->view.facing = pack_facing(&file->pack);
-    a->light.rotate += a->view.facing;
+    a->light.facing = a->view.facing;
     if (!status && lighting_wanted(&a->light, &file->pack, !shows_bones && lit)) {
         status = lighting_open(&light, &a->light);
         if (status) return status;
@@ -304,9 +304,8 @@ static const option options[] = {
       .at = offsetof(render_args, pose),
       .value = "auto|rest",
       .initial = "auto",
-      .what =
-          "how a figure stands that no --clip poses: auto, as in the first frame of a clip named idle, otherwise with its "
-          "arms lowered; rest, as it was modelled",
+      .what = "how a figure stands if no --clip moves its joints: auto, as in the first frame of a clip named idle, "
+              "otherwise with its arms lowered; rest, as it was modelled",
       .example = "rest" },
     OPTION_FACE(render_args, face, "off"),
     OPTION_FEEL(render_args, emotions, .needs = "--face"),

@@ -303,7 +303,7 @@ static int run(void *args)
     if (!status) {
         const view_options o = { .camera = a->s.camera };
         if (view_frames(&o)) a->s.facing = pack_facing(&file.pack);
-        a->s.light.rotate += a->s.facing;
+        a->s.light.facing = a->s.facing;
         if (lighting_wanted(&a->s.light, &file.pack, !a->s.show_bones)) {
             status = lighting_open(&a->s.lit, &a->s.light);
             if (!status) a->s.figure.light = &a->s.lit;

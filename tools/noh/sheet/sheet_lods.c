@@ -5,7 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "draw/facing.h"
 #include "draw/label.h"
 #include "cli/message.h"
 #include "file/png_file.h"
@@ -198,12 +197,13 @@ static int make_picture(grid *g)
 static int place_camera(grid *g)
 {
     const sheet_lods *o = g->o;
-    const view_options view = { o->camera, o->tile, o->tile, 0, pack_facing(&o->file->pack) };
+    view_options view = { o->camera, o->tile, o->tile, 0, 0.0 };
     figure f;
     int status = figure_open(&f, &o->figure, NULL);
     if (status) {
         return status;
     }
+    view.facing = f.facing;
     status = figure_pose(&f);
     if (!status) {
         const bounds box = figure_bounds(&f, view_frame_of(&view));

@@ -78,7 +78,7 @@ static int show(figure *f)
         return status;
     }
     box = figure_bounds(f, FRAME_FULL);
-    at = orbit_fit(&box, 1.0);
+    at = orbit_fit(&box, 1.0, 0.0);
     orbit_camera(&at, &camera);
     return figure_look(f, &camera, 512);
 }

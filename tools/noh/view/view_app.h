@@ -93,6 +93,7 @@ typedef struct view_eye {
     int turntable;        /* the camera turns about the figure */
     bounds framed_box;    /* what view_frame_all framed */
     double framed_aspect; /* the picture's aspect ratio when it did */
+    double facing;        /* of the model: the camera and the light were turned to it */
     int by_hand;          /* moved by hand: other clips are not framed */
     framing *framing;     /* made for the model when first needed; NULL until then */
     uint8_t *framed;      /* [clip_count] 1: in the picture; NULL likewise */

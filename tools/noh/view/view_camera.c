@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "draw/facing.h"
 #include "view/view_app.h"
 
 /* ---- the picture in the window ---- */
@@ -117,8 +116,9 @@ void view_frame_all(view_app *a)
     int x, y;
     uint32_t width, height;
     view_figure_pixels(a, &x, &y, &width, &height);
-    a->camera.orbit = orbit_fit(&around, (double)width / (double)height);
-    a->camera.orbit.azimuth = pack_facing(&a->model->file.pack) * 3.14159265358979 / 180.0;
+    a->camera.facing = a->model->figure->facing;
+    view_turn_light(a, 0.0);
+    a->camera.orbit = orbit_fit(&around, (double)width / (double)height, a->camera.facing);
     a->camera.framed_box = around;
     a->ground.height = fabs(around.low[1]) < 0.05 * a->camera.orbit.radius ? 0.0 : around.low[1];
     a->camera.by_hand = 0;
@@ -132,7 +132,7 @@ static void frame_again(view_app *a)
 {
     a->camera.framed_aspect = a->camera.orbit.aspect;
     if (!frame_playing(a, 0))
-        a->camera.orbit.distance = orbit_fit(&a->camera.framed_box, a->camera.orbit.aspect).distance;
+        a->camera.orbit.distance = orbit_fit(&a->camera.framed_box, a->camera.orbit.aspect, a->camera.facing).distance;
 }
 
 /* The camera follows a clip that walks, and returns when it restarts; it does not follow a fall. */
@@ -184,5 +184,5 @@ void view_zoom(view_app *a, double steps)
 void view_turn_light(view_app *a, double degrees)
 {
     lighting *light = a->desc.light;
-    if (light) lighting_turn(light, remainder(light->degrees + degrees, 360.0));
+    if (light) lighting_turn(light, remainder(light->degrees + degrees, 360.0), a->camera.facing);
 }

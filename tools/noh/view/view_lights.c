@@ -65,6 +65,7 @@ void view_light_choose(view_app *a, const char *name)
         }
         chosen = &lights->slots[slot];
     }
+    if (chosen) lighting_turn(chosen, chosen->degrees, a->camera.facing);
     snprintf(lights->name, sizeof lights->name, "%s", name);
     a->request.desc.light = chosen;
     a->request.reload = 1;

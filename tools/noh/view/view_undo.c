@@ -115,7 +115,7 @@ static void apply(view_app *a, const step *s)
     if (strcmp(s->set.light, a->lights.name) != 0) view_light_choose(a, s->set.light);
     light = a->request.desc.light;
     if (light) {
-        lighting_turn(light, s->set.degrees);
+        lighting_turn(light, s->set.degrees, a->camera.facing);
         light->background = s->set.background;
         light->told.tonemap = s->set.tonemap;
     }

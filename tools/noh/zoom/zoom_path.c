@@ -142,7 +142,7 @@ int zoom_path_open(zoom_path *p, const zoom_subject *s, double near, double far,
         return status;
     }
     box = figure_bounds(&p->shaken, FRAME_FULL);
-    p->at = orbit_fit(&box, 1.0);
+    p->at = orbit_fit(&box, 1.0, 0.0);
     status = find_reach(p);
     return status ? status : plan(p, s->desc.file->path, near, far);
 }

@@ -65,7 +65,7 @@ void light_section(view_app *a)
     float degrees = static_cast<float>(light->degrees);
     int background = static_cast<int>(light->background), tonemap = light->told.tonemap != NOH_TONEMAP_NONE;
     if (ui::slider("##turn", &degrees, -180.0f, 180.0f, "turned by %.0f degrees")) {
-        lighting_turn(light, static_cast<double>(degrees));
+        lighting_turn(light, static_cast<double>(degrees), a->camera.facing);
     }
     if (ui::choose("background", &background, backgrounds, 3)) {
         light->background = static_cast<lighting_background>(background);
