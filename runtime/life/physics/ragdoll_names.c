@@ -83,12 +83,19 @@ static const struct translation {
 };
 /* clang-format on */
 
+/* Blender has the side behind the name: .L */
+static int is_own(const char *name, const char *own)
+{
+    while (*own && *own == *name) own++, name++;
+    return !*own && (!*name || *name == '.' || *name == '_');
+}
+
 const char *noh_name_english(const char *name)
 {
     const char *own = name;
     if (noh_name_begins(own, NOH_LEFT_IN_JAPANESE) || noh_name_begins(own, NOH_RIGHT_IN_JAPANESE)) own += 3;
     for (size_t i = 0; (unsigned char)*own >= 0x80u && i < sizeof translations / sizeof translations[0]; i++) {
-        if (noh_names_equal(own, translations[i].own)) return translations[i].english;
+        if (is_own(own, translations[i].own)) return translations[i].english;
     }
     return name;
 }

@@ -189,11 +189,13 @@ static void rename_joint(skin_asset *a, const char *from, const char *to)
 }
 
 /* Names of other tools: the joints are the same, so the rows are. The pelvis of the first is named as a hip too, its
- * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's. The third calls a
- * forearm an arm. */
+ * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's, the fourth the same from
+ * Blender. The third calls a forearm an arm. */
 static void other_names_find_the_same_limbs(void **state)
 {
-    static const char *const sides[4][2] = { { "Left", "Right" }, { "L_", "R_" }, { "左", "右" }, { "Left", "Right" } };
+    static const char *const sides[5][2] = {
+        { "Left", "Right" }, { "L_", "R_" }, { "左", "右" }, { "Left", "Right" }, { ".L", ".R" }
+    };
     static const char *const names[][4] = {
         { "UpLeg", "Hip", "足", "UpperLeg" },  { "Leg", "Knee", "ひざ", "Leg" },
         { "Foot", "Ankle", "足首", "Foot" },   { "Arm", "Shoulder", "腕", "UpperArm" },
@@ -202,23 +204,26 @@ static void other_names_find_the_same_limbs(void **state)
     noh_ragdoll_row before[NOH_RAGDOLL_BODIES_MAX], after[NOH_RAGDOLL_BODIES_MAX];
     uint32_t counts[2];
     (void)state;
-    for (int tool = 1; tool < 4; tool++) {
+    for (int tool = 1; tool < 5; tool++) {
         skin_asset a;
         noh_gaze_rig gaze[2];
+        noh_retarget_rig bones[2];
         skin_asset_open(&a, assets[0], NULL);
         const noh_ragdoll_source s = source_of(&a.pack);
         assert_int_equal(noh_ragdoll_find_rows(&s, before, &counts[0], NULL), NOH_OK);
         assert_int_equal(noh_gaze_rig_make(&a.pack, 0, &gaze[0], NULL), NOH_OK);
+        assert_int_equal(noh_retarget_rig_make(&s, &bones[0], NULL), NOH_OK);
         char *strings = malloc(a.pack.string_bytes);
         assert_non_null(strings);
         a.pack.strings = memcpy(strings, a.pack.strings, a.pack.string_bytes);
         for (size_t i = 0; i < 2u * TEST_COUNT(names); i++) {
+            const char *side = sides[tool][i % 2u], *name = names[i / 2u][tool == 4 ? 2 : tool];
             char from[32], to[32];
             (void)snprintf(from, sizeof from, "%s%s", sides[0][i % 2u], names[i / 2u][0]);
-            (void)snprintf(to, sizeof to, "%s%s", sides[tool][i % 2u], names[i / 2u][tool]);
+            (void)snprintf(to, sizeof to, "%s%s", tool == 4 ? name : side, tool == 4 ? side : name);
             rename_joint(&a, from, to);
         }
-        if (tool == 2) {
+        if (tool == 2 || tool == 4) {
             rename_joint(&a, "Head", "頭");
             rename_joint(&a, "Neck", "首");
         }
@@ -229,6 +234,12 @@ static void other_names_find_the_same_limbs(void **state)
         assert_int_equal(noh_gaze_rig_make(&a.pack, 0, &gaze[1], NULL), NOH_OK);
         assert_int_equal(gaze[0].joint_count, gaze[1].joint_count);
         assert_memory_equal(gaze[0].joints, gaze[1].joints, gaze[0].joint_count * sizeof *gaze[0].joints);
+        assert_int_equal(noh_retarget_rig_make(&s, &bones[1], NULL), NOH_OK);
+        for (uint32_t i = 0; i < 12; i++) {
+            const uint32_t limb = i & 1u ? NOH_BONE_UPPER_ARM : NOH_BONE_UPPER_LEG;
+            const uint32_t bone = limb + i / 4u + (i & 2u ? NOH_BONE_RIGHT : 0u);
+            assert_int_equal(bones[0].bones[bone], bones[1].bones[bone]);
+        }
         free((char *)(uintptr_t)a.pack.strings);
         skin_asset_close(&a);
     }
