@@ -69,7 +69,7 @@ static void lips_are_found_in_any_order(void **state)
     }
 }
 
-/* A joint may open lips, too, and no target then says how far: their light is as if they were apart. */
+/* A joint may open lips, too, and no target then says how far: their light is as if they were a little apart. */
 static void a_jaw_that_is_a_joint_keeps_lips_lit(void **state)
 {
     (void)state;
@@ -87,9 +87,9 @@ static void a_jaw_that_is_a_joint_keeps_lips_lit(void **state)
         }
         assert_int_equal(lip_gaps_find(m, 10.0f, &rest), 0);
         if (jaw)
-            assert_true(rest == 0.24f);
+            assert_true(rest > 0.09f && rest < 0.15f); /* 0.24: a white slit between closed lips */
         else
-            assert_true(rest < 0.1f);
+            assert_true(rest < 0.05f);
         model_free(m);
     }
 }

@@ -229,6 +229,7 @@ void lip_rim_free(lip_rim *h)
 
 #define MIDDLE 0.35 /* of the way to a corner */
 #define JOINTS_SHARED 0.75
+#define PARTED 0.1f /* half a gap that joints open: more makes a white slit of teeth at rest, less a black open mouth */
 
 /* By how much a target moves the upper lip from the lower one in the middle of the mouth. */
 static double opens_by(const lip_rim *h, const model_target *t, const double up[3])
@@ -302,7 +303,7 @@ static void measure_gaps(model *m, lip_rim *h, float slope, float *rest)
     const uint32_t count = links_of(h->mesh, links);
     double up[3], apart;
     if (!find_up(h, links, count, up, &apart)) return;
-    *rest = fmaxf((float)(0.5 * apart) * slope, joints_part(h) ? *rest : CLOSED);
+    *rest = fmaxf((float)(0.5 * apart) * slope, joints_part(h) ? PARTED : CLOSED);
     for (uint32_t t = 0; t < h->mesh->target_count; t++) {
         const float by = (float)(0.5 * opens_by(h, &h->mesh->targets[t], up)) * slope;
         for (uint32_t i = 0; i < m->mesh_count; i++) {

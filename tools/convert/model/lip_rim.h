@@ -39,8 +39,8 @@ double lip_aside(const lip_rim *h, const double at[3]);
 
 /* Measure how far each target opens the lips (model_target.lips), in all meshes by its name, and how far they are open
  * at rest. slope: 1 over the depth of the mouth
- * rest    half the gap, in depths of the mouth; untouched: no target opens lips that can be found; no less than it was
- *         where joints open them, too
+ * rest    half the gap, in depths of the mouth; untouched: no target opens lips that can be found; larger where joints
+ *         open them, too
  * errors  1: out of memory */
 int lip_gaps_find(model *m, float slope, float *rest);
 
