@@ -42,7 +42,7 @@ static float open_at(const speech_track *t, uint32_t ms)
 static void a_mouth_closes_no_faster_than_people_do(void **state)
 {
     sound s = babble();
-    float most[2] = { 0.0f, 0.0f }, widest[2] = { 0.0f, 0.0f };
+    float most[2] = { 0.0f, 0.0f }, widest[2] = { 0.0f, 0.0f }, jaw[2] = { 0.0f, 0.0f };
     (void)state;
     for (int live = 0; live < 2; live++) {
         const hearing how = { live, 40.0, 0 };
@@ -53,12 +53,16 @@ static void a_mouth_closes_no_faster_than_people_do(void **state)
             most[live] = fmaxf(most[live], fabsf(open_at(&track, ms + 33u) - open_at(&track, ms)));
             widest[live] = fmaxf(widest[live], open_at(&track, ms));
         }
+        for (uint32_t f = 1; f < track.frame_count; f++) {
+            jaw[live] = fmaxf(jaw[live], fabsf(track.frames[f].open - track.frames[f - 1u].open));
+        }
         synthesis_free(&said);
         speech_track_free(&track);
     }
     assert_true(widest[0] > 0.6f && widest[1] > 0.6f);
     assert_true(most[1] > 0.5f); /* what is heard now cannot be known before */
     assert_true(most[0] < 0.45f);
+    assert_true(jaw[1] > 0.13f && jaw[0] < 0.13f); /* the curve "open" of --json, too */
     sound_free(&s);
 }
 

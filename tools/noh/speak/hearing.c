@@ -73,6 +73,7 @@ static void close_towards(speech_track_frame *f, const speech_track_frame *neigh
     for (uint32_t v = 0; v < NOH_VISEME_COUNT && more > OPEN_STEP; v++) {
         f->visemes[v] = neighbour->visemes[v] + OPEN_STEP / more * (f->visemes[v] - neighbour->visemes[v]);
     }
+    f->open = fminf(f->open, neighbour->open + OPEN_STEP);
 }
 
 /* The ear shuts lips from one frame to the next; a recording's track knows before that they will. */
