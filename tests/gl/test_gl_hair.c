@@ -192,7 +192,7 @@ static void look(head *h, uint32_t angle)
         box.low[i] = (double)m->bounds_min[i];
         box.high[i] = (double)m->bounds_max[i];
     }
-    o = orbit_fit(&box, 1.0);
+    o = orbit_fit(&box, 1.0, 0.0);
     o.azimuth = 0.7853981633974483 * (angle % 8u);
     o.elevation = 0.5 * ((double)(angle / 8u) - 1.0);
     o.distance *= 0.8;

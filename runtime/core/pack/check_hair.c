@@ -71,7 +71,8 @@ static noh_result check_patches(const noh_check *check, const noh_pack_hair_head
     const uint32_t *corners = (const uint32_t *)(const void *)(check->bytes + h->patches_offset);
     for (uint32_t i = 0; i < 4u * h->patch_count; i++) {
         if (corners[i] >= h->hair_count) {
-            return noh_check_fail(check, "patch of a haircut has a missing control hair", h->patches_offset + 4ull * i);
+            return noh_check_fail(check, "patch of a haircut names a missing control hair",
+                                  h->patches_offset + 4ull * i);
         }
     }
     return NOH_OK;

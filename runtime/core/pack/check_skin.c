@@ -133,7 +133,7 @@ static noh_result check_vertices(const noh_check *check, const noh_mesh_header *
         uint32_t palette = noh_check_texel_word(check, h, v) >> NOH_TEXEL_VERTEX_BITS;
         noh_result result;
         if (palette >= h->palette_count) {
-            return noh_check_fail(check, "vertex has a missing palette",
+            return noh_check_fail(check, "vertex names a missing palette",
                                   h->attributes_offset + (uint64_t)v * h->attribute_stride);
         }
         result = check_record(check, words + (size_t)v * stride, h->influence_count, palettes[palette].joint_count,
