@@ -66,6 +66,69 @@ static void the_coarsest_level_has_joints_and_no_targets(void **state)
     assert_true(moved > 0);
 }
 
+/* A skin that is nearly full takes as many as it has room for, and a full one none: then targets stay. */
+static void a_skin_with_little_room_takes_few(void **state)
+{
+    const lod_settings settings = { LEVELS, 0, LOD_FAST, 0.0f, 0.0f, NULL, LEVELS };
+    const lod_face face = { 22, 16, TARGETS, 0, 0 };
+    (void)state;
+    for (uint32_t room = 0; room < 6u; room += 5u) {
+        const uint32_t count = NOH_SKIN_JOINTS_MAX - room;
+        const skin_options as_it_is = { .rigid_faces = 0 };
+        model *full = lod_drawn_face_model(&face);
+        model_skin *skin;
+        lod_pack made;
+        assert_int_equal(skins_of_faces(full), 0);
+        skin = full->skins;
+        assert_int_equal(skin->joint_count, 1);
+        assert_non_null(skin->joints = realloc(skin->joints, count * sizeof *skin->joints));
+        assert_non_null(skin->inverse_bind = realloc(skin->inverse_bind, 16u * count * sizeof *skin->inverse_bind));
+        for (size_t j = 1; j < count; j++) {
+            skin->joints[j] = skin->joints[0];
+            memcpy(skin->inverse_bind + 16u * j, skin->inverse_bind, 16u * sizeof *skin->inverse_bind);
+        }
+        skin->joint_count = count;
+        lod_pack_make_skinned(full, &settings, &as_it_is, &made);
+        assert_int_equal(made.mesh.far_joints ? made.mesh.far_joints->joint_count : 0u, room);
+        assert_true(room || noh_mesh_at_lod(&made.mesh, LEVELS - 1u).header->touched_count);
+        lod_pack_free(&made);
+        model_free(full);
+    }
+}
+
+/* Where a surface is sewn, its points have one set of weights, whatever their normals, and 0 may be -0: else it opens. */
+static void points_at_one_place_stay_there(void **state)
+{
+    enum { COUNT = 12 };
+    float place[COUNT][3] = { { 0 } }, normal[COUNT][3] = { { 0 } }, move[COUNT][2][3] = { { { 0 } } };
+    float turn[COUNT][2][3] = { { { 0 } } }, share[COUNT];
+    const uint16_t parent[COUNT] = { 0 };
+    uint8_t slots[COUNT];
+    joint_fit f;
+    (void)state;
+    for (uint32_t i = 0; i < COUNT; i++) {
+        const uint32_t at = i / 2u;
+        place[i][1] = 0.1f * (float)at;
+        place[i][0] = move[i][0][0] = i % 2u ? -0.0f : 0.0f;
+        normal[i][i % 2u ? 0 : 2] = 1.0f;
+        move[i][0][1] = 0.01f * (float)(at * at);
+        move[i][1][2] = at == 2u ? 0.02f : 0.01f;
+        turn[i][1][1] = i % 2u ? 0.6f : -0.4f;
+        share[i] = 1.0f;
+        slots[i] = JOINTS_PER_VERTEX;
+    }
+    const joint_fit_points points = {
+        COUNT, 2, place[0], normal[0], move[0][0], turn[0][0], parent, share, slots, 0.1f
+    };
+    assert_int_equal(joint_fit_make(&points, 3, &f), 0);
+    assert_int_equal(f.joint_count, 3);
+    for (uint32_t i = 0; i < COUNT; i += 2u) {
+        assert_memory_equal(f.joint + 4u * i, f.joint + 4u * i + 4u, 4);
+        assert_memory_equal(f.weight + 4u * i, f.weight + 4u * i + 4u, 16);
+    }
+    joint_fit_free(&f);
+}
+
 /* Finer levels are moved by targets alone: no vertex that they draw follows a virtual joint. */
 static void finer_levels_keep_their_targets(void **state)
 {
@@ -247,6 +310,8 @@ static void every_bit(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(the_coarsest_level_has_joints_and_no_targets),
+    cmocka_unit_test(a_skin_with_little_room_takes_few),
+    cmocka_unit_test(points_at_one_place_stay_there),
     cmocka_unit_test(finer_levels_keep_their_targets),
     cmocka_unit_test(joints_do_what_their_motions_say),
     cmocka_unit_test(finer_levels_and_weights_of_0_move_nothing),

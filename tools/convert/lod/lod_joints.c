@@ -11,9 +11,17 @@
 #define NORMAL_SHARE 0.02f /* of the box's diagonal: what a normal that is off by 1 counts as */
 #define LEAST_WEIGHT 1e-6f
 
-int lod_joints_allowed(const model_mesh *mesh)
+/* How many a skin has room for. */
+static uint32_t room_of(const model_skin *skin)
 {
-    int allowed = mesh->target_count && mesh->bound && !mesh->dual_quaternion;
+    const uint32_t room = skin->joint_count < NOH_SKIN_JOINTS_MAX ? NOH_SKIN_JOINTS_MAX - skin->joint_count : 0;
+    return room < LOD_JOINTS_MAX ? room : LOD_JOINTS_MAX;
+}
+
+int lod_joints_allowed(const model *m, uint32_t index)
+{
+    const model_mesh *mesh = &m->meshes[index];
+    int allowed = mesh->target_count && mesh->bound && !mesh->dual_quaternion && room_of(&m->skins[mesh->skin]);
     for (uint32_t t = 0; allowed && t < mesh->target_count; t++) allowed = !mesh->targets[t].uv;
     return allowed;
 }
@@ -263,7 +271,7 @@ static int fit(model *m, model_mesh *mesh, lod_joints *out)
                                       a.share,
                                       a.slots,
                                       NORMAL_SHARE * diagonal(mesh, out) };
-    failed = failed || joint_fit_make(&points, LOD_JOINTS_MAX, &out->fit);
+    failed = failed || joint_fit_make(&points, room_of(&m->skins[mesh->skin]), &out->fit);
     out->first_joint = m->skins[mesh->skin].joint_count;
     failed = failed || grow_skin(&m->skins[mesh->skin], &out->fit) || write_deltas(mesh, &points, out);
     for (uint32_t i = 0; !failed && i < out->vertex_count; i++) write_influences(mesh, out, &a, i);

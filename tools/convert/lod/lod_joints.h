@@ -25,9 +25,9 @@ typedef struct lod_joints {
     float normal_most, normal_p99; /* certified: how far normals are off with each target at weight 1, radians */
 } lod_joints;
 
-/* Whether a mesh's coarse levels can have them: it is skinned by matrices, and its targets move positions, but no
- * texture coordinates. */
-int lod_joints_allowed(const model_mesh *mesh);
+/* Whether a mesh's coarse levels can have them: it is skinned by matrices, its skin has fewer joints than it may have,
+ * and its targets move positions, but no texture coordinates. */
+int lod_joints_allowed(const model *m, uint32_t mesh);
 
 /* Fit joints to levels[count], the coarser levels of a mesh; what these share with finer ones is copied, after the
  * mesh's first full_count vertices. The joints are appended to the mesh's skin. Deltas become what the joints do, so

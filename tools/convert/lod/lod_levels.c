@@ -331,7 +331,7 @@ static int bake_targets(model *m, uint32_t index, const lod_settings *settings, 
     lod_level *levels[NOH_LOD_LEVELS_MAX];
     pose_list poses = { 0, 0, NULL };
     int failed;
-    if (!settings->face_joints || out->count < 2u || !lod_joints_allowed(&m->meshes[index])) return 0;
+    if (!settings->face_joints || out->count < 2u || !lod_joints_allowed(m, index)) return 0;
     for (uint32_t k = first; k < out->count; k++) levels[k - first] = &out->built->levels[out->which[k]];
     failed = lod_joints_make(m, index, full_count, levels, out->count - first, &out->joints, error);
     if (failed || !out->joints.vertex_count) return failed;

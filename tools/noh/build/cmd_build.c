@@ -553,7 +553,7 @@ static const option options[] = {
       .value = "targets|joints|joints:K",
       .initial = "targets",
       .what =
-          "joints: the coarsest level, or those from level K on, follow the targets by up to 16 virtual joints a mesh, and are drawn as skinned meshes: no targets, no accumulators, larger errors. A face without joints gets one. Meshes whose targets move texture coordinates and meshes skinned by dual quaternions keep their targets",
+          "joints: the coarsest level, or those from level K on, follow the targets by up to 32 virtual joints a mesh, and are drawn as skinned meshes: no targets, no accumulators, larger errors. A face without joints gets one. Meshes whose targets move texture coordinates, meshes skinned by dual quaternions and those whose skin has 4096 joints keep their targets",
       .example = "joints",
       .needs = "--lod" },
     { .name = "--transfer",
