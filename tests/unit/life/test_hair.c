@@ -226,7 +226,6 @@ static void wind_folds_no_hair(void **state)
     assert_true(moved > 0.15);
 }
 
-/* A copy moves exactly like the hair; broken bytes are reported. */
 /* Overlapping spheres hand a hair that the wind presses on them to each other; it stays on them, and does not stand up
  * against the wind. */
 static void pressed_hair_stays_on_the_head(void **state)
@@ -247,6 +246,7 @@ static void pressed_hair_stays_on_the_head(void **state)
     free(hair);
 }
 
+/* A copy moves exactly like the hair; broken bytes are reported. */
 static void a_copy_goes_on(void **state)
 {
     const noh_hair_desc d = wig();
