@@ -2825,32 +2825,35 @@ static void hidden_meshes_are_not_kept(void **state)
     model_free(m);
 }
 
-/* Nor are textures that only such meshes have; materials keep their numbers. */
+/* Nor are textures that only such meshes have, other than replacements by a suffix; materials keep their numbers. */
 static void textures_of_hidden_meshes_are_not_kept(void **state)
 {
     (void)state;
-    char text[2048];
-    write_positions("a b.bin");
-    snprintf(text, sizeof text,
-             "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%%20b.bin\"}],"
-             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
-             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
-             "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]},"
-             "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":1}]}],"
-             "\"materials\":[{\"emissiveTexture\":{\"index\":0},\"normalTexture\":{\"index\":2}},"
-             "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}},\"normalTexture\":{\"index\":2}}],"
-             "\"textures\":[{\"source\":0},{\"source\":0},{\"source\":0}],"
-             "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}],"
-             "\"nodes\":[{\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},{\"mesh\":1}]}",
-             png_2x1);
-    write_text("test.gltf", text);
-    model *m = load_file();
-    const model_material *hidden = &m->materials[0], *shown = &m->materials[1];
-    assert_true(m->mesh_count == 1 && m->material_count == 2 && m->texture_count == 2);
-    assert_true(hidden->emissive_texture == MODEL_NONE && hidden->normal_texture == MODEL_NONE);
-    assert_true(m->textures[shown->normal_texture].use == MODEL_TEXTURE_NORMAL);
-    assert_true(m->textures[shown->base_color_texture].use == MODEL_TEXTURE_COLOR);
-    model_free(m);
+    for (int suffix = 0; suffix < 2; suffix++) {
+        char text[2048];
+        write_positions("a b.bin");
+        snprintf(
+            text, sizeof text,
+            "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":36,\"uri\":\"a%%20b.bin\"}],"
+            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],"
+            "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+            "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":0}]},"
+            "{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"material\":1}]}],"
+            "\"materials\":[{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"normalTexture\":{\"index\":2}},"
+            "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":1}},\"normalTexture\":{\"index\":2}}],"
+            "\"textures\":[{\"source\":0,\"name\":\"%s\"},{\"source\":0,\"name\":\"skin\"},{\"source\":0,\"name\":\"fine\"}],"
+            "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}],"
+            "\"nodes\":[{\"mesh\":0,\"extensions\":{\"KHR_node_visibility\":{\"visible\":false}}},{\"mesh\":1}]}",
+            suffix ? "skin_red" : "red_skin", png_2x1);
+        write_text("test.gltf", text);
+        model *m = load_file();
+        const model_material *hidden = &m->materials[0], *shown = &m->materials[1];
+        assert_true(m->mesh_count == 1 && m->material_count == 2 && m->texture_count == (suffix ? 3 : 2));
+        assert_true((hidden->base_color_texture != MODEL_NONE) == suffix && hidden->normal_texture == MODEL_NONE);
+        assert_true(m->textures[shown->normal_texture].use == MODEL_TEXTURE_NORMAL);
+        assert_true(m->textures[shown->base_color_texture].use == MODEL_TEXTURE_COLOR);
+        model_free(m);
+    }
 }
 
 /* A clip moves the weights of the first instance, which the others follow; another node with the mesh keeps its own. */

@@ -131,18 +131,42 @@ static std::set<uint32_t> materials_of(const model &m)
     return all;
 }
 
+/* Its name is the name of a used texture with a suffix: a game may show it in the other's place (noh_texture_set). */
+static bool replaces_a_used_one(const model &m, const std::vector<bool> &used, uint32_t texture)
+{
+    const std::string name = m.textures[texture].name;
+    for (uint32_t i = 0; i < m.texture_count; ++i) {
+        const size_t length = strlen(m.textures[i].name);
+        if (used[i] && length && name.size() > length && begins_with(name, m.textures[i].name)) return true;
+    }
+    return false;
+}
+
+static void forget_maps(model &m, const std::set<uint32_t> &materials)
+{
+    std::vector<bool> used(m.texture_count);
+    for (uint32_t i = 0; i < m.material_count; ++i)
+        for (const uint32_t *map : maps_of(m.materials[i]))
+            if (*map != MODEL_NONE && !materials.count(i)) used[*map] = true;
+    for (uint32_t i : materials)
+        for (uint32_t *map : maps_of(m.materials[i]))
+            if (*map != MODEL_NONE && (used[*map] || !replaces_a_used_one(m, used, *map))) *map = MODEL_NONE;
+}
+
 /* Textures that only materials of dropped meshes have. Those materials stay, without maps: numbers of materials do not
  * change. had: the materials of meshes before */
 static void drop_textures(model &m, const std::set<uint32_t> &had)
 {
     const std::set<uint32_t> has = materials_of(m);
-    if (had == has) return;
+    std::set<uint32_t> gone;
+    for (uint32_t i : had)
+        if (i < m.material_count && !has.count(i)) gone.insert(i);
+    if (gone.empty()) return;
+    forget_maps(m, gone);
     std::vector<uint32_t> moved(m.texture_count, MODEL_NONE);
     for (uint32_t i = 0; i < m.material_count; ++i)
-        for (uint32_t *map : maps_of(m.materials[i])) {
-            if (had.count(i) && !has.count(i)) *map = MODEL_NONE;
+        for (const uint32_t *map : maps_of(m.materials[i]))
             if (*map != MODEL_NONE) moved[*map] = 0;
-        }
     uint32_t kept = 0;
     for (uint32_t i = 0; i < m.texture_count; ++i) {
         if (moved[i] != MODEL_NONE) {
@@ -159,7 +183,8 @@ static void drop_textures(model &m, const std::set<uint32_t> &had)
             if (*map != MODEL_NONE) *map = moved[*map];
 }
 
-/* A mesh that only hidden nodes have is not kept, nor are textures that only such meshes have. */
+/* A mesh that only hidden nodes have is not kept, nor are textures that only such meshes have, other than replacements
+ * for textures that are kept. */
 static void drop_hidden_meshes(file &f, std::vector<bool> &was_hidden)
 {
     const std::set<uint32_t> had = materials_of(*f.out);
