@@ -11,5 +11,5 @@ layout(location = 0) out vec4 o_color;
 
 void main()
 {
-    o_color = vec4(vec3(0.5) + u_gain * NOH_LAYER_FETCH(ivec2(gl_FragCoord.xy), u_layer), 1.0);
+    o_color = vec4(vec3(0.5) + u_gain * NOH_LAYER_FETCH(ivec2(gl_FragCoord.xy), u_layer).xyz, 1.0);
 }
