@@ -160,6 +160,15 @@ static void lips_meet_at_rest(void **state)
     assert_true(pairs_that_part(NULL, target_named("jawOpen"), 0.004, target_named("mouthClose")) >= 13);
 }
 
+/* A smile parts the lips widely enough that the row of teeth behind them is lit; mouthSmile leaves them shut. */
+static void a_smile_parts_the_lips(void **state)
+{
+    (void)state;
+    assert_true(pairs_that_part(NULL, target_named("smile"), 0.006, NULL) >= 7);
+    assert_true(pairs_that_part(target_named("mouthSmileLeft"), target_named("jawOpen"), 0.004, NULL) >= 13);
+    assert_true(pairs_that_part(target_named("mouthSmileRight"), target_named("jawOpen"), 0.004, NULL) >= 13);
+}
+
 static void lids_meet_in_a_blink(void **state)
 {
     (void)state;
@@ -176,9 +185,8 @@ static void it_is_small_and_has_clips(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(targets_move_what_they_name),
-    cmocka_unit_test(lips_meet_at_rest),
-    cmocka_unit_test(lids_meet_in_a_blink),
+    cmocka_unit_test(targets_move_what_they_name), cmocka_unit_test(lips_meet_at_rest),
+    cmocka_unit_test(a_smile_parts_the_lips),      cmocka_unit_test(lids_meet_in_a_blink),
     cmocka_unit_test(it_is_small_and_has_clips),
 };
 

@@ -25,7 +25,7 @@ typedef struct {
 
 static const Target targets[ALL_TARGETS] = {
     /* What a user types first. */
-    { "smile", { BOTH(smile, 1), BOTH(cheek_squint, 0.5), BOTH(upper_up, 0.22) } },
+    { "smile", { BOTH(smile, 1), BOTH(cheek_squint, 0.5), BOTH(upper_up, 0.22), JUST(grin, 1) } },
     { "frown", { BOTH(frown, 1), JUST(brow_inner_up, 0.8), JUST(shrug_lower, 0.35) } },
     { "blink", { BOTH(blink, 1) } },
     { "surprise",

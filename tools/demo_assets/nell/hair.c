@@ -120,7 +120,8 @@ static const Lock locks[] = {
     { { -28, 0, 36, 68 }, { 124, 104, 80, 44 }, { 9, 19, 17, 12 }, 21, 0 },
     { { -22, 14, 52, 80 }, { 138, 124, 94, 26 }, { 9, 23, 20, 13 }, 23, 0 },
     { { -10, 34, 70, 85 }, { 150, 140, 98, 22 }, { 9, 18, 18, 13 }, 24, 0 },
-    /* the other side of the parting */
+    /* the other side of the parting; the first one covers the cap where the parting meets the forehead */
+    { { -29, -25, -26, -40 }, { 117, 104, 88, 64 }, { 8, 13, 14, 11 }, 17, 0 },
     { { -32, -46, -62, -74 }, { 118, 104, 78, 26 }, { 8, 15, 15, 11 }, 18, 0 },
     { { -32, -54, -76, -86 }, { 134, 124, 86, 20 }, { 9, 20, 18, 13 }, 23, 0 },
     { { -30, -60, -98, -104 }, { 148, 140, 80, 18 }, { 9, 18, 20, 17 }, 25, 0 },
@@ -167,6 +168,6 @@ void nell_hair_build(Model *model)
     cap_build(model);
     for (int i = 0; i < COUNT(locks); i++) {
         Seed seed = { .region = ON_LOCK, .k = i, .eye = 1 };
-        stroke_build(model, PART_HAIR, seed, 19, LOCK_SIDES);
+        stroke_build(model, PART_HAIR, seed, 17, LOCK_SIDES);
     }
 }

@@ -34,7 +34,7 @@ V3 nell_ear_place(const Seed *seed)
 
 /* ---- mouth ---- */
 
-static const double lips_z = 0.0752;
+static const double lips_z = 0.0816;
 
 /* seed->s counts ten teeth from the middle, seed->k rows from the gum. rise: away from the cutting edge. */
 V3 nell_teeth_place(const Seed *seed, const Pose *pose)
@@ -43,12 +43,12 @@ V3 nell_teeth_place(const Seed *seed, const Pose *pose)
     static const double back[] = { 2.6, 0.6, 0, 0, 0.3, 1.6, 3.2, 4.6 };
     int row = (int)seed->k, upper = seed->mouth > 0;
     double across = 2 * (seed->s - floor(seed->s)) - 1, corner = across * across * across * across;
-    double wide = upper ? 0.0250 : 0.0225, deep = upper ? 0.0230 : 0.0210, angle = seed->s / 5 * 1.35;
+    double wide = upper ? 0.0275 : 0.0245, deep = upper ? 0.0230 : 0.0210, angle = seed->s / 5 * 1.35;
     double in = back[row] * MM + 0.0004 * corner;
     double up = rise[row] * MM + (row >= 3 ? 0.0004 * corner : 0);
-    double arc = 0.0016 * (1 - cos(angle));
+    double arc = 0.0016 * (1 - cos(angle)), aside = pow(1 - cos(angle), 1.3);
     V3 at = v3((wide - in) * sin(angle), upper ? MOUTH_T - 0.0040 + up + arc : MOUTH_T - 0.0050 - up + arc,
-               lips_z - 0.0055 - deep + (deep - in) * cos(angle) - (upper ? 0 : 0.0018));
+               lips_z - 0.0055 - in - (deep - in) * aside - (upper ? 0 : 0.0018));
     return jaw_turn(at, upper ? 0 : 1, pose);
 }
 

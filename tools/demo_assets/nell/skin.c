@@ -85,7 +85,7 @@ static double upper_lid(int side, const Pose *pose)
 static double lower_lid(int side, const Pose *pose)
 {
     double open = 0.0046 + 0.0012 * pose->wide[side] - 0.0040 * pose->squint[side] - 0.0012 * pose->cheek_squint[side] -
-                  0.0010 * pose->smile[side] + 0.0012 * pose->look_down[side];
+                  0.0010 * pose->smile[side] - 0.0010 * pose->grin + 0.0012 * pose->look_down[side];
     return open * (1 - pose->blink[side]);
 }
 
@@ -183,11 +183,13 @@ static double lip_shift(SkinPoint p, const Pose *pose)
     double lower = 0.0036 * pose->funnel + 0.0040 * pose->tongue_out;
     for (int side = 0; side < SIDES; side++) {
         double half = half_mouth(side, p.s);
-        upper += half * (0.0042 * pose->upper_up[side] + 0.0010 * pose->sneer[side] + 0.0020 * pose->smile[side]);
-        lower += half * (0.0048 * pose->lower_down[side] + 0.0006 * pose->smile[side]);
+        upper += half * (0.0042 * pose->upper_up[side] + 0.0010 * pose->sneer[side]);
+        lower += half * 0.0048 * pose->lower_down[side];
     }
     double from_line = p.t - lips_line(p.s), gate = lips_gate(p.s, from_line) * (1 - clamp(pose->mouth_close, 0, 1));
-    return p.mouth > 0 ? upper * gate * bump(from_line / 0.018) : -lower * gate * bump(from_line / 0.020);
+    double grin = gate * pose->grin; /* carries all of the red, so that lips stay thick */
+    return p.mouth > 0 ? upper * gate * bump(from_line / 0.018) + 0.0042 * grin * smooth(0.020, 0.003, from_line)
+                       : -lower * gate * bump(from_line / 0.020) - 0.0039 * grin * smooth(0.026, 0.004, -from_line);
 }
 
 static void drag_upper_face(V3 *d, double s, double t, int side, const Pose *p)
@@ -198,6 +200,7 @@ static void drag_upper_face(V3 *d, double s, double t, int side, const Pose *p)
     drag(d, s, t, side, p->cheek_squint[side], (Stroke){ 0.040, -0.026, 0.034, 0.030, 0, 0.0014, 0.0010 });
     drag(d, s, t, side, p->squint[side], (Stroke){ 0.036, -0.020, 0.026, 0.016, 0, 0.0016, 0.0008 });
     drag(d, s, t, side, p->smile[side], (Stroke){ 0.042, -0.034, 0.036, 0.036, 0.001, 0.0014, 0.0008 });
+    drag(d, s, t, side, p->grin, (Stroke){ 0.042, -0.032, 0.032, 0.030, 0.001, 0.0022, 0.0024 });
     drag(d, s, t, side, p->cheek_puff, (Stroke){ 0.040, -0.042, 0.030, 0.032, 0.0070, 0, 0.0090 });
     drag(d, s, t, side, p->sneer[side], (Stroke){ 0.012, -0.024, 0.016, 0.018, 0.0012, 0.0040, 0.0006 });
 }
@@ -308,7 +311,7 @@ V3 lid_place(const Seed *seed, const Pose *pose)
 /* From the lip's edge inwards, curling up (or down) behind the lip. */
 V3 lip_place(const Seed *seed, const Pose *pose)
 {
-    static const double back[] = { 0, 0.0014, 0.0034, 0.0052, 0.0062 };
+    static const double back[] = { 0, 0.0012, 0.0024, 0.0033, 0.0038 };
     static const double spread[] = { 0, 0.0001, 0.0014, 0.0050, 0.0100 };
     int row = (int)seed->k;
     V3 at = skin_place(skin_point(seed), pose);
