@@ -208,7 +208,10 @@ int light_surface_pose(light_surface *s, const float *weights, model_error *erro
     for (uint32_t i = 0; i < 3u * s->own_count; i++) {
         memcpy(s->triangles + 3u * (size_t)i, s->position + 3u * (size_t)s->corners[i], 12u);
     }
-    ray_tree_free(&s->tree);
+    if (s->tree.nodes) {
+        ray_tree_fit(&s->tree, s->triangles);
+        return 0;
+    }
     return ray_tree_make(s->triangles, s->own_count + s->other_count, &s->tree)
                ? model_fail(error, s->mesh.name, "out of memory")
                : 0;

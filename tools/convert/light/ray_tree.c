@@ -1,27 +1,132 @@
+/* ray_tree.c: a tree of boxes with eight children a node, and leaves of eight triangles. Tests are free of branches over
+ * lanes, so that compilers vectorise them. */
 #include "ray_tree.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-#define LEAF_TRIANGLES 4u
+/* Comparisons may be evaluated for all lanes: floating-point exception flags are not read. */
+#if defined(__GNUC__) && !defined(__clang__)
+#pragma GCC optimize("O3", "no-trapping-math")
+#endif
+
+/* A second version with AVX2 where the processor has it; without fused multiply-adds, so with the same bits. Sanitizers
+ * do not take functions that are chosen at load time. */
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#define RAY_WIDE __attribute__((target_clones("default", "avx2")))
+#else
+#define RAY_WIDE
+#endif
+/* A loop over lanes is vectorised only if its calls are inlined. */
+#if defined(__GNUC__)
+#define RAY_INLINE static inline __attribute__((always_inline))
+#else
+#define RAY_INLINE static inline
+#endif
+
+#define STACK (TRIANGLE_TREE_STACK * (RAY_LANES - 1u)) /* a level leaves all boxes but one to be visited */
+
+/* ---- building ---- */
+
+static float surface(const triangle_node *n)
+{
+    const float x = n->high[0] - n->low[0], y = n->high[1] - n->low[1], z = n->high[2] - n->low[2];
+    return x * y + y * z + z * x;
+}
+
+/* The inner box with the largest surface, which more rays meet than smaller ones; RAY_LANES: all are leaves. */
+static uint32_t largest(const ray_tree *t, const ray_node *n)
+{
+    uint32_t found = RAY_LANES;
+    for (uint32_t i = 0; i < n->count; i++) {
+        const triangle_node *box = &t->boxes.nodes[n->box[i]];
+        if (!box->count && (found == RAY_LANES || surface(box) > surface(&t->boxes.nodes[n->box[found]]))) found = i;
+    }
+    return found;
+}
+
+/* A node whose first box is given: boxes are opened, the largest first, until there is no room. */
+static void open_boxes(ray_tree *t, ray_node *n)
+{
+    for (uint32_t i; n->count < RAY_LANES && (i = largest(t, n)) < RAY_LANES;) {
+        const uint32_t left = t->boxes.nodes[n->box[i]].first;
+        n->box[i] = left;
+        n->box[n->count++] = left + 1u;
+    }
+    for (uint32_t i = 0; i < n->count; i++) {
+        if (t->boxes.nodes[n->box[i]].count) {
+            n->leaves |= 1u << i;
+            n->next[i] = t->block_count++;
+        } else {
+            n->next[i] = t->node_count;
+            t->nodes[t->node_count].box[0] = n->box[i];
+            t->nodes[t->node_count++].count = 1;
+        }
+    }
+}
+
+static void fill_block(const ray_tree *t, const triangle_node *leaf, const float *triangles, ray_block *out)
+{
+    for (uint32_t i = 0; i < leaf->count; i++) {
+        const uint32_t triangle = t->boxes.order[leaf->first + i];
+        const float *corners = triangles + 9u * (size_t)triangle;
+        out->triangle[i] = triangle;
+        for (uint32_t k = 0; k < 3u; k++) {
+            out->corner[k][i] = corners[k];
+            out->first[k][i] = corners[3u + k] - corners[k];
+            out->second[k][i] = corners[6u + k] - corners[k];
+        }
+    }
+}
+
+static void fill(ray_tree *t, const float *triangles)
+{
+    for (uint32_t i = 0; i < t->node_count; i++) {
+        ray_node *n = &t->nodes[i];
+        for (uint32_t lane = 0; lane < n->count; lane++) {
+            const triangle_node *box = &t->boxes.nodes[n->box[lane]];
+            for (uint32_t k = 0; k < 3u; k++) {
+                n->low[k][lane] = box->low[k];
+                n->high[k][lane] = box->high[k];
+            }
+            if (box->count) fill_block(t, box, triangles, &t->blocks[n->next[lane]]);
+        }
+    }
+}
 
 int ray_tree_make(const float *triangles, uint32_t count, ray_tree *out)
 {
-    out->triangles = malloc((count + 1u) * 9u * sizeof *out->triangles);
-    if (triangle_tree_make(triangles, count, LEAF_TRIANGLES, &out->boxes) || !out->triangles) {
+    memset(out, 0, sizeof *out);
+    if (triangle_tree_make(triangles, count, RAY_LANES, &out->boxes)) {
         return 1;
     }
-    for (uint32_t i = 0; i < count; i++) {
-        memcpy(out->triangles + 9u * (size_t)i, triangles + 9u * (size_t)out->boxes.order[i], 9u * sizeof *triangles);
+    /* Every node opens an inner box; halves of more than eight triangles have four or more. */
+    out->nodes = calloc((size_t)out->boxes.node_count / 2u + 1u, sizeof *out->nodes);
+    out->blocks = calloc((size_t)out->boxes.node_count / 2u + 1u, sizeof *out->blocks);
+    if (!out->nodes || !out->blocks) {
+        return 1;
     }
+    out->node_count = out->nodes[0].count = count > 0;
+    for (uint32_t i = 0; i < out->node_count; i++) {
+        open_boxes(out, &out->nodes[i]);
+    }
+    fill(out, triangles);
     return 0;
+}
+
+void ray_tree_fit(ray_tree *t, const float *triangles)
+{
+    triangle_tree_fit(&t->boxes, triangles);
+    fill(t, triangles);
 }
 
 void ray_tree_free(ray_tree *t)
 {
     triangle_tree_free(&t->boxes);
-    free(t->triangles);
-    t->triangles = NULL;
+    free(t->nodes);
+    free(t->blocks);
+    memset(t, 0, sizeof *t);
 }
 
 /* ---- rays ---- */
@@ -31,7 +136,7 @@ typedef struct ray {
     float least, farthest;
 } ray;
 
-static ray ray_of(const float origin[3], const float direction[3], float least)
+RAY_INLINE ray ray_of(const float origin[3], const float direction[3], float least)
 {
     ray r;
     memcpy(r.origin, origin, sizeof r.origin);
@@ -44,100 +149,124 @@ static ray ray_of(const float origin[3], const float direction[3], float least)
     return r;
 }
 
-static int meets_box(const ray *r, const triangle_node *node)
+/* A bit for each of a node's boxes that the ray meets, and where it enters them. */
+RAY_INLINE uint32_t meet_boxes(const ray *r, const ray_node *n, float *enter)
 {
-    float near = r->least, far = r->farthest;
-    for (uint32_t k = 0; k < 3u; k++) {
-        const float a = (node->low[k] - r->origin[k]) * r->inverse[k];
-        const float b = (node->high[k] - r->origin[k]) * r->inverse[k];
-        const float first = a < b ? a : b, last = a < b ? b : a;
-        near = first > near ? first : near;
-        far = last < far ? last : far;
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < RAY_LANES; i++) {
+        float near = r->least, far = r->farthest;
+        for (uint32_t k = 0; k < 3u; k++) {
+            const float a = (n->low[k][i] - r->origin[k]) * r->inverse[k];
+            const float b = (n->high[k][i] - r->origin[k]) * r->inverse[k];
+            const float first = a < b ? a : b, last = a < b ? b : a;
+            near = first > near ? first : near;
+            far = last < far ? last : far;
+        }
+        enter[i] = near;
+        met |= near <= far * 1.000001f ? 1u << i : 0u;
     }
-    return near <= far * 1.000001f;
+    return met & ((1u << n->count) - 1u);
 }
 
-static void cross(const float a[3], const float b[3], float out[3])
+typedef struct block_meeting {
+    float u[RAY_LANES], v[RAY_LANES], distance[RAY_LANES];
+} block_meeting;
+
+/* A bit for each of a block's triangles that the ray meets, not farther than the farthest so far. A triangle that is
+ * edge on, or without area, is not met. */
+RAY_INLINE uint32_t meet_block(const ray *r, const ray_block *b, block_meeting *out)
 {
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
+    const float *d = r->direction;
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < RAY_LANES; i++) {
+        const float ex = b->first[0][i], ey = b->first[1][i], ez = b->first[2][i];
+        const float fx = b->second[0][i], fy = b->second[1][i], fz = b->second[2][i];
+        const float sx = r->origin[0] - b->corner[0][i], sy = r->origin[1] - b->corner[1][i];
+        const float sz = r->origin[2] - b->corner[2][i];
+        const float px = d[1] * fz - d[2] * fy, py = d[2] * fx - d[0] * fz, pz = d[0] * fy - d[1] * fx;
+        const float qx = sy * ez - sz * ey, qy = sz * ex - sx * ez, qz = sx * ey - sy * ex;
+        const float volume = ex * px + ey * py + ez * pz, scale = 1.0f / volume;
+        const float u = scale * (sx * px + sy * py + sz * pz), v = scale * (d[0] * qx + d[1] * qy + d[2] * qz);
+        const float distance = scale * (fx * qx + fy * qy + fz * qz);
+        const int whole = (volume <= -1e-20f) | (volume >= 1e-20f);
+        const int inside = (u >= 0.0f) & (u <= 1.0f) & (v >= 0.0f) & (u + v <= 1.0f);
+        out->u[i] = u;
+        out->v[i] = v;
+        out->distance[i] = distance;
+        met |= whole & inside & (distance > r->least) & (distance <= r->farthest) ? 1u << i : 0u;
+    }
+    return met;
 }
 
-static float dot(const float a[3], const float b[3])
+/* Boxes still to be visited. */
+typedef struct box_stack {
+    uint32_t count;
+    struct {
+        float enter;
+        uint32_t next, leaf;
+    } boxes[STACK];
+} box_stack;
+
+/* Push what is met, the nearest last. */
+RAY_INLINE void push(box_stack *s, const ray_node *n, uint32_t met, const float *enter)
 {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    const uint32_t first = s->count;
+    for (uint32_t i = 0; met; i++, met >>= 1) {
+        uint32_t at = s->count;
+        if (!(met & 1u)) continue;
+        for (s->count++; at > first && s->boxes[at - 1u].enter < enter[i]; at--) s->boxes[at] = s->boxes[at - 1u];
+        s->boxes[at].enter = enter[i];
+        s->boxes[at].next = n->next[i];
+        s->boxes[at].leaf = n->leaves >> i & 1u;
+    }
 }
 
-/* The distance to a triangle's plane, if it is hit nearer than the farthest so far; else 0. */
-static float meets_triangle(const ray *r, const float *corners, float *u, float *v)
+/* Take the nearest of the triangles met. */
+RAY_INLINE void take(const ray_block *b, uint32_t met, const block_meeting *m, ray *r, uint32_t *found,
+                     ray_meeting *meeting)
 {
-    float e[3], f[3], s[3], p[3], q[3], scale, distance;
-    for (uint32_t k = 0; k < 3u; k++) {
-        e[k] = corners[3u + k] - corners[k];
-        f[k] = corners[6u + k] - corners[k];
-        s[k] = r->origin[k] - corners[k];
+    for (uint32_t i = 0; met; i++, met >>= 1) {
+        if (met & 1u && (m->distance[i] < r->farthest ||
+                         (*found && m->distance[i] == r->farthest && b->triangle[i] < meeting->triangle))) {
+            *meeting = (ray_meeting){ b->triangle[i], m->u[i], m->v[i] };
+            r->farthest = m->distance[i];
+            *found = 1;
+        }
     }
-    cross(r->direction, f, p);
-    scale = dot(e, p);
-    if (scale > -1e-20f && scale < 1e-20f) {
-        return 0.0f; /* edge on, or without area */
-    }
-    scale = 1.0f / scale;
-    *u = scale * dot(s, p);
-    if (*u < 0.0f || *u > 1.0f) {
-        return 0.0f;
-    }
-    cross(s, e, q);
-    *v = scale * dot(r->direction, q);
-    if (*v < 0.0f || *u + *v > 1.0f) {
-        return 0.0f;
-    }
-    distance = scale * dot(f, q);
-    return distance > r->least && distance < r->farthest ? distance : 0.0f;
 }
 
 /* Walk the tree; with `meeting` to the nearest triangle, without to any. */
-static int walk(const ray_tree *t, ray *r, ray_meeting *meeting)
+RAY_INLINE uint32_t walk(const ray_tree *t, ray r, ray_meeting *meeting)
 {
-    uint32_t stack[TRIANGLE_TREE_STACK], depth = 0, found = 0;
-    if (t->boxes.triangle_count) {
-        stack[depth++] = 0;
-    }
-    while (depth) {
-        const triangle_node *node = &t->boxes.nodes[stack[--depth]];
-        if (!meets_box(r, node)) {
-            continue;
-        }
-        if (!node->count) {
-            stack[depth++] = node->first;
-            stack[depth++] = node->first + 1u;
-        }
-        for (uint32_t i = node->first; i < node->first + node->count; i++) {
-            float u, v;
-            const float distance = meets_triangle(r, t->triangles + 9u * (size_t)i, &u, &v);
-            if (distance > 0.0f && !meeting) {
-                return 1;
-            }
-            if (distance > 0.0f) {
-                *meeting = (ray_meeting){ t->boxes.order[i], u, v };
-                r->farthest = distance;
-                found = 1;
-            }
+    box_stack s;
+    uint32_t found = 0;
+    s.count = t->node_count > 0;
+    s.boxes[0].enter = 0.0f;
+    s.boxes[0].next = s.boxes[0].leaf = 0;
+    while (s.count) {
+        const uint32_t next = s.boxes[--s.count].next;
+        if (s.boxes[s.count].enter > r.farthest * 1.000001f) continue;
+        if (s.boxes[s.count].leaf) {
+            block_meeting m;
+            const uint32_t met = meet_block(&r, &t->blocks[next], &m);
+            if (met && !meeting) return 1;
+            if (met) take(&t->blocks[next], met, &m, &r, &found, meeting);
+        } else {
+            float enter[RAY_LANES];
+            const uint32_t met = meet_boxes(&r, &t->nodes[next], enter);
+            push(&s, &t->nodes[next], met, enter);
         }
     }
-    return (int)found;
+    return found;
 }
 
-int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least)
+RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least)
 {
-    ray r = ray_of(origin, direction, least);
-    return walk(t, &r, NULL);
+    return (int)walk(t, ray_of(origin, direction, least), NULL);
 }
 
-int ray_tree_nearest(const ray_tree *t, const float origin[3], const float direction[3], float least,
-                     ray_meeting *meeting)
+RAY_WIDE int ray_tree_nearest(const ray_tree *t, const float origin[3], const float direction[3], float least,
+                              ray_meeting *meeting)
 {
-    ray r = ray_of(origin, direction, least);
-    return walk(t, &r, meeting);
+    return (int)walk(t, ray_of(origin, direction, least), meeting);
 }
