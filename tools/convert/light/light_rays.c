@@ -9,6 +9,7 @@
 #include "noh/low_gl.h"
 
 #define GOLDEN_TURN 1640531527u /* 2^32 (1 - 1 / golden ratio) */
+#define NEIGHBOUR 34u           /* directions whose numbers differ by this Fibonacci number are close */
 
 int light_rays_make(uint32_t count, light_rays *out)
 {
@@ -61,11 +62,12 @@ static void origin_of(const light_surface *s, uint32_t vertex, float origin[3])
 void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t vertex, uint8_t *blocked)
 {
     const float *n = s->normal + 3u * (size_t)vertex;
+    uint32_t last[NEIGHBOUR] = { 0 };
     float origin[3];
     origin_of(s, vertex, origin);
     for (uint32_t i = 0; i < r->count; i++) {
         const float *d = r->directions + 3u * (size_t)i;
-        blocked[i] = dot(n, d) > 0.0f && ray_tree_hit(&s->tree, origin, d, s->least);
+        blocked[i] = dot(n, d) > 0.0f && ray_tree_hit(&s->tree, origin, d, s->least, &last[i % NEIGHBOUR]);
     }
 }
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/compiler_internal.h"
+
 /* Comparisons may be evaluated for all lanes: floating-point exception flags are not read. */
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC optimize("O3", "no-trapping-math")
@@ -198,6 +200,42 @@ RAY_INLINE uint32_t meet_block(const ray *r, const ray_block *b, block_meeting *
     return met;
 }
 
+/* The lowest lane of a set, which is taken from it. */
+RAY_INLINE uint32_t next_lane(uint32_t *lanes)
+{
+    const uint32_t lane = noh_trailing_zeros(*lanes);
+    *lanes &= *lanes - 1u;
+    return lane;
+}
+
+RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least,
+                          uint32_t *last)
+{
+    const ray r = ray_of(origin, direction, least);
+    uint32_t stack[STACK], depth = t->node_count > 0;
+    float enter[RAY_LANES];
+    block_meeting m;
+    stack[0] = 0;
+    if (*last < t->block_count && meet_block(&r, &t->blocks[*last], &m)) {
+        return 1;
+    }
+    while (depth) {
+        const ray_node *n = &t->nodes[stack[--depth]];
+        const uint32_t met = meet_boxes(&r, n, enter);
+        for (uint32_t lanes = met & n->leaves; lanes;) {
+            const uint32_t block = n->next[next_lane(&lanes)];
+            if (meet_block(&r, &t->blocks[block], &m)) {
+                *last = block;
+                return 1;
+            }
+        }
+        for (uint32_t lanes = met & ~n->leaves; lanes;) {
+            stack[depth++] = n->next[next_lane(&lanes)];
+        }
+    }
+    return 0;
+}
+
 /* Boxes still to be visited. */
 typedef struct box_stack {
     uint32_t count;
@@ -211,62 +249,52 @@ typedef struct box_stack {
 RAY_INLINE void push(box_stack *s, const ray_node *n, uint32_t met, const float *enter)
 {
     const uint32_t first = s->count;
-    for (uint32_t i = 0; met; i++, met >>= 1) {
-        uint32_t at = s->count;
-        if (!(met & 1u)) continue;
-        for (s->count++; at > first && s->boxes[at - 1u].enter < enter[i]; at--) s->boxes[at] = s->boxes[at - 1u];
-        s->boxes[at].enter = enter[i];
-        s->boxes[at].next = n->next[i];
-        s->boxes[at].leaf = n->leaves >> i & 1u;
+    while (met) {
+        const uint32_t lane = next_lane(&met);
+        uint32_t at = s->count++;
+        for (; at > first && s->boxes[at - 1u].enter < enter[lane]; at--) s->boxes[at] = s->boxes[at - 1u];
+        s->boxes[at].enter = enter[lane];
+        s->boxes[at].next = n->next[lane];
+        s->boxes[at].leaf = n->leaves >> lane & 1u;
     }
 }
 
-/* Take the nearest of the triangles met. */
-RAY_INLINE void take(const ray_block *b, uint32_t met, const block_meeting *m, ray *r, uint32_t *found,
-                     ray_meeting *meeting)
+/* Take the nearest of the triangles met. Returns whether there is one by now. */
+RAY_INLINE uint32_t take(const ray_block *b, uint32_t met, const block_meeting *m, ray *r, uint32_t found,
+                         ray_meeting *meeting)
 {
-    for (uint32_t i = 0; met; i++, met >>= 1) {
-        if (met & 1u && (m->distance[i] < r->farthest ||
-                         (*found && m->distance[i] == r->farthest && b->triangle[i] < meeting->triangle))) {
+    while (met) {
+        const uint32_t i = next_lane(&met);
+        if (m->distance[i] < r->farthest ||
+            (found && m->distance[i] == r->farthest && b->triangle[i] < meeting->triangle)) {
             *meeting = (ray_meeting){ b->triangle[i], m->u[i], m->v[i] };
             r->farthest = m->distance[i];
-            *found = 1;
+            found = 1;
         }
     }
+    return found;
 }
 
-/* Walk the tree; with `meeting` to the nearest triangle, without to any. */
-RAY_INLINE uint32_t walk(const ray_tree *t, ray r, ray_meeting *meeting)
+RAY_WIDE int ray_tree_nearest(const ray_tree *t, const float origin[3], const float direction[3], float least,
+                              ray_meeting *meeting)
 {
+    ray r = ray_of(origin, direction, least);
     box_stack s;
     uint32_t found = 0;
     s.count = t->node_count > 0;
-    s.boxes[0].enter = 0.0f;
-    s.boxes[0].next = s.boxes[0].leaf = 0;
+    memset(s.boxes, 0, sizeof *s.boxes);
     while (s.count) {
         const uint32_t next = s.boxes[--s.count].next;
         if (s.boxes[s.count].enter > r.farthest * 1.000001f) continue;
         if (s.boxes[s.count].leaf) {
             block_meeting m;
             const uint32_t met = meet_block(&r, &t->blocks[next], &m);
-            if (met && !meeting) return 1;
-            if (met) take(&t->blocks[next], met, &m, &r, &found, meeting);
+            found = take(&t->blocks[next], met, &m, &r, found, meeting);
         } else {
             float enter[RAY_LANES];
             const uint32_t met = meet_boxes(&r, &t->nodes[next], enter);
             push(&s, &t->nodes[next], met, enter);
         }
     }
-    return found;
-}
-
-RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least)
-{
-    return (int)walk(t, ray_of(origin, direction, least), NULL);
-}
-
-RAY_WIDE int ray_tree_nearest(const ray_tree *t, const float origin[3], const float direction[3], float least,
-                              ray_meeting *meeting)
-{
-    return (int)walk(t, ray_of(origin, direction, least), meeting);
+    return (int)found;
 }

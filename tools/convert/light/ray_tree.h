@@ -33,8 +33,9 @@ void ray_tree_free(ray_tree *t);
 void ray_tree_fit(ray_tree *t, const float *triangles);
 
 /* Whether a triangle, seen from either side, lies farther than `least` along the ray.
- * source  Moeller, Trumbore: Fast, minimum storage ray-triangle intersection, 1997 */
-int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least);
+ * source  Moeller, Trumbore: Fast, minimum storage ray-triangle intersection, 1997
+ * last    0, or what a hit of a ray much like this one left there: the block that is tested first */
+int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least, uint32_t *last);
 
 /* The first hit of a ray; of triangles at the same distance, the one with the lowest number. */
 typedef struct ray_meeting {

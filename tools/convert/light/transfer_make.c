@@ -153,7 +153,14 @@ static int next_texel(texel_walk *w, uint32_t *texel, uint32_t *vertex)
     return 1;
 }
 
-/* All transfers of the vertices in a target's rectangles, with it alone at weight 1. */
+/* Whether the target moves the vertex at its delta texel: the library sums differences of those alone. */
+static int moves(const maker *k, uint32_t texel)
+{
+    const uint32_t *words = k->surface.mesh.texels + 3u * (size_t)texel;
+    return (words[0] | words[1] | words[2]) != 0;
+}
+
+/* The transfers of the vertices that a target moves, with it alone at weight 1; of dark ones all in its rectangles. */
 static int measure_target(maker *k, uint32_t target, model_error *error)
 {
     texel_walk w = walk_target(k, target);
@@ -164,7 +171,7 @@ static int measure_target(maker *k, uint32_t target, model_error *error)
     k->weights[target] = 0.0f;
     while (!failed && next_texel(&w, &texel, &v)) {
         float *transfer = k->targets + NOH_SH_COUNT_MAX * (size_t)texel;
-        if (v == NOH_NONE) {
+        if (v == NOH_NONE || !(moves(k, texel) || k->occlusion[v] < DARK)) {
             continue;
         }
         light_rays_transfer(k->rays, &k->surface, v, k->blocked, transfer);
@@ -304,13 +311,6 @@ static void make_records(const maker *k, transfer_data *out)
         transfer_record(transfer, axis, s->order, s->flags, record);
         record[0] = (uint8_t)roundf(255.0f * (occlusion < 0.0f ? 0.0f : occlusion > 1.0f ? 1.0f : occlusion));
     }
-}
-
-/* Whether the target moves the vertex at its delta texel: the library sums differences of those alone. */
-static int moves(const maker *k, uint32_t texel)
-{
-    const uint32_t *words = k->surface.mesh.texels + 3u * (size_t)texel;
-    return (words[0] | words[1] | words[2]) != 0;
 }
 
 /* The differences of occlusion from the records, in whole steps of the target's own scale. */
