@@ -65,6 +65,7 @@ void light_rays_blocked(const light_rays *r, const light_surface *s, uint32_t ve
     uint32_t last[NEIGHBOUR] = { 0 };
     float origin[3];
     origin_of(s, vertex, origin);
+    ray_tree_front(&s->tree, origin, n);
     for (uint32_t i = 0; i < r->count; i++) {
         const float *d = r->directions + 3u * (size_t)i;
         blocked[i] = dot(n, d) > 0.0f && ray_tree_hit(&s->tree, origin, d, s->least, &last[i % NEIGHBOUR]);

@@ -68,10 +68,11 @@ static void open_boxes(ray_tree *t, ray_node *n)
     }
 }
 
+/* Lanes that are left have the first triangle again. */
 static void fill_block(const ray_tree *t, const triangle_node *leaf, const float *triangles, ray_block *out)
 {
-    for (uint32_t i = 0; i < leaf->count; i++) {
-        const uint32_t triangle = t->boxes.order[leaf->first + i];
+    for (uint32_t i = 0; i < RAY_LANES; i++) {
+        const uint32_t triangle = t->boxes.order[leaf->first + (i < leaf->count ? i : 0u)];
         const float *corners = triangles + 9u * (size_t)triangle;
         out->triangle[i] = triangle;
         for (uint32_t k = 0; k < 3u; k++) {
@@ -86,6 +87,7 @@ static void fill(ray_tree *t, const float *triangles)
 {
     for (uint32_t i = 0; i < t->node_count; i++) {
         ray_node *n = &t->nodes[i];
+        t->live[i] = (1u << n->count) - 1u;
         for (uint32_t lane = 0; lane < n->count; lane++) {
             const triangle_node *box = &t->boxes.nodes[n->box[lane]];
             for (uint32_t k = 0; k < 3u; k++) {
@@ -106,7 +108,8 @@ int ray_tree_make(const float *triangles, uint32_t count, ray_tree *out)
     /* Every node opens an inner box; halves of more than eight triangles have four or more. */
     out->nodes = calloc((size_t)out->boxes.node_count / 2u + 1u, sizeof *out->nodes);
     out->blocks = calloc((size_t)out->boxes.node_count / 2u + 1u, sizeof *out->blocks);
-    if (!out->nodes || !out->blocks) {
+    out->live = calloc((size_t)out->boxes.node_count / 2u + 1u, sizeof *out->live);
+    if (!out->nodes || !out->blocks || !out->live) {
         return 1;
     }
     out->node_count = out->nodes[0].count = count > 0;
@@ -128,7 +131,89 @@ void ray_tree_free(ray_tree *t)
     triangle_tree_free(&t->boxes);
     free(t->nodes);
     free(t->blocks);
+    free(t->live);
     memset(t, 0, sizeof *t);
+}
+
+/* The lowest lane of a set, which is taken from it. */
+RAY_INLINE uint32_t next_lane(uint32_t *lanes)
+{
+    const uint32_t lane = noh_trailing_zeros(*lanes);
+    *lanes &= *lanes - 1u;
+    return lane;
+}
+
+/* ---- the half of space in front of a plane ---- */
+
+#define THIN 1e-5f /* of the distances in a node: what lies behind the plane by less may be in front of it */
+
+typedef struct plane {
+    float normal[3], at;
+} plane;
+
+/* A bit for each of a node's boxes that reaches in front. */
+RAY_INLINE uint32_t boxes_in_front(const plane *p, const ray_node *n)
+{
+    uint32_t front = 0;
+    for (uint32_t i = 0; i < RAY_LANES; i++) {
+        float most = -p->at, size = p->at < 0.0f ? -p->at : p->at;
+        for (uint32_t k = 0; k < 3u; k++) {
+            const float a = p->normal[k] * n->low[k][i], b = p->normal[k] * n->high[k][i];
+            const float more = a > b ? a : b;
+            most += more;
+            size += more < 0.0f ? -more : more;
+        }
+        front |= most > -THIN * size ? 1u << i : 0u;
+    }
+    return front;
+}
+
+/* Whether a triangle of a block does. */
+RAY_INLINE uint32_t block_in_front(const plane *p, const ray_block *b)
+{
+    uint32_t front = 0;
+    for (uint32_t i = 0; i < RAY_LANES; i++) {
+        float most = -p->at, first = 0.0f, second = 0.0f, size = p->at < 0.0f ? -p->at : p->at;
+        for (uint32_t k = 0; k < 3u; k++) {
+            const float x = p->normal[k] * b->corner[k][i];
+            most += x;
+            size += x < 0.0f ? -x : x;
+            first += p->normal[k] * b->first[k][i];
+            second += p->normal[k] * b->second[k][i];
+        }
+        first = first > second ? first : second;
+        most += first > 0.0f ? first : 0.0f;
+        front |= most > -THIN * size ? 1u << i : 0u;
+    }
+    return front;
+}
+
+RAY_WIDE void ray_tree_front(const ray_tree *t, const float origin[3], const float normal[3])
+{
+    const plane p = { { normal[0], normal[1], normal[2] },
+                      normal[0] * origin[0] + normal[1] * origin[1] + normal[2] * origin[2] };
+    memset(t->live, 0, t->node_count * sizeof *t->live);
+    if (t->node_count) t->live[0] = 1;
+    for (uint32_t i = 0; i < t->node_count; i++) {
+        const ray_node *n = &t->nodes[i];
+        uint32_t live = t->live[i] ? boxes_in_front(&p, n) & ((1u << n->count) - 1u) : 0u;
+        for (uint32_t lanes = live; lanes;) {
+            const uint32_t lane = next_lane(&lanes);
+            if (!(n->leaves >> lane & 1u)) {
+                t->live[n->next[lane]] = 1;
+            } else if (!block_in_front(&p, &t->blocks[n->next[lane]])) {
+                live &= ~(1u << lane);
+            }
+        }
+        t->live[i] = live;
+    }
+    for (uint32_t i = t->node_count; i-- > 0;) {
+        const ray_node *n = &t->nodes[i];
+        for (uint32_t lanes = t->live[i] & ~n->leaves; lanes;) {
+            const uint32_t lane = next_lane(&lanes);
+            if (!t->live[n->next[lane]]) t->live[i] &= ~(1u << lane);
+        }
+    }
 }
 
 /* ---- rays ---- */
@@ -167,7 +252,7 @@ RAY_INLINE uint32_t meet_boxes(const ray *r, const ray_node *n, float *enter)
         enter[i] = near;
         met |= near <= far * 1.000001f ? 1u << i : 0u;
     }
-    return met & ((1u << n->count) - 1u);
+    return met;
 }
 
 typedef struct block_meeting {
@@ -200,14 +285,6 @@ RAY_INLINE uint32_t meet_block(const ray *r, const ray_block *b, block_meeting *
     return met;
 }
 
-/* The lowest lane of a set, which is taken from it. */
-RAY_INLINE uint32_t next_lane(uint32_t *lanes)
-{
-    const uint32_t lane = noh_trailing_zeros(*lanes);
-    *lanes &= *lanes - 1u;
-    return lane;
-}
-
 RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least,
                           uint32_t *last)
 {
@@ -220,8 +297,9 @@ RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float 
         return 1;
     }
     while (depth) {
-        const ray_node *n = &t->nodes[stack[--depth]];
-        const uint32_t met = meet_boxes(&r, n, enter);
+        const uint32_t node = stack[--depth];
+        const ray_node *n = &t->nodes[node];
+        const uint32_t met = meet_boxes(&r, n, enter) & t->live[node];
         for (uint32_t lanes = met & n->leaves; lanes;) {
             const uint32_t block = n->next[next_lane(&lanes)];
             if (meet_block(&r, &t->blocks[block], &m)) {
@@ -292,7 +370,7 @@ RAY_WIDE int ray_tree_nearest(const ray_tree *t, const float origin[3], const fl
             found = take(&t->blocks[next], met, &m, &r, found, meeting);
         } else {
             float enter[RAY_LANES];
-            const uint32_t met = meet_boxes(&r, &t->nodes[next], enter);
+            const uint32_t met = meet_boxes(&r, &t->nodes[next], enter) & ((1u << t->nodes[next].count) - 1u);
             push(&s, &t->nodes[next], met, enter);
         }
     }
