@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "core/base/compiler_internal.h"
+#include "noh/format.h"
 
 /* Comparisons may be evaluated for all lanes: floating-point exception flags are not read. */
 #if defined(__GNUC__) && !defined(__clang__)
@@ -311,6 +312,7 @@ RAY_WIDE int ray_tree_hit(const ray_tree *t, const float origin[3], const float 
             stack[depth++] = n->next[next_lane(&lanes)];
         }
     }
+    *last = NOH_NONE;
     return 0;
 }
 

@@ -39,7 +39,7 @@ void ray_tree_front(const ray_tree *t, const float origin[3], const float normal
 
 /* Whether a triangle, seen from either side, lies farther than `least` along the ray.
  * source  Moeller, Trumbore: Fast, minimum storage ray-triangle intersection, 1997
- * last    0, or what a hit of a ray much like this one left there: the block that is tested first */
+ * last    what a ray much like this one left there, 0 at first: the block that is tested first, if any */
 int ray_tree_hit(const ray_tree *t, const float origin[3], const float direction[3], float least, uint32_t *last);
 
 /* The first hit of a ray; of triangles at the same distance, the one with the lowest number. */
