@@ -104,7 +104,7 @@ static void face_pack(lit_pack *p, uint32_t order, uint32_t flags)
 static void the_tree_misses_nothing(void **state)
 {
     enum { COUNT = 700 };
-    static float triangles[COUNT][9];
+    static float triangles[COUNT][9], rest[COUNT][9];
     test_random r = test_random_from(1);
     ray_tree tree, single;
     uint32_t hits = 0, last = 0, lone = 0;
@@ -113,9 +113,10 @@ static void the_tree_misses_nothing(void **state)
         for (uint32_t k = 0; k < 9; k++) {
             triangles[i][k] = k < 3 ? test_random_float(&r, -1, 1)
                                     : triangles[i][k % 3] + test_random_float(&r, -0.2f, 0.2f);
+            rest[i][k] = (k % 3 == i % 3 ? 0.3f : 1.0f) * triangles[i][k];
         }
     }
-    assert_int_equal(ray_tree_make(triangles[0], COUNT, &tree), 0);
+    assert_int_equal(ray_tree_make(rest[0], COUNT, &tree), 0);
     for (int i = 0; i < 2000; i++) {
         float origin[3], direction[3];
         ray_meeting meeting;
@@ -129,9 +130,12 @@ static void the_tree_misses_nothing(void **state)
             any |= ray_tree_hit(&single, origin, direction, 0.01f, &lone);
             ray_tree_free(&single);
         }
+        ray_tree_fit(&tree, triangles[0]);
         found = ray_tree_nearest(&tree, origin, direction, 0.01f, &meeting);
         assert_int_equal(ray_tree_hit(&tree, origin, direction, 0.01f, &last), any);
         assert_int_equal(found, any);
+        ray_tree_front(&tree, origin, direction);
+        assert_int_equal(ray_tree_hit(&tree, origin, direction, 0.01f, &last), any);
         hits += (uint32_t)any;
     }
     assert_true(hits > 200 && hits < 1900);
