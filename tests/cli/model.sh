@@ -51,6 +51,12 @@ for verb in 'render --size 64x64' 'sheet --tile 32' dump; do
     check 'gives the same file as of its pack' cmp "$work/a" "$work/b"
 done
 kept 1 'all of them with one build'
+rm -r "$work/cache"
+noh render "$mask" -o "$work/a" --size 64x64
+expect 0 'render of a model alone'
+check 'draws the same picture' sh -c '"$1" render "$2" -o "$3/b" --size 64x64 >"$3/out" && cmp "$3/a" "$3/b"' - "$build/noh" "$work/mask.noh" "$work"
+noh info "$mask"
+kept 2 'a pack for a picture is not one to ship'
 if [ -n "$json" ]; then
     rm -r "$work/cache"
     noh info "$mask" --json

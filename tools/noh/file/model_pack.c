@@ -26,15 +26,17 @@ static int hash_model(const model_pack_desc *desc, content_hash *h)
         content_hash_add(h, stamp, sizeof stamp);
     }
     for (int i = 0; i < desc->option_count; i++) content_hash_add_text(h, desc->options[i]);
+    if (desc->draft) content_hash_add_text(h, "draft");
     content_hash_add_text(h, slash ? slash + 1 : desc->path); /* clips take the file's name */
     return content_hash_add_file(h, desc->path);
 }
 
 static int read_options(const model_pack_desc *desc, convert_options *o)
 {
-    char *argv[OPTIONS_MAX + 3] = { (char *)desc->path, (char *)"-o", (char *)"" };
-    for (int i = 0; i < desc->option_count; i++) argv[3 + i] = (char *)desc->options[i];
-    return build_options_read(desc->option_count + 3, argv, o);
+    char *argv[OPTIONS_MAX + 5] = { (char *)desc->path, (char *)"-o", (char *)"", (char *)"--effort", (char *)"1" };
+    const int own = desc->draft ? 5 : 3;
+    for (int i = 0; i < desc->option_count; i++) argv[own + i] = (char *)desc->options[i];
+    return build_options_read(own + desc->option_count, argv, o);
 }
 
 /* The lines of the build's warnings, each with the model's name. */
@@ -67,11 +69,14 @@ int model_pack_make(const model_pack_desc *desc, byte_buffer *pack, convert_fail
     struct timespec now;
     content_hash begun;
     input_list inputs;
-    int failed, is_there = hash_model(desc, &begun);
+    model_pack_desc whole = *desc;
+    int failed;
+    whole.draft = 0;
     memset(pack, 0, sizeof *pack);
     memset(failure, 0, sizeof *failure);
     memset(&inputs, 0, sizeof inputs);
-    if (is_there && pack_cache_find(desc->path, begun, pack)) return 0;
+    if (desc->draft && hash_model(&whole, &begun) && pack_cache_find(desc->path, begun, pack)) return 0;
+    if (hash_model(desc, &begun) && pack_cache_find(desc->path, begun, pack)) return 0;
     (void)clock_gettime(CLOCK_REALTIME, &now);
     failed = build(desc, &inputs, pack, failure);
     if (!failed) {

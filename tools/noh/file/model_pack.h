@@ -17,6 +17,7 @@ typedef struct model_pack_desc {
     const char *path;
     const char *const *options; /* [option_count], at most 8, as on the command line of `noh build` */
     int option_count;
+    int draft;      /* 1: for pictures: with --effort 1, unless the cache has the pack without it */
     FILE *progress; /* NULL: none */
 } model_pack_desc;
 

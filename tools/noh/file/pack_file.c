@@ -59,10 +59,8 @@ static int unpack(pack_file *file, const char *subject)
 
 static int build(pack_file *file, const char *subject, int draft)
 {
-    static const char *const quick[] = { "--effort", "1" };
     const model_pack_desc desc = { .path = file->path,
-                                   .options = quick,
-                                   .option_count = draft ? 2 : 0,
+                                   .draft = draft,
                                    .progress = isatty(STDERR_FILENO) ? stderr : NULL };
     noh_error error = { NOH_OK, "", 0, 0 };
     convert_failure failure;

@@ -36,8 +36,8 @@ static int write_all(int file, const uint8_t *bytes, size_t count)
 /* Ends with 0 where the pack is whole; else its last words are the reason. */
 static void convert(const view_load *l, const char *levels, int words)
 {
-    const char *options[] = { "--effort", "1", "--lod", levels, "--lod-fast" }; /* quick */
-    model_pack_desc desc = { .path = l->path, .options = options, .option_count = levels ? 5 : 2 };
+    const char *options[] = { "--lod", levels, "--lod-fast" }; /* quick */
+    model_pack_desc desc = { .path = l->path, .options = options, .option_count = levels ? 3 : 0, .draft = 1 };
     byte_buffer pack;
     convert_failure failure;
     desc.progress = fdopen(words, "w");
