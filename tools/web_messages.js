@@ -45,9 +45,8 @@ function segments() {
 
 const sentences = [...literals].filter((text) => /^[ -~]*$/.test(text) && text.split(' ').length >= 4);
 const lines = [], places = segments();
-// A linker may put a short text into the end of a long one: the longest such end stays.
-const alone = (text) => program.indexOf(`\0${text}\0`, 0, 'latin1') >= 0;
-const taken = (text) => { let i = 1; while (i < text.length && !(literals.has(text.slice(i)) && !alone(text.slice(i)))) i++; return i; };
+// A linker may put a short text into the end of a long one, wherever else its bytes are: the longest such end stays.
+const taken = (text) => { let i = 1; while (i < text.length && !literals.has(text.slice(i))) i++; return i; };
 const out = Buffer.from(program);
 for (const text of sentences) {
     const at = program.indexOf(`\0${text}\0`, 0, 'latin1') + 1, place = places.find((s) => at > s.at && at < s.at + s.bytes);
