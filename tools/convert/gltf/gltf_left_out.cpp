@@ -117,10 +117,11 @@ static std::vector<bool> hidden_nodes(const file &f)
     return hidden;
 }
 
-static std::array<uint32_t *, 10> maps_of(model_material &m)
+static std::array<uint32_t *, MODEL_MAPS> maps_of(model_material &m)
 {
-    return { &m.base_color_texture, &m.normal_texture,   &m.surface_texture,  &m.emissive_texture, &m.wrinkle_texture,
-             &m.more_textures[0],   &m.more_textures[1], &m.more_textures[2], &m.specular_texture, &m.color_texture };
+    std::array<uint32_t *, MODEL_MAPS> maps;
+    model_maps(&m, maps.data());
+    return maps;
 }
 
 static std::set<uint32_t> materials_of(const model &m)
@@ -131,14 +132,10 @@ static std::set<uint32_t> materials_of(const model &m)
     return all;
 }
 
-/* Its name is the name of a used texture with a suffix: a game may show it in the other's place (noh_texture_set). */
 static bool replaces_a_used_one(const model &m, const std::vector<bool> &used, uint32_t texture)
 {
-    const std::string name = m.textures[texture].name;
-    for (uint32_t i = 0; i < m.texture_count; ++i) {
-        const size_t length = strlen(m.textures[i].name);
-        if (used[i] && length && name.size() > length && begins_with(name, m.textures[i].name)) return true;
-    }
+    for (uint32_t i = 0; i < m.texture_count; ++i)
+        if (used[i] && model_replaces_texture(&m.textures[texture], &m.textures[i])) return true;
     return false;
 }
 

@@ -319,23 +319,15 @@ static void round_joint(fit_state *s, uint32_t j)
     }
 }
 
-/* Of numbers: 0 equals -0, which mirrored halves of a mesh have. */
-static int is_equal(const float *a, const float *b, size_t count)
-{
-    size_t i = 0;
-    while (i < count && a[i] == b[i]) i++;
-    return i == count;
-}
-
 static void find_same(fit_state *s)
 {
     const joint_fit_points *p = s->points;
     const size_t width = 3u * (size_t)p->target_count;
     for (uint32_t v = 0; v < p->count; v++) {
         uint32_t u = 0;
-        while (u < v && (!is_equal(p->place + 3u * u, p->place + 3u * v, 3) ||
-                         !is_equal(p->move + u * width, p->move + v * width, width) || p->parent[u] != p->parent[v] ||
-                         p->share[u] != p->share[v] || p->slots[u] != p->slots[v])) {
+        while (u < v && (!model_same_floats(p->place + 3u * u, p->place + 3u * v, 3) ||
+                         !model_same_floats(p->move + u * width, p->move + v * width, width) ||
+                         p->parent[u] != p->parent[v] || p->share[u] != p->share[v] || p->slots[u] != p->slots[v])) {
             u++;
         }
         s->same[v] = u;

@@ -231,6 +231,21 @@ int model_has_target(const model *m, const char *name)
     return 0;
 }
 
+void model_maps(model_material *m, uint32_t *maps[MODEL_MAPS])
+{
+    uint32_t *const all[MODEL_MAPS] = { &m->base_color_texture, &m->normal_texture,   &m->surface_texture,
+                                        &m->emissive_texture,   &m->wrinkle_texture,  &m->more_textures[0],
+                                        &m->more_textures[1],   &m->more_textures[2], &m->specular_texture,
+                                        &m->color_texture };
+    memcpy(maps, all, sizeof all);
+}
+
+int model_replaces_texture(const model_texture *t, const model_texture *of)
+{
+    const size_t size = of->name ? strlen(of->name) : 0;
+    return size && t->name && strncmp(t->name, of->name, size) == 0 && t->name[size];
+}
+
 float model_mesh_scale(const model *m, uint32_t mesh)
 {
     double largest = 0.0;

@@ -266,6 +266,13 @@ float model_mesh_scale(const model *m, uint32_t mesh);
 uint32_t model_find_target(const model_mesh *mesh, const char *name);
 int model_has_target(const model *m, const char *name); /* 1: any mesh has it */
 
+/* All indices into textures that a material has. */
+#define MODEL_MAPS 10u
+void model_maps(model_material *m, uint32_t *maps[MODEL_MAPS]);
+/* Whether a texture's name is the name of another with a suffix: a game may show it in the other's place
+ * (noh_texture_set). */
+int model_replaces_texture(const model_texture *t, const model_texture *of);
+
 /* Fill in missing attributes (NULL arrays and MODEL_MISSING_* bits): normals
  * (crease-aware), tangents where there are UVs, normal and tangent deltas of
  * targets that lack them (from the morphed mesh). Returns 0, or 1 and *error. */

@@ -108,14 +108,9 @@ static void renumber(const model *m, model *other, const uint32_t *map)
         }
     }
     for (uint32_t i = 0; i < other->material_count; i++) {
-        model_material *a = &other->materials[i];
-        a->base_color_texture = moved(a->base_color_texture, m->texture_count);
-        a->normal_texture = moved(a->normal_texture, m->texture_count);
-        a->surface_texture = moved(a->surface_texture, m->texture_count);
-        a->emissive_texture = moved(a->emissive_texture, m->texture_count);
-        a->specular_texture = moved(a->specular_texture, m->texture_count);
-        a->wrinkle_texture = moved(a->wrinkle_texture, m->texture_count);
-        for (int k = 0; k < 3; k++) a->more_textures[k] = moved(a->more_textures[k], m->texture_count);
+        uint32_t *maps[MODEL_MAPS];
+        model_maps(&other->materials[i], maps);
+        for (uint32_t k = 0; k < MODEL_MAPS; k++) *maps[k] = moved(*maps[k], m->texture_count);
     }
 }
 

@@ -34,6 +34,7 @@ int model_warn(model *m, const char *format, ...);
 /* For each vertex, the first vertex that is the same point of the surface: at the same position, and moved alike by
  * every target (two lips that touch are two points). out [vertex_count]. Returns 1 when out of memory. */
 int weld_vertices(const model_mesh *mesh, uint32_t *out);
+int model_same_floats(const float *a, const float *b, size_t count); /* -0 and +0 are the same */
 
 /* A fan: the corners around one point that share one normal. A vertex is in only one fan, because vertices are never
  * split for normals. */

@@ -19,7 +19,7 @@ static uint64_t hash_floats(uint64_t hash, const float *values, size_t count)
     return hash;
 }
 
-static int same_floats(const float *a, const float *b, size_t count)
+int model_same_floats(const float *a, const float *b, size_t count)
 {
     for (size_t i = 0; i < count; ++i)
         if (!(a[i] == b[i])) return 0;
@@ -36,10 +36,10 @@ static uint64_t vertex_hash(const model_mesh *mesh, uint32_t v)
 
 static int vertex_same(const model_mesh *mesh, uint32_t a, uint32_t b)
 {
-    if (!same_floats(mesh->position + (size_t)a * 3, mesh->position + (size_t)b * 3, 3)) return 0;
+    if (!model_same_floats(mesh->position + (size_t)a * 3, mesh->position + (size_t)b * 3, 3)) return 0;
     for (uint32_t t = 0; t < mesh->target_count; ++t) {
         const float *delta = mesh->targets[t].position;
-        if (!same_floats(delta + (size_t)a * 3, delta + (size_t)b * 3, 3)) return 0;
+        if (!model_same_floats(delta + (size_t)a * 3, delta + (size_t)b * 3, 3)) return 0;
     }
     return 1;
 }

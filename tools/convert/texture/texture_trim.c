@@ -44,43 +44,27 @@ static void join(trim *t, uint32_t a, uint32_t b)
     t->group_of[find(t, a)] = find(t, b);
 }
 
-#define MAPS 10u
-#define MATCAP 6u
-
 /* It is read by normals, not by texture coordinates. */
 static uint32_t matcap_of(const model_material *m)
 {
     return m->surface == NOH_SURFACE_TOON ? m->more_textures[NOH_TOON_MATCAP] : MODEL_NONE;
 }
 
-static void maps_of(const model_material *m, uint32_t maps[MAPS])
-{
-    const uint32_t all[MAPS] = { m->base_color_texture, m->normal_texture,   m->surface_texture,  m->emissive_texture,
-                                 m->wrinkle_texture,    m->more_textures[0], m->more_textures[1], m->more_textures[2],
-                                 m->specular_texture,   m->color_texture };
-    memcpy(maps, all, sizeof all);
-    if (matcap_of(m) != MODEL_NONE) maps[MATCAP] = MODEL_NONE;
-}
-
-static int is_with_suffix(const char *name, const char *of)
-{
-    const size_t size = of ? strlen(of) : 0;
-    return size && name && strncmp(name, of, size) == 0 && name[size];
-}
-
 static void join_maps(trim *t)
 {
     const uint32_t first = t->m->material_count;
     for (uint32_t i = 0; i < t->m->material_count; i++) {
-        uint32_t maps[MAPS];
-        maps_of(&t->m->materials[i], maps);
-        for (uint32_t k = 0; k < MAPS; k++) {
-            if (maps[k] < t->m->texture_count) join(t, i, first + maps[k]);
+        model_material *own = &t->m->materials[i];
+        uint32_t *maps[MODEL_MAPS];
+        model_maps(own, maps);
+        for (uint32_t k = 0; k < MODEL_MAPS; k++) {
+            const int is_matcap = own->surface == NOH_SURFACE_TOON && maps[k] == &own->more_textures[NOH_TOON_MATCAP];
+            if (!is_matcap && *maps[k] < t->m->texture_count) join(t, i, first + *maps[k]);
         }
     }
     for (uint32_t i = 0; i < t->m->texture_count; i++) {
         for (uint32_t k = 0; k < t->m->texture_count; k++) {
-            if (is_with_suffix(t->m->textures[k].name, t->m->textures[i].name)) join(t, first + i, first + k);
+            if (model_replaces_texture(&t->m->textures[k], &t->m->textures[i])) join(t, first + i, first + k);
         }
     }
 }
