@@ -11,6 +11,13 @@
 #define OPEN_STEP 0.125f /* of a mouth, in a frame of a track: as fast as speech.c closes lips */
 #define WINDOW_FRAMES (SPEECH_TRACK_RATE / NOH_AMPLITUDE_RATE) /* of a track, in a window of face.h */
 
+static float open_of(const float *visemes)
+{
+    float open = 0.0f;
+    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) open += visemes[v] * viseme_open(v);
+    return open;
+}
+
 typedef struct listening {
     int16_t *samples;
     size_t count;
@@ -57,13 +64,6 @@ static void hear_ear(listening *l, noh_ear *ear)
             if (t->frame_count++ == 1) t->frames[0] = *f;
         }
     }
-}
-
-static float open_of(const float *visemes)
-{
-    float open = 0.0f;
-    for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) open += visemes[v] * viseme_open(v);
-    return open;
 }
 
 /* Leave a frame no more than a step more open than its neighbour, by a blend with it. */
@@ -122,11 +122,9 @@ static void mix_windows(const noh_amplitude_frame *windows, uint32_t count, spee
         if (from >= count) break;
         noh_amplitude_between(&windows[from], &windows[to], part, f->visemes);
         f->shape = (uint32_t)windows[part < 0.5f ? from : to].viseme;
-        f->open = f->round = 0.0f;
-        for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) {
-            f->open += f->visemes[v] * viseme_open(v);
-            f->round += f->visemes[v] * viseme_round(v);
-        }
+        f->open = open_of(f->visemes);
+        f->round = 0.0f;
+        for (uint32_t v = 0; v < NOH_VISEME_COUNT; v++) f->round += f->visemes[v] * viseme_round(v);
     }
 }
 
