@@ -13,7 +13,7 @@
 
 #define OPTIONS_MAX 8
 
-/* This program, the options, and the model. */
+/* This program, the options, and the model; not whether it is a draft. */
 static int hash_model(const model_pack_desc *desc, content_hash *h)
 {
     const char *slash = strrchr(desc->path, '/');
@@ -26,7 +26,6 @@ static int hash_model(const model_pack_desc *desc, content_hash *h)
         content_hash_add(h, stamp, sizeof stamp);
     }
     for (int i = 0; i < desc->option_count; i++) content_hash_add_text(h, desc->options[i]);
-    if (desc->draft) content_hash_add_text(h, "draft");
     content_hash_add_text(h, slash ? slash + 1 : desc->path); /* clips take the file's name */
     return content_hash_add_file(h, desc->path);
 }
@@ -69,14 +68,15 @@ int model_pack_make(const model_pack_desc *desc, byte_buffer *pack, convert_fail
     struct timespec now;
     content_hash begun;
     input_list inputs;
-    model_pack_desc whole = *desc;
-    int failed;
-    whole.draft = 0;
+    int failed, is_there = hash_model(desc, &begun);
     memset(pack, 0, sizeof *pack);
     memset(failure, 0, sizeof *failure);
     memset(&inputs, 0, sizeof inputs);
-    if (desc->draft && hash_model(&whole, &begun) && pack_cache_find(desc->path, begun, pack)) return 0;
-    if (hash_model(desc, &begun) && pack_cache_find(desc->path, begun, pack)) return 0;
+    if (is_there && pack_cache_find(desc->path, begun, pack)) return 0;
+    if (desc->draft) {
+        content_hash_add_text(&begun, "draft");
+        if (is_there && pack_cache_find(desc->path, begun, pack)) return 0;
+    }
     (void)clock_gettime(CLOCK_REALTIME, &now);
     failed = build(desc, &inputs, pack, failure);
     if (!failed) {

@@ -28,7 +28,6 @@ typedef struct sheet {
     body_options body_wants;
     figure_body body;
     light_options light;
-    double facing; /* view_options.facing */
     lighting lit;
 } sheet;
 
@@ -92,7 +91,7 @@ static int measure_tiles(sheet *s, picture *p, view_frame frame)
 
 static int tile_camera(const sheet *s, const picture *p, noh_gl_camera *camera)
 {
-    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->facing };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->light.facing };
     double anchor[3];
     bounds box;
     find_anchor(s, p, anchor);
@@ -128,7 +127,7 @@ static int draw_tiles(sheet *s, picture *p)
 
 static int draw_sheet(sheet *s, const pack_file *file)
 {
-    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->facing };
+    const view_options o = { s->camera, s->tile, s->tile, s->body.has_ground, s->light.facing };
     gpu g;
     picture p;
     int status = gpu_open_drawing(&g, s->driver);
@@ -302,8 +301,7 @@ static int run(void *args)
     if (!status) status = pack_file_open_draft(&file, a->s.pack);
     if (!status) {
         const view_options o = { .camera = a->s.camera };
-        if (view_frames(&o)) a->s.facing = pack_facing(&file.pack);
-        a->s.light.facing = a->s.facing;
+        if (view_frames(&o)) a->s.light.facing = pack_facing(&file.pack);
         if (lighting_wanted(&a->s.light, &file.pack, !a->s.show_bones)) {
             status = lighting_open(&a->s.lit, &a->s.light);
             if (!status) a->s.figure.light = &a->s.lit;
