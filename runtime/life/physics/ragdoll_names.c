@@ -154,11 +154,12 @@ static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part we
     return 0;
 }
 
-/* Whether a joint above this one has a name of that kind. */
-static int is_below_name(const noh_ragdoll_source *s, uint32_t joint, part name)
+/* Whether a joint above this one is of a kind, by what tells the kind of a joint. */
+static int is_below(const noh_ragdoll_source *s, uint32_t joint, part (*kind_at)(const noh_ragdoll_source *, uint32_t),
+                    part means)
 {
     uint32_t up = s->joints.parents[joint];
-    while (up != NOH_JOINT_ROOT && name_at(s, up) != name) up = s->joints.parents[up];
+    while (up != NOH_JOINT_ROOT && kind_at(s, up) != means) up = s->joints.parents[up];
     return up != NOH_JOINT_ROOT;
 }
 
@@ -167,16 +168,14 @@ static part part_at(const noh_ragdoll_source *s, uint32_t joint)
     const part name = name_at(s, joint);
     if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
     if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
-    if (name != UPPER_ARM || !is_below_name(s, joint, UPPER_ARM)) return name;
+    if (name != UPPER_ARM || !is_below(s, joint, name_at, UPPER_ARM)) return name;
     return is_nearest_above(s, joint, UPPER_ARM, FOREARM, HAND) ? FOREARM : name;
 }
 
 /* The topmost joint of its kind in its chain: fingers' names contain "hand" too. */
 static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means)
 {
-    uint32_t up = s->joints.parents[joint];
-    while (up != NOH_JOINT_ROOT && part_at(s, up) != means) up = s->joints.parents[up];
-    return up == NOH_JOINT_ROOT;
+    return !is_below(s, joint, part_at, means);
 }
 
 /* The lowest common ancestor of all first joints of a kind; NOH_NONE if there are fewer than two. */
