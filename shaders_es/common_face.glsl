@@ -11,9 +11,9 @@ out vec3 noh_v_gaze;
 out vec3 noh_v_up;
 out vec3 noh_v_out;
 
-/* The eye's gaze and up direction, skinned, in the mesh's own space, where y is up, or z if eyes look along y. They turn
- * with the normal, by targets, and with the joints. model: before skinning; before, after: the normal before and after
- * targets */
+/* The eye's gaze and up direction, skinned, in the mesh's own space, where y is up, or z if eyes look along y. They
+ * turn with the normal, by targets, and with the joints. model: before skinning; before, after: the normal before
+ * and after targets */
 void noh_gaze_vertex(vec3 model, vec3 before, vec3 after, out vec3 gaze, out vec4 up)
 {
     vec3 turn = cross(before, after), upwards;

@@ -164,7 +164,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.occlusion = 1.0;
     s.emissive = vec3(0.0);
     s.wrinkles = vec3(0.0);
-    s.geometric = normal * (side * inversesqrt(dot(normal, normal))); /* on the visible side, and unit, in five products */
+    s.geometric = normal * (side * inversesqrt(dot(normal, normal))); /* to the visible side, and unit */
     s.normal = s.geometric;
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
     vec3 mapped = vec3(0.0, 0.0, 1.0);

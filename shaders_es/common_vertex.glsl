@@ -213,9 +213,9 @@ vec2 noh_uv_of(ivec4 tile)
 #endif
 
 /* In an order that needs few registers: what a crowd's vertices read early and use late is packed before the targets
- * are read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up before
- * the rows of the world are fetched, these before transfer, and what needs neither comes last. Otherwise a V3D or a Mali
- * spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
+ * are read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up
+ * before the rows of the world are fetched, these before transfer, and what needs neither comes last. Otherwise a
+ * V3D or a Mali spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);

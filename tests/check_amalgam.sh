@@ -15,8 +15,8 @@ check 'it is made' test -s "$amalgam/noh.c" -a -s "$amalgam/noh/noh.h"
 mkdir "$work/alone"
 cp -r "$amalgam/noh.c" "$amalgam/noh" "$work/alone"
 cd "$work/alone" || exit 1
-# With GL it compiled with these flags by gcc for the tests: noh.o. Gcc takes seconds to look at the indentation of a file
-# of this length, of whose parts it is known.
+# With GL it compiled with these flags by gcc for the tests: noh.o. The indentation of the
+# library's files is checked there: in one file of this length it takes gcc seconds.
 # shellcheck disable=SC2086
 check 'it compiles alone with gcc, without GL' gcc $flags -Wno-misleading-indentation -DNOH_WITHOUT_GL -fsyntax-only noh.c
 if command -v clang >/dev/null 2>&1; then

@@ -219,8 +219,9 @@ END
     printf 'noh_add_pack(third OUTPUT x.noh)\n' >>"$work/packs/CMakeLists.txt"
     check 'noh_add_pack without sources is an error' sh -c '! cmake -S "$1" -B "$1/build" 2>"$1/said" && grep -q "noh_add_pack(NAME SOURCES" "$1/said"' - "$work/packs"
 
-    # From source, inside a game's own build: with the flags that make gives, which are seen in its commands. make compiled
-    # each file with them, so the object is taken from there, and the preprocessor finds the headers by CMake's flags.
+    # From source, inside a game's own build: with the flags that make gives, which are seen in its commands. make
+    # compiled each file with them, so the object is taken from there, and the preprocessor finds the headers by CMake's
+    # flags.
     export sources_of="$PWD" objects_of="$(cd "$build" && pwd)"
     cat >"$work/quickly" <<'END'
 #!/bin/sh

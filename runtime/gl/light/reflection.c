@@ -151,7 +151,8 @@ static void make_sources(const noh_reflection_desc *desc, uint32_t side, float *
 /* ---- blurring ---- */
 
 /* The middle of a texel on the cube, and 1 / its distance from the centre. They are the same for each texel that is
- * blurred, so they are computed once, for levels 1 and 2, in the memory of level 0's source, which is packed by then. */
+ * blurred, so they are computed once, for levels 1 and 2, in the memory of level 0's source, which is packed by
+ * then. */
 typedef struct ray {
     float to[3], inverse;
 } ray;

@@ -115,8 +115,8 @@ static void drop_first(void *bytes, size_t drop, size_t size)
     memcpy(bytes, rest, size - drop);
 }
 
-/* The network's weights; silence replaces what is too quiet to be speech, except p, b and m. The closure of a stop is as
- * quiet as a pause, but short: the share of speech falls slowly, so that t and k do not close the lips. */
+/* The network's weights; silence replaces what is too quiet to be speech, except p, b and m. The closure of a stop
+ * is as quiet as a pause, but short: the share of speech falls slowly, so that t and k do not close the lips. */
 static void weigh(ear *e, ear_read *read)
 {
     int32_t weights[NOH_VISEME_COUNT], rest = ONE - 1, speech = read->level * 6 > ONE ? ONE : read->level * 6;

@@ -195,7 +195,8 @@ static uint32_t where_meet(const noh_ragdoll_source *s, part means)
     return count > 1 && meet != NOH_JOINT_ROOT ? meet : NOH_NONE;
 }
 
-/* The lowest joint above both: the pelvis itself, or what it hangs from next to the spine; the pelvis if there is none. */
+/* The lowest joint above both: the pelvis itself, or what it hangs from next to the spine; the pelvis if there is
+ * none. */
 static uint32_t above_both(const noh_skeleton *k, uint32_t pelvis, uint32_t chest)
 {
     uint32_t at = pelvis;

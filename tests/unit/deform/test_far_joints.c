@@ -96,7 +96,8 @@ static void a_skin_with_little_room_takes_few(void **state)
     }
 }
 
-/* Where a surface is sewn, its points have one set of weights, whatever their normals, and 0 may be -0: else it opens. */
+/* Where a surface is sewn, its points have one set of weights, whatever their normals, and 0 may be -0: else it
+ * opens. */
 static void points_at_one_place_stay_there(void **state)
 {
     enum { COUNT = 12 };

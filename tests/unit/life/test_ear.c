@@ -266,7 +266,8 @@ static void the_latency_is_as_stated(void **state)
     }
 }
 
-/* 10 ms more add a frame to the mean of the opening, and nothing else: the network reads the same frames of the past. */
+/* 10 ms more add a frame to the mean of the opening, and nothing else: the network reads the same frames of the
+ * past. */
 static void the_past_is_heard_at_every_latency(void **state)
 {
     static float open[MAX_FRAMES];

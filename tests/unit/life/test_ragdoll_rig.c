@@ -188,8 +188,8 @@ static void rename_joint(skin_asset *a, const char *from, const char *to)
 }
 
 /* Names of other tools: the joints are the same, so the rows are. The pelvis of the first is named as a hip too, its
- * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's, the fourth the same from
- * Blender. The third calls a forearm an arm. */
+ * collar bones as shoulders, and both have the limbs below them. The second is MikuMikuDance's, the fourth the same
+ * from Blender. The third calls a forearm an arm. */
 static void other_names_find_the_same_limbs(void **state)
 {
     static const char *const sides[5][2] = {
@@ -244,8 +244,8 @@ static void other_names_find_the_same_limbs(void **state)
     }
 }
 
-/* Each arm of a chain has a hand. The time must not double with each arm: each turn took 20 s, all of them longer than a
- * test may run. */
+/* Each arm of a chain has a hand. The time must not double with each arm: each turn took 20 s, all of them longer
+ * than a test may run. */
 static void chains_of_arms_are_refused_at_once(void **state)
 {
     skin_asset a;

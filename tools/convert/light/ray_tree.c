@@ -1,5 +1,5 @@
-/* ray_tree.c: a tree of boxes with eight children a node, and leaves of eight triangles. Tests are free of branches over
- * lanes, so that compilers vectorise them. */
+/* ray_tree.c: a tree of boxes with eight children a node, and leaves of eight triangles. Tests are free of branches
+ * over lanes, so that compilers vectorise them. */
 #include "ray_tree.h"
 
 #include <stdlib.h>

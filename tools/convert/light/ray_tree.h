@@ -33,8 +33,8 @@ void ray_tree_free(ray_tree *t);
 /* Fit to the same triangles in another pose, in linear time. */
 void ray_tree_fit(ray_tree *t, const float *triangles);
 
-/* Until the next call, ray_tree_hit leaves out what lies behind a plane: its rays start on the plane and lead to the front.
- * After ray_tree_make and ray_tree_fit it leaves out nothing. */
+/* Until the next call, ray_tree_hit leaves out what lies behind a plane: its rays start on the plane and lead to the
+ * front. After ray_tree_make and ray_tree_fit it leaves out nothing. */
 void ray_tree_front(const ray_tree *t, const float origin[3], const float normal[3]);
 
 /* Whether a triangle, seen from either side, lies farther than `least` along the ray.
