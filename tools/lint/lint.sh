@@ -56,7 +56,7 @@ if command -v clang-tidy >/dev/null 2>&1; then
         xargs -r -P "$jobs" -n 16 sh -c '
             checks=$1 includes=$2
             shift 2
-            clang-tidy --quiet "--checks=$checks" "$@" -- -std=c99 $includes 2>/dev/null
+            clang-tidy --quiet "--checks=$checks" "$@" -- -std=c99 -Wall -Wextra $includes 2>/dev/null
             [ $? -lt 128 ] || echo "$1:1:1: error: clang-tidy crashed on this file, or on one of the next 15 [crash]"' sh "$1" "$includes"
     }
     # Clang's path analysis takes most of the time: it is for what games link, in the long form. tools/ has cppcheck's.

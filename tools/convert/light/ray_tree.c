@@ -281,7 +281,8 @@ RAY_INLINE uint32_t meet_block(const ray *r, const ray_block *b, block_meeting *
         out->u[i] = u;
         out->v[i] = v;
         out->distance[i] = distance;
-        met |= whole & inside & (distance > r->least) & (distance <= r->farthest) ? 1u << i : 0u;
+        const int meets = whole & inside & (distance > r->least) & (distance <= r->farthest);
+        met |= (uint32_t)meets << i;
     }
     return met;
 }
