@@ -63,7 +63,7 @@ expect 1 'a file that is not there'
 printf 'P6 1 1 255 abc' >"$work/other.png"
 noh mask "$work/other.png"
 expect 1 'a file that is no picture'
-says 'neither PNG, JPEG nor TGA'
+says 'not a PNG, JPEG, WebP, TGA, BMP or Photoshop picture'
 head -c 60 "$work/clean.png" >"$work/cut.png"
 noh mask "$work/cut.png"
 expect 1 'a file that is cut'

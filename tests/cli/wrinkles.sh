@@ -40,7 +40,7 @@ says 'no mesh has wrinkles'
 printf 'no picture' >"$work/bad.png"
 noh build "$build/mask.glb" -o "$work/no.noh" --wrinkle-map "$work/bad.png"
 expect 1 'a map that is no picture'
-says 'neither PNG, JPEG nor TGA'
+says 'not a PNG, JPEG, WebP, TGA, BMP or Photoshop picture'
 check 'names the file' grep -q 'bad.png' "$work/err"
 noh build "$build/mask.glb" -o "$work/default.noh" --only mesh --quiet
 check 'a face has folds without asking' cmp "$work/auto.noh" "$work/default.noh"

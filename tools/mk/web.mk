@@ -201,7 +201,7 @@ WEB_FESTIVAL   := $(WEB)/festival
 WEB_FESTIVAL_O := $(patsubst %.c,$(WEB_OBJECTS)/%.o,platform/web/festival/festival.c platform/web/context.c platform/file.c \
                   $(addprefix tools/noh/crowd/,place_scene.c place_life.c place_people.c place_file.c crowd_measure.c crowd_hair.c) \
                   tools/noh/draw/lighting.c tools/noh/build/build_fail.c tools/noh/file/pack_file.c tools/noh/cli/message.c) \
-                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_browser web_convert/model_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error file_kind nearest image_file image_whole input_file tga_file text_scan))
+                  $(patsubst %,$(WEB_CONVERT)/tools/%.o,web_convert/webp_browser web_convert/model_none web_convert/stb noh/file/light_file $(addprefix convert/base/,error bmp_file file_kind nearest image_file image_whole input_file psd_file tga_file text_scan))
 WEB_FESTIVAL_FILES := $(addprefix $(WEB_FESTIVAL)/,index.html festival.js people.nohz festival.nohz festival.place)
 
 web-festival: web

@@ -1887,7 +1887,7 @@ static void large_images_are_counted_first(void **state)
         "iVBORw0KGgoAAAANSUhEUgAAIAAAACAAAQAAAAAAAAAAAAAAAElFTkQAAAAA"); /* 8192 x 8192, without a pixel */
     model *m = load(s);
     assert_true(has_warning(m, "the PNG file has no pixels, only a header: save or copy it again (texture 0 image 0)"));
-    assert_true(has_warning(m, "cannot honestly hold (texture 1 image 0)"));
+    assert_true(has_warning(m, "8192 x 8192 pixels; the limit is"));
     model_free(m);
 }
 
@@ -2027,7 +2027,7 @@ static void bad_images_are_warnings(void **state)
 {
     (void)state;
     check_left_out_texture("{\"uri\":\"nowhere.png\"}", "does not exist");
-    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "neither PNG, JPEG, WebP nor TGA");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "of an unknown kind, not a PNG");
     check_left_out_texture("{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAAAAAAA\"}", "damaged");
     check_left_out_texture("{\"bufferView\":99}", "buffer view 99 does not exist");
     check_left_out_texture("{\"uri\":\"/etc/hostname\"}", "not a relative path");

@@ -54,9 +54,14 @@ static const file_kind kinds[] = {
     { ".gif", "GIF8", READER_NONE, "a GIF picture", PICTURE },
     { ".exr", "\x76\x2f\x31\x01", READER_NONE, "an OpenEXR picture", PICTURE },
     { ".psd", "8BPS", READER_NONE, "a Photoshop file", PICTURE },
+    { ".tif", "II*", READER_NONE, "a TIFF picture", PICTURE },
+    { ".tiff", NULL, READER_NONE, "a TIFF picture", PICTURE },
+    { ".bmp", NULL, READER_NONE, "a BMP picture", PICTURE },
     { ".tga", NULL, READER_NONE, "a TGA picture", PICTURE },
     { ".dds", "DDS ", READER_NONE, "a DDS picture", PICTURE },
     { ".ktx2", "\xabKTX 20", READER_NONE, "a KTX2 picture", PICTURE },
+    { ".ktx", "\xabKTX 11", READER_NONE, "a KTX picture", PICTURE },
+    { ".avif", NULL, READER_NONE, "an AVIF picture", PICTURE },
     { ".webp", NULL, READER_NONE, "a WebP picture", PICTURE },
     { ".mtl", NULL, READER_NONE, "materials of an OBJ file", "give noh the .obj file" },
     { ".bin", NULL, READER_NONE, "data of a glTF file", "give noh the .gltf file that names it" },
@@ -91,17 +96,23 @@ int file_has_ending(const char *path, const char *ending)
     return 1;
 }
 
+const file_kind *file_kind_of_bytes(const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < KIND_COUNT; i++) {
+        const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
+        if (length && count >= length && memcmp(bytes, kinds[i].begins, length) == 0) return &kinds[i];
+    }
+    return NULL;
+}
+
 static const file_kind *by_beginning(const char *path, int *is_there)
 {
-    const file_kind *found = NULL;
+    const file_kind *found;
     const void *data;
     size_t count;
     *is_there = !input_map(path, &data, &count, NULL);
     if (!*is_there) return NULL;
-    for (size_t i = 0; i < KIND_COUNT && !found; i++) {
-        const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
-        if (length && count >= length && memcmp(data, kinds[i].begins, length) == 0) found = &kinds[i];
-    }
+    found = file_kind_of_bytes(data, count);
     input_unmap(data, count);
     return found;
 }

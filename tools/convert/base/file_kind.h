@@ -3,6 +3,8 @@
 #ifndef NOH_CONVERT_BASE_FILE_KIND_H
 #define NOH_CONVERT_BASE_FILE_KIND_H
 
+#include <stddef.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -30,6 +32,9 @@ typedef struct file_kind {
 
 /* By the first bytes, else by the ending. NULL: of no kind, or a missing file that no reader would take. */
 const file_kind *file_kind_of(const char *path);
+
+/* By the first bytes alone. NULL: of no kind. */
+const file_kind *file_kind_of_bytes(const void *bytes, size_t count);
 
 /* ending: in small letters, such as ".png"; the path may have capitals. */
 int file_has_ending(const char *path, const char *ending);

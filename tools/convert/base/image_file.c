@@ -5,29 +5,43 @@
 
 #include <stb/stb_image.h>
 
+#include "convert/base/bmp_file.h"
+#include "convert/base/file_kind.h"
 #include "convert/base/image_whole.h"
 #include "convert/base/input_file.h"
+#include "convert/base/psd_file.h"
 #include "convert/base/tga_file.h"
+#include "convert/base/webp_file.h"
 
-/* stb_image's other decoders are kept from files of unknown origin. */
-static int is_png_or_jpeg(const char *bytes, size_t count)
+/* Why stb_image must not have some bytes, if it decodes their format here: its other decoders are kept from files of
+ * unknown origin. */
+typedef int refusal(const unsigned char *bytes, size_t count, model_error *error);
+
+static refusal *format_of(const unsigned char *bytes, size_t count)
 {
     static const unsigned char png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
-    return count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0);
+    if (count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0)) return image_is_cut;
+    return bmp_begins(bytes, count) ? bmp_is_refused : NULL;
+}
+
+static int fail_to_decode(model_error *error)
+{
+    return model_fail(error, "", "the image data is damaged, or of a kind that is not read (%s): save it again as PNG",
+                      stbi_failure_reason());
 }
 
 static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels_left, model_error *error)
 {
     int width = 0, height = 0, channels = 0;
-    uint64_t pixels;
-    if (count > 0x7fffffffu || !stbi_info_from_memory(bytes, (int)count, &width, &height, &channels) || width < 1 ||
-        height < 1) {
-        return model_fail(error, "", "the image data is damaged");
-    }
-    pixels = (uint64_t)width * (uint64_t)height;
-    *pixels_left += 64u * (uint64_t)count;
+    uint64_t pixels, rows;
+    if (count > 0x7fffffffu) return model_fail(error, "", "the image has more than 2 GiB: save it smaller");
+    if (!stbi_info_from_memory(bytes, (int)count, &width, &height, &channels)) return fail_to_decode(error);
+    if (width < 1 || height == 0) return model_fail(error, "", "the image data is damaged");
+    rows = height < 0 ? 0u - (uint64_t)(int64_t)height : (uint64_t)height; /* of a BMP with the top row first */
+    pixels = (uint64_t)width * rows;
     if (pixels > IMAGE_PIXELS || pixels > *pixels_left) {
-        return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu%s", width, height,
+        return model_fail(error, "", "the image has %d x %llu pixels; the limit is %llu%s", width,
+                          (unsigned long long)rows,
                           (unsigned long long)(pixels > IMAGE_PIXELS ? IMAGE_PIXELS : *pixels_left),
                           pixels > IMAGE_PIXELS ? "" : ", after those before it, for files of this size");
     }
@@ -35,49 +49,88 @@ static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels
     return 0;
 }
 
+/* Of 16 bits, the nearest of 8. */
+static uint8_t *load_wide(const unsigned char *bytes, size_t count, int size[2], int *channels)
+{
+    uint16_t *wide = stbi_load_16_from_memory(bytes, (int)count, &size[0], &size[1], channels, 4);
+    uint8_t *narrow = (uint8_t *)wide;
+    const size_t values = wide ? (size_t)size[0] * (size_t)size[1] * 4u : 0;
+    for (size_t i = 0; i < values; i++) narrow[i] = (uint8_t)((wide[i] * 255u + 32767u) / 65535u);
+    return narrow;
+}
+
+/* Where the file does not say whether its pixels have alpha. */
+static uint32_t channels_of(const image_file *image)
+{
+    const size_t pixels = (size_t)image->width * image->height;
+    for (size_t i = 0; i < pixels; i++) {
+        if (image->rgba[i * 4u + 3u] != 255) return 4;
+    }
+    return 3;
+}
+
 static int decode(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
 {
-    int width = 0, height = 0, channels = 0;
+    int size[2] = { 0, 0 }, channels = 0;
     image->bits = stbi_is_16_bit_from_memory(bytes, (int)count) ? 16 : 8;
-    image->rgba = stbi_load_from_memory(bytes, (int)count, &width, &height, &channels, 4);
-    if (!image->rgba) {
-        return model_fail(error, "", "the image data is damaged, or there is not enough memory");
-    }
-    image->width = (uint32_t)width;
-    image->height = (uint32_t)height;
+    image->rgba = image->bits == 16 ? load_wide(bytes, count, size, &channels)
+                                    : stbi_load_from_memory(bytes, (int)count, &size[0], &size[1], &channels, 4);
+    if (!image->rgba) return fail_to_decode(error);
+    image->width = (uint32_t)size[0];
+    image->height = (uint32_t)size[1];
     image->channels = (uint32_t)channels;
     return 0;
 }
 
-static int append_end(char **bytes, size_t *count, image_file *image, model_error *error)
+static int decode_without_end(const unsigned char *bytes, size_t count, image_file *image, model_error *error)
 {
-    char *grown = realloc(*bytes, *count + 2u);
-    if (!grown) return model_fail_memory(error);
-    for (size_t i = 0; i < 2u; i++) grown[*count + i] = IMAGE_END[i];
-    *bytes = grown;
-    *count += 2u;
-    image->has_no_end = 1;
-    return 0;
+    unsigned char *whole = malloc(count + 2u);
+    model_error reason = *error;
+    int failed;
+    if (!whole) return model_fail_memory(error);
+    memcpy(whole, bytes, count);
+    memcpy(whole + count, IMAGE_END, 2);
+    failed = decode(whole, count + 2u, image, &reason);
+    free(whole);
+    image->has_no_end = !failed;
+    if (failed) *error = reason;
+    return failed;
 }
 
-static int decode_png_or_jpeg(char **bytes, size_t *count, uint64_t *pixels_left, image_file *image, model_error *error)
+static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
+                        model_error *error)
 {
-    int failed = check_size((const unsigned char *)*bytes, *count, pixels_left, error);
-    if (!failed) failed = image_is_cut((const unsigned char *)*bytes, *count, error);
-    if (failed == IMAGE_NO_END) failed = append_end(bytes, count, image, error);
-    return failed ? failed : decode((const unsigned char *)*bytes, *count, image, error);
-}
-
-static int decode_tga(const char *bytes, size_t count, uint64_t *pixels_left, image_file *image, model_error *error)
-{
-    const uint64_t left = *pixels_left + 64u * (uint64_t)count;
-    if (tga_read((const unsigned char *)bytes, count, left < IMAGE_PIXELS ? left : IMAGE_PIXELS, &image->width,
-                 &image->height, &image->channels, &image->rgba, error)) {
-        return 1;
-    }
+    const uint64_t most = *pixels_left < IMAGE_PIXELS ? *pixels_left : IMAGE_PIXELS;
+    const file_kind *kind = file_kind_of_bytes(bytes, count);
+    int failed;
     image->bits = 8;
-    *pixels_left = left - (uint64_t)image->width * image->height;
-    return 0;
+    if (webp_begins(bytes, count)) {
+        failed = webp_read(bytes, count, most, &image->width, &image->height, &image->rgba, error);
+        image->channels = failed ? 0 : channels_of(image);
+    } else if (psd_begins(bytes, count) || (!kind && tga_begins(bytes, count))) {
+        failed = (kind ? psd_read : tga_read)(bytes, count, most, &image->width, &image->height, &image->channels,
+                                              &image->rgba, error);
+    } else {
+        return model_fail(error, "", "it is %s, not a PNG, JPEG, WebP, TGA, BMP or Photoshop picture: save it as PNG",
+                          kind    ? kind->what
+                          : count ? "of an unknown kind"
+                                  : "empty");
+    }
+    if (!failed) *pixels_left -= (uint64_t)image->width * image->height;
+    return failed;
+}
+
+int image_decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image, model_error *error)
+{
+    refusal *refused = format_of(bytes, count);
+    int failed;
+    memset(image, 0, sizeof *image);
+    if (!refused) return decode_other(bytes, count, pixels_left, image, error);
+    if (refused != image_is_cut && refused(bytes, count, error)) return 1; /* says more than stb_image */
+    if (check_size(bytes, count, pixels_left, error)) return 1;
+    failed = refused == image_is_cut ? image_is_cut(bytes, count, error) : 0;
+    if (failed == IMAGE_NO_END) return decode_without_end(bytes, count, image, error);
+    return failed ? 1 : decode(bytes, count, image, error);
 }
 
 int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error)
@@ -86,15 +139,9 @@ int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, 
     char *bytes = input_read(path, &count, error);
     int failed;
     memset(image, 0, sizeof *image);
-    if (!bytes) {
-        return 1;
-    }
-    if (is_png_or_jpeg(bytes, count))
-        failed = decode_png_or_jpeg(&bytes, &count, pixels_left, image, error);
-    else if (tga_begins((const unsigned char *)bytes, count))
-        failed = decode_tga(bytes, count, pixels_left, image, error);
-    else
-        failed = model_fail(error, "", "it is neither PNG, JPEG nor TGA");
+    if (!bytes) return 1;
+    *pixels_left += 64u * (uint64_t)count;
+    failed = image_decode((const unsigned char *)bytes, count, pixels_left, image, error);
     free(bytes);
     return failed;
 }
@@ -115,7 +162,7 @@ static int decode_grey(const unsigned char *bytes, size_t count, uint32_t size[2
     uint64_t pixels_left = IMAGE_PIXELS;
     if (check_size(bytes, count, &pixels_left, error) || image_is_cut(bytes, count, error)) return 1;
     *grey = stbi_load_16_from_memory(bytes, (int)count, &width, &height, &channels, 1);
-    if (!*grey) return model_fail(error, "", "the image data is damaged, or there is not enough memory");
+    if (!*grey) return fail_to_decode(error);
     size[0] = (uint32_t)width;
     size[1] = (uint32_t)height;
     return 0;

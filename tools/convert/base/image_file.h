@@ -1,4 +1,5 @@
-/* image_file.h: a PNG, JPEG or TGA file as its bytes say, without any management of colours. */
+/* image_file.h: pictures as their bytes say, without any management of colours: PNG, JPEG, WebP, TGA, BMP and
+ * Photoshop's, flattened. */
 #ifndef NOH_CONVERT_BASE_IMAGE_FILE_H
 #define NOH_CONVERT_BASE_IMAGE_FILE_H
 
@@ -21,9 +22,12 @@ typedef struct image_file {
 /* Read a file of at most 64 Mi pixels that has its end. Returns 0, or 1 and *error; then image->rgba is NULL. */
 int image_read(const char *path, image_file *image, model_error *error);
 
+/* The same of bytes in memory, also those without an end. *pixels_left shrinks by the pixels before they are decoded. */
+int image_decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
+                 model_error *error);
+
 /* The same for the files of one model, also those without an end, so that a few small ones do not take any memory and
- * time. *pixels_left, at first IMAGE_PIXELS, grows by 64 for each byte of a file, and shrinks by its pixels before they
- * are decoded. */
+ * time. *pixels_left, at first IMAGE_PIXELS, also grows by 64 for each byte of a file. */
 #define IMAGE_PIXELS ((uint64_t)64u << 20)
 int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error);
 

@@ -27,9 +27,19 @@ std::string text(const char *format, ...)
     return line;
 }
 
+static uint64_t charge_limit(const file &f)
+{
+    return expansion_base + expansion_factor * f.input_bytes;
+}
+
+uint64_t uncharged(const file &f)
+{
+    return charge_limit(f) - f.output_bytes;
+}
+
 void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where)
 {
-    uint64_t limit = expansion_base + expansion_factor * f.input_bytes;
+    const uint64_t limit = charge_limit(f);
     if (count > limit / element_size || f.output_bytes + count * element_size > limit)
         fail(where, text("the decoded model would need more than %llu MiB, which a file of this size cannot honestly "
                          "hold",

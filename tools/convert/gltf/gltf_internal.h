@@ -132,6 +132,7 @@ template <class Reader> bool attempt(file &f, const char *lost, Reader reader)
 /* Give those warnings. */
 void warn_left_out(file &f);
 /* Count bytes of the model before they are allocated; refuse more than an honest file of this size needs. */
+uint64_t uncharged(const file &f);
 void charge(file &f, uint64_t count, uint64_t element_size, const std::string &where);
 /* A zeroed array of the model, charged. */
 template <class T> T *allocate(file &f, uint64_t count, const std::string &where)

@@ -9,17 +9,12 @@
 
 #include "noh/base.h"
 #include "noh/format.h"
-#include "convert/base/image_whole.h"
-#include "convert/base/tga_file.h"
-#include "convert/base/webp_file.h"
+#include "convert/base/image_file.h"
 #include "convert/model/surface_kind.h"
-
-#include <stb/stb_image.h>
 
 namespace gltf
 {
 
-static const uint64_t pixels_max = 64u << 20;
 static const int SPECULAR_KEY = -1, MATCAP_KEY = -2; /* in file.texture_of, in place of a use */
 
 static std::string where_of(const file &f, size_t material)
@@ -39,82 +34,21 @@ static bytes encoded_image(file &f, const image &source, const std::string &wher
     return read_uri(f, source.uri, where);
 }
 
-/* glTF allows these two formats; stb_image's other decoders are kept from untrusted data. */
-static bool is_png_or_jpeg(const bytes &data)
-{
-    static const uint8_t png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
-    return data.size() > 8 && (memcmp(data.data(), png, 4) == 0 || memcmp(data.data(), jpeg, 3) == 0);
-}
-
-/* Charges the pixels, so that damaged images and images that many textures have are counted before they take time. */
-static void check_image_size(file &f, const bytes &data, const std::string &where)
-{
-    int width = 0, height = 0, channels = 0;
-    if (!stbi_info_from_memory(data.data(), static_cast<int>(data.size()), &width, &height, &channels) || width < 1 ||
-        height < 1)
-        fail(where, "the image data is damaged");
-    if (static_cast<uint64_t>(width) * static_cast<uint64_t>(height) > pixels_max)
-        fail(where, text("the image has %d x %d pixels; the limit is %llu", width, height,
-                         static_cast<unsigned long long>(pixels_max)));
-    charge(f, static_cast<uint64_t>(width) * static_cast<uint64_t>(height), 4, where);
-}
-
-static void store_pixels(file &f, const tinygltf::Image &decoded, model_texture &out, const std::string &where)
-{
-    uint64_t channels = static_cast<uint64_t>(decoded.width) * static_cast<uint64_t>(decoded.height) * 4;
-    bool wide = decoded.bits == 16;
-    if (decoded.component != 4 || decoded.image.size() != channels * (wide ? 2 : 1))
-        fail(where, "the image could not be decoded to RGBA");
-    f.output_bytes -= channels; /* charged before it was decoded */
-    out.rgba = allocate<uint8_t>(f, channels, where);
-    out.width = static_cast<uint32_t>(decoded.width);
-    out.height = static_cast<uint32_t>(decoded.height);
-    for (uint64_t i = 0; i < channels; ++i) {
-        uint16_t value = 0;
-        if (wide) memcpy(&value, &decoded.image[i * 2], sizeof value);
-        out.rgba[i] = wide ? static_cast<uint8_t>((uint32_t{ value } * 255 + 32767) / 65535) : decoded.image[i];
-    }
-}
-
-/* EXT_texture_webp, or TGA, which FBX files name */
-static void decode_other(file &f, const bytes &data, bool is_webp, model_texture &out, const std::string &where)
-{
-    model_error error = { "", "" };
-    unsigned char *rgba = nullptr;
-    uint32_t channels = 0;
-    if (is_webp ? webp_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &rgba, &error)
-                : tga_read(data.data(), data.size(), pixels_max, &out.width, &out.height, &channels, &rgba, &error))
-        fail(where, error.what);
-    const std::unique_ptr<unsigned char, void (*)(void *)> held(rgba, free);
-    const size_t count = size_t{ out.width } * out.height * 4;
-    out.rgba = allocate<uint8_t>(f, count, where);
-    memcpy(out.rgba, rgba, count);
-}
-
+/* Charges the pixels of damaged images and of images that many textures have as well, before they take time. */
 static void decode_image(file &f, const image &source, model_texture &out, const std::string &where)
 {
-    bytes data = encoded_image(f, source, where);
-    if (!is_png_or_jpeg(data)) {
-        const bool is_webp = webp_begins(data.data(), data.size());
-        if (!is_webp && !tga_begins(data.data(), data.size())) fail(where, "it is neither PNG, JPEG, WebP nor TGA");
-        decode_other(f, data, is_webp, out, where);
-        return;
-    }
-    check_image_size(f, data, where);
-    model_error cut = { "", "" };
-    const int is_cut = image_is_cut(data.data(), data.size(), &cut);
-    if (is_cut == IMAGE_NO_END) {
-        for (size_t i = 0; i < 2; ++i) data.push_back(static_cast<unsigned char>(IMAGE_END[i]));
-        warn(f, "%s: %s", where.c_str(), cut.what);
-    } else if (is_cut) {
-        fail(where, cut.what);
-    }
-    tinygltf::Image decoded;
-    std::string error, warning;
-    if (!tinygltf::LoadImageData(&decoded, 0, &error, &warning, 0, 0, data.data(), static_cast<int>(data.size()),
-                                 nullptr))
-        fail(where, "the image data is damaged");
-    store_pixels(f, decoded, out, where);
+    const bytes data = encoded_image(f, source, where);
+    const uint64_t before = uncharged(f) / 4;
+    uint64_t pixels_left = before;
+    image_file decoded;
+    model_error error = { "", "" };
+    const int failed = image_decode(data.data(), data.size(), &pixels_left, &decoded, &error);
+    f.output_bytes += (before - pixels_left) * 4;
+    if (failed) fail(where, error.what);
+    out.rgba = decoded.rgba;
+    out.width = decoded.width;
+    out.height = decoded.height;
+    if (decoded.has_no_end) warn(f, "%s: %s", where.c_str(), error.what);
 }
 
 /* --- textures --- */
@@ -161,6 +95,9 @@ static size_t image_of(const file &f, const tinygltf::Texture &texture, const st
     if (index < 0 && texture.extensions.count("KHR_texture_basisu"))
         fail(where, "its only image uses KHR_texture_basisu (KTX2), which is not supported: export PNG, JPEG or WebP, "
                     "or convert it to PNG with ktx extract of KTX-Software");
+    for (const auto &other : texture.extensions)
+        if (index < 0 && other.second.Has("source") && other.second.Get("source").IsInt())
+            index = other.second.Get("source").Get<int>(); /* what is not read says so */
     if (index < 0) fail(where, "it has no image that can be read");
     if (static_cast<size_t>(index) >= f.images.size())
         fail(where, text("image %d does not exist: the file has %zu", index, f.images.size()));
