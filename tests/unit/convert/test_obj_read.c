@@ -275,6 +275,23 @@ static void large_images_are_counted_first(void **state)
     model_free(m);
 }
 
+/* A picture of opacity that is the colours' own cuts by its alpha; others, and other pictures, are warnings. */
+static void other_pictures_cut_or_are_told(void **state)
+{
+    static const unsigned char tga[] = { 0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 1, 0, 32, 8, 30, 20, 10, 9 };
+    (void)state;
+    test_write_file(test_path("leaf.tga"), tga, sizeof tga);
+    save("face.mtl", "newmtl a\nmap_Kd leaf.tga\nmap_d -imfchan m leaf.tga\nbump -bm 1 x.png\nmap_Ka leaf.tga\n"
+                     "newmtl b\nmap_Kd leaf.tga\nmap_d y.png\nbump x.png\n");
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+    assert_int_equal(m->materials[0].alpha, MODEL_ALPHA_MASK);
+    assert_int_equal(m->materials[1].alpha, MODEL_ALPHA_OPAQUE);
+    assert_true(has_warning(m, "material 'a': its bump was left out, and of the materials behind it"));
+    assert_true(has_warning(m, "material 'b': its picture of opacity (map_d) was left out: put it into the alpha"));
+    assert_int_equal(m->warning_count, 2);
+    model_free(m);
+}
+
 static void missing_materials_are_told(void **state)
 {
     (void)state;
@@ -481,6 +498,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(names_differ_in_case),
     cmocka_unit_test(long_names_are_left_out),
     cmocka_unit_test(large_images_are_counted_first),
+    cmocka_unit_test(other_pictures_cut_or_are_told),
     cmocka_unit_test(missing_materials_are_told),
     cmocka_unit_test(colours_of_positions),
     cmocka_unit_test(units_and_sizes),

@@ -17,6 +17,7 @@ typedef struct library {
     model *m;
     model_material *at;   /* the one that the lines are about; NULL: none that is used */
     uint64_t pixels_left; /* of textures (image_read_next) */
+    uint32_t left_out;    /* bits of the pictures that have had their warning (leave_out_texture) */
 } library;
 
 /* ---- materials by name ---- */
@@ -131,12 +132,12 @@ static int add_texture(library *l, const char *name)
     return !t->name;
 }
 
-/* map_Kd [-option value ...] FILE: the file is the last word, or the whole rest where there are no options. */
-static int read_texture(library *l)
+/* [-option value ...] FILE: the file is the last word, or the whole rest where there are no options. *name is to be
+ * freed; NULL: there is none. */
+static int read_name(library *l, char **name)
 {
     text_word rest = text_rest_of_line(&l->scan);
-    char *name;
-    int failed;
+    *name = NULL;
     if (rest.size > 0 && rest.text[0] == '-') {
         const char *end = rest.text + rest.size, *at = end;
         while (at > rest.text && at[-1] != ' ' && at[-1] != '\t') at--;
@@ -144,12 +145,52 @@ static int read_texture(library *l)
         rest.size = (size_t)(end - at);
     }
     if (rest.size == 0) return 0;
-    name = text_copy(rest);
-    if (!name) return 1;
+    *name = text_copy(rest);
+    return !*name;
+}
+
+static int read_texture(library *l)
+{
+    char *name;
+    int failed = read_name(l, &name);
+    if (!name) return failed;
     l->at->base_color_texture = find_texture(l->m, name);
     failed = l->at->base_color_texture == MODEL_NONE && add_texture(l, name);
     free(name);
     return failed;
+}
+
+/* Exporters name the colours' own picture: its alpha cuts. */
+static int read_opacity_texture(library *l)
+{
+    char *name;
+    const int failed = read_name(l, &name);
+    const uint32_t texture = name ? find_texture(l->m, name) : MODEL_NONE;
+    free(name);
+    if (failed || texture == MODEL_NONE || texture != l->at->base_color_texture) {
+        return failed || model_warn(l->m,
+                                    "material '%.60s': its picture of opacity (map_d) was left out: put it into the "
+                                    "alpha of its colours (map_Kd), and name this picture in map_d",
+                                    l->at->name);
+    }
+    l->at->alpha = MODEL_ALPHA_MASK;
+    surface_kind_set(l->at, surface_kind_by_name(l->at->name, l->at->alpha));
+    return 0;
+}
+
+static int leave_out_texture(library *l, text_word keyword)
+{
+    static const char *const maps[] = { "map_Bump", "map_bump", "bump",   "norm",   "map_Ks", "map_Ns",
+                                        "map_Ke",   "map_Pr",   "map_Pm", "map_Ps", "disp",   "decal" };
+    for (uint32_t i = 0; i < sizeof maps / sizeof maps[0]; i++) {
+        if (!text_is(keyword, maps[i]) || (l->left_out >> i & 1u)) continue;
+        l->left_out |= 1u << i;
+        return model_warn(l->m,
+                          "material '%.60s': its %s was left out, and of the materials behind it: of pictures in "
+                          "materials of an OBJ file, only map_Kd is read; glTF has the others",
+                          l->at->name, maps[i]);
+    }
+    return 0;
 }
 
 /* ---- lines ---- */
@@ -208,11 +249,12 @@ static int read_line(library *l)
     }
     if (!l->at) return 0;
     if (text_is(keyword, "map_Kd")) return read_texture(l);
+    if (text_is(keyword, "map_d")) return read_opacity_texture(l);
     if (text_is(keyword, "d")) return set_opacity(l, 0);
     if (text_is(keyword, "Tr")) return set_opacity(l, 1);
     if (text_is(keyword, "Kd")) set_color(l);
     if (text_is(keyword, "Ns")) set_exponent(l);
-    return 0;
+    return leave_out_texture(l, keyword);
 }
 
 static int read_library(library *l, const char *text, size_t bytes)
