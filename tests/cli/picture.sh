@@ -87,6 +87,11 @@ noh speak hello --face "$puppet" -o line.noh
     noh sheet "$puppet" -o smile.png --target smile --tile 64
     noh sheet "$puppet" -o smile_face.png --target smile --tile 64 --camera face
     check 'a sheet of targets shows the face' cmp smile.png smile_face.png
+    LC_ALL=C sed 's/arm\.\([LR]\)/axm.\1/g; s/hand\./hxnd./g' "$build/demo/puppet.glb" >nobody.glb
+    for figure in "$puppet" nobody.glb; do
+        noh sheet "$figure" -o "$(basename "${figure%.*}")_full.png" --target smile --tile 64 --camera full
+    done
+    check 'in which arms of known names are down' sh -c '! cmp -s puppet_full.png nobody_full.png'
     for verb in 'sheet --tiles 2 --tile 64' 'render --size 64x64'; do
         noh ${verb%% *} "$puppet" -o said.png --anim line.noh --clip speech ${verb#* }
         noh ${verb%% *} "$puppet" -o said_face.png --anim line.noh --clip speech ${verb#* } --camera face,15,6

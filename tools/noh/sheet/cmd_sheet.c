@@ -186,8 +186,8 @@ static int make_sheet(sheet *s, const pack_file *file)
     }
     if (!status && s->tiles.clip) {
         status = figure_open_anims(&anims, &s->tiles.anims, file, &s->figure);
-        s->figure.stands = !s->show_bones && figure_rests(&s->figure, &s->tiles.clips);
     }
+    s->figure.stands = !s->show_bones && figure_rests(&s->figure, &s->tiles.clips);
     if (!status) status = draw_sheet(s, file);
     if (!status) status = tool_write_png(s->output, s->columns * s->tile, s->rows * s->tile, s->rgba);
     figure_close_anims(&anims);
@@ -260,7 +260,6 @@ static int check_args(sheet_args *a)
     if (!s->tiles.clips.count && strcmp(s->camera, "auto") == 0) s->camera = "face";
     s->tiles.alive = s->figure.alive;
     s->tiles.life_s = lives_alone(a) ? a->time_s : 0.0;
-    s->figure.stands = lives_alone(a);
     s->tiles.face_count = (uint32_t)a->faces;
     s->tiles.seed = (uint32_t)a->seed;
     s->tiles.inertia = strcmp(a->transition, "inertia") == 0;
@@ -274,6 +273,7 @@ static int make_lods(sheet *s, const pack_file *file)
 {
     s->figure.file = file;
     s->figure.held_float_count = FIGURE_HELD_ALL;
+    s->figure.stands = 1;
     const sheet_lods o = { file, s->output, s->camera, s->driver, s->figure, &s->tiles.only, s->tile };
     return sheet_lods_write(&o);
 }
