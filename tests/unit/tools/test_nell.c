@@ -169,6 +169,28 @@ static void a_smile_parts_the_lips(void **state)
     assert_true(pairs_that_part(target_named("mouthSmileRight"), target_named("jawOpen"), 0.004, NULL) >= 13);
 }
 
+static int is_middle_of_mouth(const float *at)
+{
+    return fabsf(at[0]) < 0.006f && fabsf(at[1] + 0.0435f) < 0.005f && at[2] > 0.070f;
+}
+
+/* A slight smile is not a slit of grey teeth: the lower lip, which a smile lowers, still reaches up to the upper one. */
+static void a_slight_smile_keeps_the_lips_shut(void **state)
+{
+    const model_target *smile = target_named("smile");
+    const uint32_t first = head->submeshes[0].first_vertex, end = first + head->submeshes[0].vertex_count;
+    float lower = -1.0f, upper = 1.0f;
+    (void)state;
+    for (uint32_t i = first; i < end; i++) {
+        const float *at = head->position + (size_t)i * 3;
+        const float up = smile->position[(size_t)i * 3 + 1], y = at[1] + 0.2f * up;
+        if (!is_middle_of_mouth(at)) continue;
+        if (up < -0.002f) lower = fmaxf(lower, y);
+        if (up > 0.002f) upper = fminf(upper, y);
+    }
+    assert_true(lower > upper);
+}
+
 static void lids_meet_in_a_blink(void **state)
 {
     (void)state;
@@ -186,8 +208,8 @@ static void it_is_small_and_has_clips(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(targets_move_what_they_name), cmocka_unit_test(lips_meet_at_rest),
-    cmocka_unit_test(a_smile_parts_the_lips),      cmocka_unit_test(lids_meet_in_a_blink),
-    cmocka_unit_test(it_is_small_and_has_clips),
+    cmocka_unit_test(a_smile_parts_the_lips),      cmocka_unit_test(a_slight_smile_keeps_the_lips_shut),
+    cmocka_unit_test(lids_meet_in_a_blink),        cmocka_unit_test(it_is_small_and_has_clips),
 };
 
 TEST_MAIN(tests, set_up, tear_down)

@@ -60,7 +60,7 @@ static CapPlace cap_at(const Seed *seed)
     double tip = mix(0.001 + 0.003 * smooth(0.05, 0.08, fabs(hem)), 0.020 + 0.007 * sin(at.clump * 1.9), nape);
     double low = hairline(hem) - 0.004 - tip * pow(1 - fabs(2 * across - 1), 0.8);
     at.s = hem + turn;
-    at.t = mix(low, TOP - 0.0005, pow(fmax(up, 0), 1.25));
+    at.t = mix(low, TOP, pow(fmax(up, 0), 1.25));
     return at;
 }
 
@@ -74,7 +74,8 @@ V3 scalp_place(const Seed *seed)
     double volume = mix(mix(0.0075, 0.0155, behind), 0.0115, pole);
     double high = mix(mix(0.0022, 0.0034, nape), volume, round) + 0.0012 * sin(at.clump * 2.1) * behind * (1 - crown);
     high -= mix(0.0012, 0.0048, behind) * smooth(0, 0.12, at.up) * (1 - at.arch) * (1 - crown * crown);
-    return v3_add(shape_at(at.s, at.t), v3_scale(shape_normal(at.s, at.t), at.up < 0 ? -0.004 : high));
+    return v3_add(shape_at(at.s, at.t),
+                  v3_scale(shape_normal(at.s, fmin(at.t, TOP - 0.001)), at.up < 0 ? -0.004 : high));
 }
 
 double nell_hair_arch(const Seed *seed)
@@ -123,10 +124,10 @@ static const Lock locks[] = {
     /* the other side of the parting; the first one covers the cap where the parting meets the forehead */
     { { -29, -25, -26, -40 }, { 117, 104, 88, 64 }, { 8, 13, 14, 11 }, 17, 0 },
     { { -32, -46, -62, -74 }, { 118, 104, 78, 26 }, { 8, 15, 15, 11 }, 18, 0 },
-    { { -32, -54, -76, -86 }, { 134, 124, 86, 20 }, { 9, 20, 18, 13 }, 23, 0 },
-    { { -30, -60, -98, -104 }, { 148, 140, 80, 18 }, { 9, 18, 20, 17 }, 25, 0 },
+    { { -26, -54, -76, -86 }, { 142, 126, 86, 20 }, { 11, 21, 18, 13 }, 23, 0 },
+    { { -16, -56, -99, -104 }, { 160, 150, 82, 18 }, { 10, 17, 15, 14 }, 24, 0 },
     /* over her left ear */
-    { { 16, 62, 98, 104 }, { 154, 142, 80, 18 }, { 9, 21, 21, 17 }, 25, 0 },
+    { { 16, 62, 98, 104 }, { 160, 144, 80, 18 }, { 8, 15, 15, 14 }, 25, 0 },
     /* one that will not lie down */
     { { -6, 6, 18, 26 }, { 168, 164, 156, 142 }, { 8, 24, 29, 30 }, 6, 5 },
 };
@@ -151,7 +152,7 @@ V3 lock_place(const Seed *seed)
     double ds = spline(lock->s, u + step) - spline(lock->s, u - step);
     double dt = spline(lock->t, u + step) - spline(lock->t, u - step), length = sqrt(ds * ds + dt * dt);
     double turn = lock_turn(seed), end = u <= 0 || u >= 1 ? 0 : 1, a = cos(turn), b = sin(turn);
-    double taper = end * (1 - pow(u, 2.2)) * smooth(-0.2, 0.35, u);
+    double taper = end * (1 - pow(u, 2.2)) * smooth(-0.06, 0.42, u);
     double across = lock->width * taper * a;
     double s = spline(lock->s, u) - across * dt / length, t = spline(lock->t, u) + across * ds / length;
     /* The edges of locks that lie are below the cap. */

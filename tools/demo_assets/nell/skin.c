@@ -308,14 +308,31 @@ V3 lid_place(const Seed *seed, const Pose *pose)
     return at;
 }
 
-/* From the lip's edge inwards, curling up (or down) behind the lip. */
+/* How far a pose parts the lips, 0 to 1. */
+static double lips_open(const Pose *pose)
+{
+    double parted = 0;
+    for (int side = 0; side < SIDES; side++) {
+        parted += 0.5 * (pose->upper_up[side] + pose->lower_down[side]);
+    }
+    return clamp(pose->grin + 2 * pose->jaw_open + pose->funnel + pose->tongue_out + 0.5 * parted, 0, 1) *
+           (1 - clamp(pose->mouth_close, 0, 1));
+}
+
+/* From the lip's edge inwards, curling up (or down) behind the lip. The lower lip is pressed into the upper one, so that
+ * a slight smile parts them hardly at all. */
 V3 lip_place(const Seed *seed, const Pose *pose)
 {
     static const double back[] = { 0, 0.0012, 0.0024, 0.0033, 0.0038 };
     static const double spread[] = { 0, 0.0001, 0.0014, 0.0050, 0.0100 };
+    static const double pressed[] = { 0, 0.0022, 0.0036, 0.0020, 0 };
     int row = (int)seed->k;
+    double width = sqrt(lips_width(seed->s));
     V3 at = skin_place(skin_point(seed), pose);
-    at.y += seed->mouth * spread[row] * sqrt(lips_width(seed->s));
+    at.y += seed->mouth * spread[row] * width;
+    if (seed->mouth < 0) {
+        at.y += pressed[row] * width * (1 - lips_open(pose));
+    }
     at.z -= back[row];
     return at;
 }
