@@ -7,6 +7,7 @@
 #include <string.h>
 #include <sys/stat.h>
 
+#include "convert/obj/obj_polygon.h"
 #include "convert/obj/obj_read.h"
 #include "noh/format.h"
 
@@ -130,6 +131,28 @@ static void concave_polygons_are_cut(void **state)
     expect_cut(ring, 10);
     expect_cut((const double(*)[2])spiral, 120);
     expect_cut((const double(*)[2])star, 40);
+}
+
+/* The time that a file's concave polygons may take is limited: more have a fan, and a file of such a face alone is
+ * refused. */
+static void time_to_cut_polygons_is_limited(void **state)
+{
+    enum { CORNERS = 66000 };
+    static const float arrow[12] = { 0, 0, 0, 0, 2, 0, 2, 1, 0, 0.5f, 1, 0 };
+    uint32_t triangles[6], fan[6] = { 0, 1, 2, 0, 2, 3 };
+    uint64_t steps = 16;
+    char *text = malloc(CORNERS * 24u), *end = text;
+    (void)state;
+    assert_non_null(text);
+    assert_int_equal(obj_polygon_cut(arrow, 4, triangles, &steps), 0);
+    assert_memory_not_equal(triangles, fan, sizeof fan);
+    assert_int_equal(obj_polygon_cut(arrow, 4, triangles, &steps), 2);
+    assert_memory_equal(triangles, fan, sizeof fan);
+    for (int i = 0; i < CORNERS; i++) end += sprintf(end, "v %d %d 0\n", i, i % 7 * (i % 7) % 5);
+    end += sprintf(end, "f");
+    for (int i = 0; i < CORNERS; i++) end += sprintf(end, " %d", i + 1);
+    refused(text, "a concave face of 66000 corners takes too long to cut", "line 66001");
+    free(text);
 }
 
 /* What crosses itself, or has no area, has as many triangles as any other. */
@@ -491,6 +514,7 @@ static void mutations_never_crash(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(polygons_are_fans),
     cmocka_unit_test(concave_polygons_are_cut),
+    cmocka_unit_test(time_to_cut_polygons_is_limited),
     cmocka_unit_test(broken_polygons_are_cut_somehow),
     cmocka_unit_test(corners_become_vertices),
     cmocka_unit_test(materials_are_submeshes),

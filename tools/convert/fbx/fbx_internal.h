@@ -27,6 +27,7 @@
 #include <tiny_gltf.h>
 
 #include "convert/model/model.h"
+#include "convert/obj/obj_polygon.h"
 #include "fbx_pose.h"
 
 namespace fbx
@@ -57,6 +58,7 @@ struct job {
     scene in;
     std::string path;
     double unit_m = 0.01;                                 /* metres per unit of the file */
+    uint64_t steps = OBJ_CUT_STEPS;                       /* left to cut polygons */
     const extra_list *extras = nullptr;                   /* further sets of texture coordinates; null: none */
     std::vector<size_t> holder;                           /* [models] the node that each is written under, or none */
     std::vector<std::pair<size_t, drawn_mesh>> drawn;     /* by place in models */

@@ -7,8 +7,6 @@
 #include <cstring>
 #include <unordered_map>
 
-#include "convert/obj/obj_polygon.h"
-
 namespace fbx
 {
 
@@ -123,11 +121,13 @@ static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t
         places.insert(places.end(), &m.points[size_t{ points[c] } * 3], &m.points[size_t{ points[c] } * 3] + 3);
     }
     triangles.resize((points.size() - 2) * 3);
-    const int failed = obj_polygon_cut(places.data(), static_cast<uint32_t>(points.size()), triangles.data());
+    const int failed = obj_polygon_cut(places.data(), static_cast<uint32_t>(points.size()), triangles.data(),
+                                       &m.j.steps);
     if (failed == 1) throw std::bad_alloc();
     if (failed)
-        m.j.in.warn(place_of(m.j.in, m.geometry),
-                    " has a polygon with too many corners, which was cut from its first corner: triangulate it");
+        m.j.in.warn(
+            place_of(m.j.in, m.geometry),
+            " has a concave polygon that takes too long to cut into triangles, and has a fan instead: triangulate it");
     for (size_t t = 0; t < triangles.size(); t += 3) {
         const corner of[3] = { corners[triangles[t]], corners[triangles[t + 1]], corners[triangles[t + 2]] };
         add_triangle(p, of, determinant(m.pivot) < 0.0);

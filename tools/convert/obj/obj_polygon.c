@@ -10,6 +10,7 @@ typedef struct polygon {
     double (*at)[2];         /* [count] in its plane, counter-clockwise */
     uint32_t *next, *before; /* [count] corners that are left */
     uint8_t *ear;            /* [count] */
+    uint64_t *steps;
 } polygon;
 
 /* ---- its plane ---- */
@@ -69,7 +70,7 @@ static int is_ear(const polygon *p, uint32_t b)
 {
     const uint32_t a = p->before[b], c = p->next[b];
     if (!(turn(p, a, b, c) > 0.0)) return 0;
-    for (uint32_t i = p->next[c]; i != a; i = p->next[i]) {
+    for (uint32_t i = p->next[c]; i != a && *p->steps; i = p->next[i], --*p->steps) {
         if (turn(p, p->before[i], i, p->next[i]) > 0.0) continue; /* where one is inside, one that turns right is */
         if (same_point(p, i, a) || same_point(p, i, b) || same_point(p, i, c)) continue;
         if (turn(p, a, b, i) >= 0.0 && turn(p, b, c, i) >= 0.0 && turn(p, c, a, i) >= 0.0) return 0;
@@ -101,7 +102,8 @@ static uint32_t find_any(polygon *p, uint32_t from, uint32_t left)
     return best;
 }
 
-static void clip_ears(polygon *p, uint32_t *triangles)
+/* Returns 0, or 2 where the steps do not suffice. */
+static int clip_ears(polygon *p, uint32_t *triangles)
 {
     uint32_t from = 0;
     for (uint32_t i = 0; i < p->count; i++) {
@@ -109,7 +111,7 @@ static void clip_ears(polygon *p, uint32_t *triangles)
         p->before[i] = (i + p->count - 1) % p->count;
     }
     for (uint32_t i = 0; i < p->count; i++) p->ear[i] = (uint8_t)is_ear(p, i);
-    for (uint32_t left = p->count; left > 2; left--, triangles += 3) {
+    for (uint32_t left = p->count; left > 2 && *p->steps; left--, triangles += 3) {
         uint32_t b = find_ear(p, from, left), a, c;
         if (b == MODEL_NONE) b = find_any(p, from, left);
         a = p->before[b];
@@ -123,6 +125,7 @@ static void clip_ears(polygon *p, uint32_t *triangles)
         p->ear[c] = (uint8_t)is_ear(p, c);
         from = p->next[c]; /* not the same corner again: that would make a fan of slivers */
     }
+    return *p->steps ? 0 : 2;
 }
 
 static void make_fan(uint32_t count, uint32_t *triangles)
@@ -134,9 +137,9 @@ static void make_fan(uint32_t count, uint32_t *triangles)
     }
 }
 
-int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles)
+int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles, uint64_t *steps)
 {
-    polygon p = { count, NULL, NULL, NULL, NULL };
+    polygon p = { count, NULL, NULL, NULL, NULL, steps };
     int failed = 0;
     make_fan(count, triangles);
     if (count == 3) return 0;
@@ -147,8 +150,8 @@ int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles)
         p.next = model_zeros(count, sizeof *p.next);
         p.before = model_zeros(count, sizeof *p.before);
         p.ear = model_zeros(count, 1);
-        failed = !p.next || !p.before || !p.ear ? 1 : count > OBJ_CONCAVE_MAX ? 2 : 0;
-        if (!failed) clip_ears(&p, triangles);
+        failed = !p.next || !p.before || !p.ear ? 1 : (uint64_t)count * count > *steps ? 2 : clip_ears(&p, triangles);
+        if (failed == 2) make_fan(count, triangles);
     }
     free(p.at);
     free(p.next);

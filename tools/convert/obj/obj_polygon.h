@@ -10,15 +10,17 @@
 extern "C" {
 #endif
 
-/* The most corners of a polygon that is not convex: the time grows with their square. */
-#define OBJ_CONCAVE_MAX 16384u
+/* Steps that the polygons of a file may take to be cut, some ten seconds. One of 46,000 corners has no chance to be cut
+ * with fewer, and one of 10,000 corners that crosses itself everywhere takes them all. */
+#define OBJ_CUT_STEPS (UINT64_C(1) << 31)
 
 /* A convex polygon becomes a fan about its first corner. Another one loses ears, which are corners whose triangle holds
  * no other; one that crosses itself loses what comes nearest to an ear.
  * points     [count][3], count at least 3; need not lie in one plane
  * triangles  [count - 2][3] places among the points
- * Returns 0; 1 when out of memory; 2 where it is not convex and has more than OBJ_CONCAVE_MAX corners. */
-int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles);
+ * steps      OBJ_CUT_STEPS before a file's first polygon
+ * Returns 0; 1 when out of memory; 2 where too few steps are left: triangles then has a fan. */
+int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles, uint64_t *steps);
 
 #ifdef __cplusplus
 }

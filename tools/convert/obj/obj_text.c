@@ -16,6 +16,7 @@ typedef struct reader {
     char *material; /* for the next part; NULL: none */
     int positions_only;
     byte_buffer face, points, triangles; /* of one polygon: obj_corner, float [3], uint32_t [3] */
+    uint64_t steps;                      /* left to cut polygons */
 } reader;
 
 uint32_t obj_position_count(const obj_text *o)
@@ -205,11 +206,12 @@ static int add_triangles(reader *r, uint32_t count, uint32_t line)
     r->triangles.count = 0;
     if (!buffer_append(&r->triangles, NULL, words * sizeof *place)) return out_of_memory(r);
     failed = obj_polygon_cut((const float *)(const void *)r->points.bytes, count,
-                             (uint32_t *)(void *)r->triangles.bytes);
+                             (uint32_t *)(void *)r->triangles.bytes, &r->steps);
     if (failed == 2) {
-        return text_fail(&r->scan, line, "a concave face has %u corners, and the limit is %u: triangulate it", count,
-                         OBJ_CONCAVE_MAX);
+        return text_fail(&r->scan, line,
+                         "a concave face of %u corners takes too long to cut into triangles: triangulate it", count);
     }
+    if (!failed && !r->part && find_part(r)) return 1;
     place = (const uint32_t *)(const void *)r->triangles.bytes;
     for (size_t i = 0; i < words && !failed; i++) {
         failed = !buffer_append(&r->part->corners, &corners[place[i]], sizeof *corners);
@@ -235,7 +237,7 @@ static int read_face(reader *r)
     if (count < 3) {
         return text_fail(&r->scan, line, "a face needs at least three corners, and this one has %u", count);
     }
-    return (!r->part && find_part(r)) || add_triangles(r, count, line);
+    return add_triangles(r, count, line);
 }
 
 static int read_name(reader *r, char **out)
@@ -343,7 +345,7 @@ int obj_text_read(const char *path, int positions_only, obj_text *out, model_err
 {
     size_t bytes = 0;
     char *text = input_read_text(path, &bytes, error);
-    reader r = { .out = out, .positions_only = positions_only };
+    reader r = { .out = out, .positions_only = positions_only, .steps = OBJ_CUT_STEPS };
     int failed;
     memset(out, 0, sizeof *out);
     if (!text) return 1;
