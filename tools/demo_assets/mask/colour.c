@@ -14,7 +14,7 @@ static const V3 red = { 0.34, 0.024, 0.018 }, ink = { 0.010, 0.008, 0.007 };
 static const V3 bare_wood = { 0.30, 0.155, 0.065 }, dark_wood = { 0.115, 0.052, 0.022 };
 static const V3 flesh = { 0.50, 0.27, 0.19 };
 static const V3 white_of_eye = { 0.78, 0.72, 0.60 }, iris = { 0.052, 0.024, 0.012 };
-static const V3 tooth = { 0.82, 0.74, 0.58 }, gum = { 0.22, 0.05, 0.035 };
+static const V3 tooth = { 0.94, 0.90, 0.80 }, gum = { 0.22, 0.05, 0.035 };
 static const V3 tongue = { 0.42, 0.11, 0.09 }, throat = { 0.17, 0.035, 0.028 };
 
 /* Distance from the middle, as a share of the distance to the rim. */
@@ -144,7 +144,7 @@ static V3 tooth_colour(const Seed *seed, double open)
 {
     double across = fabs(2 * (seed->s - floor(seed->s)) - 1);
     V3 base = v3_mix(tooth, gum, seed->k < 1 ? 1 : 0);
-    base = v3_scale(base, 1 - 0.45 * smooth(0.8, 1, across));
+    base = v3_scale(base, 1 - 0.25 * smooth(0.8, 1, across));
     return shade(base, mix(open, 1, 0.8));
 }
 

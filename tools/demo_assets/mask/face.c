@@ -100,10 +100,11 @@ static double lip_shift(FacePoint point, const Pose *pose)
     }
     double from_line = point.t - mouth_line(point.s);
     double open = mouth_gate(point.s, from_line) * (1 - clamp(shut, 0, 1));
+    double grin = open * pose->grin; /* carries all of the red, so that lips stay thick */
     if (point.mouth > 0) {
-        return upper * open * bump(from_line / 0.018);
+        return upper * open * bump(from_line / 0.018) + 0.0024 * grin * smooth(0.022, 0.003, from_line);
     }
-    return -lower * open * bump(from_line / 0.020);
+    return -lower * open * bump(from_line / 0.020) - 0.0030 * grin * smooth(0.026, 0.004, -from_line);
 }
 
 /* Brows hardly move the scalp. */

@@ -17,8 +17,8 @@ static double radius(double s, double t)
  * share of the distance to the rim. */
 static double hair_line(double angle)
 {
-    static const Key line[] = { { 0.00, 0.872 }, { 0.05, 0.860 }, { 0.14, 0.852 }, { 0.45, 0.858 }, { 0.80, 0.868 },
-                                { 1.15, 0.880 }, { 1.45, 0.900 }, { 1.65, 0.940 }, { 1.85, 1.020 }, { 3.15, 1.200 } };
+    static const Key line[] = { { 0.00, 0.872 }, { 0.05, 0.860 }, { 0.14, 0.846 }, { 0.45, 0.840 }, { 0.80, 0.850 },
+                                { 1.15, 0.872 }, { 1.45, 0.900 }, { 1.65, 0.940 }, { 1.85, 1.020 }, { 3.15, 1.200 } };
     return curve(line, (int)(sizeof line / sizeof *line), angle);
 }
 

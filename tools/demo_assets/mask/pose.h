@@ -16,7 +16,7 @@ typedef struct {
     double pucker, funnel, roll_upper, roll_lower, shrug_upper, shrug_lower;
     double mouth_side, mouth_close, tongue_out;
     double tongue_up; /* its tip to the upper teeth; the mask has no such target */
-    double grin;      /* lips part before the teeth and cheeks rise; the mask has none */
+    double grin;      /* lips part before the teeth, and Nell's cheeks rise */
     double nothing;
 } Pose;
 
