@@ -98,13 +98,15 @@ static void write_deltas(Writer *w, Buffer *json, const Deltas *d, int vertices,
     buffer_print(json, "{\"POSITION\":%d,\"NORMAL\":%d,\"TANGENT\":%d}", position, normal, tangent);
 }
 
-/* What a target's pose is measured from: mouthClose shuts lips that an open jaw has parted (closed at rest, they cannot
- * come closer). */
+/* What a target's pose is measured from: lips that are shut were parted by the same grin, and in mouthClose by an open
+ * jaw (closed at rest, they cannot come closer). */
 static Pose target_base(Pose *pose)
 {
     Pose base = { 0 };
     if (pose->mouth_close > 0) {
-        base.jaw_open = pose->jaw_open = 1;
+        pose->jaw_open = pose->grin > 0 ? 0 : 1;
+        base = *pose;
+        base.mouth_close = 0;
     }
     return base;
 }

@@ -85,6 +85,9 @@ static const Target targets[ALL_TARGETS] = {
       { JUST(jaw_open, 0.16), BOTH(stretch, 0.5), BOTH(smile, 0.25), BOTH(upper_up, 0.3), BOTH(lower_down, 0.3) } },
     { "viseme_O", { JUST(jaw_open, 0.42), JUST(funnel, 0.55), JUST(pucker, 0.35) } },
     { "viseme_U", { JUST(jaw_open, 0.14), JUST(funnel, 0.25), JUST(pucker, 0.85) } },
+    /* A corrective by its name: lips that smile shut for sounds that need it. */
+    { "smile_viseme_PP",
+      { BOTH(smile, 1), BOTH(cheek_squint, 0.5), BOTH(upper_up, 0.22), JUST(grin, 1), JUST(mouth_close, 1) } },
 };
 
 const char *target_name(int target)

@@ -4,8 +4,8 @@
 
 #include "pose.h"
 
-/* The mask has the first ones; the visemes follow. */
-enum { MASK_TARGETS = 57, ALL_TARGETS = MASK_TARGETS + 15 };
+/* The mask has the first ones; the visemes and a corrective follow. */
+enum { MASK_TARGETS = 57, ALL_TARGETS = MASK_TARGETS + 16 };
 
 const char *target_name(int target);
 Pose target_pose(int target);
