@@ -51,14 +51,15 @@ static const struct word {
     const char *text;
     part means;
 } words[] = {
-    { "forearm", FOREARM },    { "lowerarm", FOREARM }, { "lowarm", FOREARM },  { "elbow", FOREARM },
-    { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },  { "shldr", UPPER_ARM }, { "thigh", THIGH },
-    { "upperleg", THIGH },     { "upleg", THIGH },      { "lowerleg", SHIN },   { "lowleg", SHIN },
-    { "shin", SHIN },          { "calf", SHIN },        { "knee", SHIN },       { "toe", NONE },
-    { "foot", FOOT },          { "ankle", FOOT },       { "finger", NONE },     { "thumb", NONE },
-    { "hand", HAND },          { "wrist", HAND },       { "headtop", NONE },    { "head", HEAD },
-    { "neck", HEAD },          { "armature", NONE },    { "arm", UPPER_ARM },   { "leg", SHIN },
-    { "shoulder", SHOULDER },  { "hip", HIP },
+    { "forearm", FOREARM },    { "lowerarm", FOREARM },  { "lowarm", FOREARM },  { "elbow", FOREARM },
+    { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },   { "shldr", UPPER_ARM }, { "thigh", THIGH },
+    { "upperleg", THIGH },     { "upleg", THIGH },       { "lowerleg", SHIN },   { "lowleg", SHIN },
+    { "shin", SHIN },          { "calf", SHIN },         { "knee", SHIN },       { "toe", NONE },
+    { "foot", FOOT },          { "ankle", FOOT },        { "finger", NONE },     { "thumb", NONE },
+    { "hand", HAND },          { "wrist", HAND },        { "headtop", NONE },    { "forehead", NONE },
+    { "head", HEAD },          { "neck", HEAD },         { "armature", NONE },   { "arm", UPPER_ARM },
+    { "leg", SHIN },           { "shoulder", SHOULDER }, { "hip", HIP },         { "femur", THIGH },
+    { "tibia", SHIN },         { "humerus", UPPER_ARM }, { "radius", FOREARM },
 };
 
 /* MikuMikuDance's bones, without their sides, in UTF-8. */
@@ -83,10 +84,15 @@ static const struct translation {
 };
 /* clang-format on */
 
-/* Blender has the side behind the name: .L */
+/* Blender has the side behind the name: .L; digits may have the width of a Japanese letter. */
 static int is_own(const char *name, const char *own)
 {
-    while (*own && *own == *name) own++, name++;
+    for (; *own; own++, name++) {
+        if (noh_name_begins(name, "\357\274") && name[2] - *own == '\220' - '0')
+            name += 2;
+        else if (*own != *name)
+            break;
+    }
     return !*own && (!*name || *name == '.' || *name == '_');
 }
 
@@ -133,63 +139,114 @@ static part part_of(const char *name)
     return NONE;
 }
 
-static part name_at(const noh_ragdoll_source *s, uint32_t joint)
+/* The parts of all joints, two of them in a byte. */
+typedef struct part_list {
+    const noh_skeleton *joints;
+    uint32_t present; /* bits of parts: of some joint */
+    uint8_t halves[NOH_JOINTS_MAX / 2u];
+} part_list;
+
+static part part_at(const part_list *p, uint32_t joint)
 {
-    return part_of(noh_name_english(noh_pack_joint_name(s->pack, s->skeleton, joint)));
+    return (part)(p->halves[joint / 2u] >> (joint & 1u) * 4u & 15u);
 }
 
-/* Whether some joint of kind `below` has this joint as its nearest ancestor among the names `weak` and `means`. So
- * 'Hips' and collar bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over
- * 'L_Knee' is. */
-static int is_nearest_above(const noh_ragdoll_source *s, uint32_t joint, part weak, part means, part below)
+static void set_part(part_list *p, uint32_t joint, part means)
 {
-    for (uint32_t i = joint + 1u; i < s->joints.joint_count; i++) {
-        uint32_t up = s->joints.parents[i];
-        if (name_at(s, i) != below) continue;
-        while (up != NOH_JOINT_ROOT && up > joint && name_at(s, up) != weak && name_at(s, up) != means) {
-            up = s->joints.parents[up];
-        }
-        if (up == joint) return 1;
+    const uint32_t shift = (joint & 1u) * 4u;
+    p->halves[joint / 2u] = (uint8_t)((p->halves[joint / 2u] & 15u << (4u - shift)) | (uint32_t)means << shift);
+    p->present |= 1u << means;
+}
+
+/* The nearest joint above this one that is one of two parts, or NOH_JOINT_ROOT. */
+static uint32_t nearest_above(const part_list *p, uint32_t joint, part a, part b)
+{
+    uint32_t up = p->joints->parents[joint];
+    while (up != NOH_JOINT_ROOT && part_at(p, up) != a && part_at(p, up) != b) up = p->joints->parents[up];
+    return up;
+}
+
+/* Joints named `weak` mean `means` if they are the nearest joint of both above one that means `below`. So 'Hips' and
+ * collar bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee' is. */
+static void decide(part_list *p, part weak, part means, part below)
+{
+    for (uint32_t i = 0; i < p->joints->joint_count; i++) {
+        const uint32_t up = part_at(p, i) == below ? nearest_above(p, i, weak, means) : NOH_JOINT_ROOT;
+        if (up != NOH_JOINT_ROOT && part_at(p, up) == weak) set_part(p, up, means);
     }
-    return 0;
+    for (uint32_t i = 0; i < p->joints->joint_count; i++) {
+        if (part_at(p, i) == weak) set_part(p, i, NONE);
+    }
 }
 
-/* Whether a joint above this one is of a kind, by what tells the kind of a joint. */
-static int is_below(const noh_ragdoll_source *s, uint32_t joint, part (*kind_at)(const noh_ragdoll_source *, uint32_t),
-                    part means)
+/* An arm below an arm and above a hand is a forearm. */
+static void decide_forearms(part_list *p)
 {
-    uint32_t up = s->joints.parents[joint];
-    while (up != NOH_JOINT_ROOT && kind_at(s, up) != means) up = s->joints.parents[up];
-    return up != NOH_JOINT_ROOT;
+    for (uint32_t i = 0; i < p->joints->joint_count; i++) {
+        const uint32_t up = part_at(p, i) == HAND ? nearest_above(p, i, UPPER_ARM, FOREARM) : NOH_JOINT_ROOT;
+        if (up != NOH_JOINT_ROOT && nearest_above(p, up, UPPER_ARM, UPPER_ARM) != NOH_JOINT_ROOT) {
+            set_part(p, up, FOREARM);
+        }
+    }
 }
 
-static part part_at(const noh_ragdoll_source *s, uint32_t joint)
+static int has_child(const noh_skeleton *k, uint32_t joint)
 {
-    const part name = name_at(s, joint);
-    if (name == HIP) return is_nearest_above(s, joint, HIP, THIGH, SHIN) ? THIGH : NONE;
-    if (name == SHOULDER) return is_nearest_above(s, joint, SHOULDER, UPPER_ARM, FOREARM) ? UPPER_ARM : NONE;
-    if (name != UPPER_ARM || !is_below(s, joint, name_at, UPPER_ARM)) return name;
-    return is_nearest_above(s, joint, UPPER_ARM, FOREARM, HAND) ? FOREARM : name;
+    uint32_t i = joint + 1u;
+    while (i < k->joint_count && k->parents[i] != joint) i++;
+    return i < k->joint_count;
+}
+
+/* Limbs whose joints all have one name: arm, arm, arm; leg, knee, ankle, of which the first two are shins by name. */
+static void divide(part_list *p, part name, part first, part third)
+{
+    const part second = (part)(first + 1);
+    const uint32_t thirds = p->present >> third & 1u;
+    for (uint32_t i = 0; i < p->joints->joint_count; i++) {
+        const uint32_t up = part_at(p, i) == name ? nearest_above(p, i, name, second) : NOH_JOINT_ROOT;
+        if (up == NOH_JOINT_ROOT || nearest_above(p, i, third, third) != NOH_JOINT_ROOT) continue;
+        if (part_at(p, up) == name && (name == first || nearest_above(p, up, first, first) == NOH_JOINT_ROOT)) {
+            if (!has_child(p->joints, i)) continue;
+            set_part(p, up, first);
+            set_part(p, i, second);
+        } else if (!thirds) {
+            set_part(p, i, third);
+        }
+    }
+}
+
+static void find_parts(const noh_ragdoll_source *s, part_list *p)
+{
+    p->joints = &s->joints;
+    p->present = 0;
+    for (uint32_t i = 0; i < s->joints.joint_count; i++) {
+        set_part(p, i, part_of(noh_name_english(noh_pack_joint_name(s->pack, s->skeleton, i))));
+    }
+    decide(p, HIP, THIGH, SHIN);
+    decide(p, SHOULDER, UPPER_ARM, FOREARM);
+    decide_forearms(p);
+    if (!(p->present >> THIGH & 1u)) divide(p, SHIN, THIGH, FOOT);
+    if (!(p->present & (1u << FOREARM | 1u << HAND))) divide(p, UPPER_ARM, UPPER_ARM, HAND);
 }
 
 /* The topmost joint of its kind in its chain: fingers' names contain "hand" too. */
-static int is_first(const noh_ragdoll_source *s, uint32_t joint, part means)
+static int is_first(const part_list *p, uint32_t joint, part means)
 {
-    return !is_below(s, joint, part_at, means);
+    return nearest_above(p, joint, means, means) == NOH_JOINT_ROOT;
 }
 
 /* The lowest common ancestor of all first joints of a kind; NOH_NONE if there are fewer than two. */
-static uint32_t where_meet(const noh_ragdoll_source *s, part means)
+static uint32_t where_meet(const part_list *p, part means)
 {
     uint32_t meet = NOH_NONE, count = 0;
-    for (uint32_t i = 0; i < s->joints.joint_count; i++) {
-        if (part_at(s, i) != means || !is_first(s, i, means)) continue;
+    for (uint32_t i = 0; i < p->joints->joint_count; i++) {
+        if (part_at(p, i) != means || !is_first(p, i, means)) continue;
         if (!count++) {
-            meet = s->joints.parents[i];
+            meet = p->joints->parents[i];
             continue;
         }
-        while (meet != NOH_NONE && meet != NOH_JOINT_ROOT && !noh_joint_is_above(&s->joints, meet, i)) {
-            meet = s->joints.parents[meet];
+        while (meet != NOH_NONE && meet != NOH_JOINT_ROOT && !noh_joint_is_above(p->joints, meet, i)) {
+            meet = p->joints->parents[meet];
         }
     }
     return count > 1 && meet != NOH_JOINT_ROOT ? meet : NOH_NONE;
@@ -211,18 +268,13 @@ static uint32_t next_towards(const noh_skeleton *k, uint32_t from, uint32_t to)
     return to;
 }
 
-typedef struct trunk {
-    uint32_t pelvis, spine, chest;
-} trunk;
-
-static part part_in(const noh_ragdoll_source *s, const trunk *t, uint32_t joint)
+/* The trunk's joints have other names: arms of 3ds Max's biped begin at its neck, which a head is below. */
+static void set_trunk(part_list *p, uint32_t pelvis, uint32_t spine, uint32_t chest)
 {
-    if (joint == t->pelvis) return PELVIS;
-    if (joint == t->chest) return CHEST;
-    if (joint == t->spine) return SPINE;
-    const part means = part_at(s, joint);
-    return means != NONE && noh_joint_is_above(&s->joints, t->pelvis, joint) && is_first(s, joint, means) ? means
-                                                                                                          : NONE;
+    for (uint32_t up = pelvis; up != NOH_JOINT_ROOT; up = p->joints->parents[up]) set_part(p, up, NONE);
+    if (spine != NOH_NONE) set_part(p, spine, SPINE);
+    if (chest != NOH_NONE) set_part(p, chest, CHEST);
+    set_part(p, pelvis, PELVIS);
 }
 
 /* ---- a table in the pack ---- */
@@ -258,22 +310,25 @@ static uint32_t rows_of_pack(const noh_ragdoll_source *s, noh_ragdoll_row *rows)
 noh_result noh_ragdoll_find_rows(const noh_ragdoll_source *source, noh_ragdoll_row *rows, uint32_t *count,
                                  noh_error *error)
 {
-    trunk t;
+    const noh_skeleton *k = &source->joints;
+    uint32_t pelvis, spine = NOH_NONE, chest;
+    part_list parts;
     *count = rows_of_pack(source, rows);
     if (*count) return NOH_OK;
-    t = (trunk){ where_meet(source, THIGH), NOH_NONE, where_meet(source, UPPER_ARM) };
-    if (t.pelvis != NOH_NONE && t.chest != NOH_NONE) t.pelvis = above_both(&source->joints, t.pelvis, t.chest);
-    if (t.pelvis == NOH_NONE) {
+    find_parts(source, &parts);
+    pelvis = where_meet(&parts, THIGH);
+    chest = where_meet(&parts, UPPER_ARM);
+    if (pelvis != NOH_NONE && chest != NOH_NONE) pelvis = above_both(k, pelvis, chest);
+    if (pelvis == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no two joints have the names of thighs: build the pack with --ragdoll FILE", 0, 0);
     }
-    if (t.chest != NOH_NONE && (t.chest == t.pelvis || !noh_joint_is_above(&source->joints, t.pelvis, t.chest))) {
-        t.chest = NOH_NONE;
-    }
-    if (t.chest != NOH_NONE) t.spine = next_towards(&source->joints, t.pelvis, t.chest);
-    for (uint32_t i = 0; i < source->joints.joint_count && *count < NOH_RAGDOLL_BODIES_MAX; i++) {
-        const part means = part_in(source, &t, i);
-        if (means != NONE) {
+    if (chest != NOH_NONE && (chest == pelvis || !noh_joint_is_above(k, pelvis, chest))) chest = NOH_NONE;
+    if (chest != NOH_NONE) spine = next_towards(k, pelvis, chest);
+    set_trunk(&parts, pelvis, spine, chest);
+    for (uint32_t i = pelvis; i < k->joint_count && *count < NOH_RAGDOLL_BODIES_MAX; i++) {
+        const part means = part_at(&parts, i);
+        if (means != NONE && noh_joint_is_above(k, pelvis, i) && is_first(&parts, i, means)) {
             const struct abilities *a = &abilities[means];
             const noh_ragdoll_row row = { i,           a->hinge, a->toward, a->bend_min,
                                           a->bend_max, a->side,  a->twist,  a->friction };

@@ -16,11 +16,11 @@ const noh_bone_name noh_bone_names[NOH_BONE_NAMES] = {
     { "neck", "neck neck01 neck1 necklower ccbasenecktwist01" },
     { "head", "head" },
     { "*Shoulder", "shoulder clavicle collar shoulder01" },
-    { "*UpperArm", "upperarm arm shldr shldrbend upperarm01 biceps uparm" },
-    { "*LowerArm", "lowerarm forearm forearmbend lowerarm01 elbow lowarm" },
+    { "*UpperArm", "upperarm arm shldr shldrbend upperarm01 biceps uparm humerus" },
+    { "*LowerArm", "lowerarm forearm forearmbend lowerarm01 elbow lowarm radius" },
     { "*Hand", "hand wrist" },
-    { "*UpperLeg", "upperleg upleg thigh thighbend upperleg01" },
-    { "*LowerLeg", "lowerleg leg calf shin lowerleg01 knee lowleg" },
+    { "*UpperLeg", "upperleg upleg thigh thighbend upperleg01 femur" },
+    { "*LowerLeg", "lowerleg leg calf shin lowerleg01 knee lowleg tibia" },
     { "*Foot", "foot ankle" },
     { "*Toes", "toes toebase ball toe toe0" },
     { "*ThumbMetacarpal", "thumbmetacarpal handthumb1 thumb01 thumb1 thumbproximal" },
@@ -41,8 +41,9 @@ const noh_bone_name noh_bone_names[NOH_BONE_NAMES] = {
 };
 /* clang-format on */
 
-const char noh_bone_strips[] = "mixamorig jbipc jbip jadjc jadj jsec ccbase bip001 bip01 def org valvebipedbip01 "
-                               "armature genesis8female genesis8male genesis9";
+const char noh_bone_strips[] =
+    "mixamorig jbipc jbip jadjc jadj jsec ccbase bip001 bip01 def org valvebipedbip01 character1 "
+    "armature genesis8female genesis8male genesis9";
 
 /* ---- keys ---- */
 
@@ -219,19 +220,29 @@ static int is_above(const uint16_t *parents, uint32_t above, uint32_t joint)
     return joint != NOH_JOINT_ROOT;
 }
 
-/* The middle of three bones, if its name means the first: an arm below an upper arm is a forearm. */
-static void find_middle(const uint16_t *parents, uint16_t limb[3])
+/* Bones without a name of their own are what the next one of their limb hangs from, unless the other side's does, too.
+ * An arm below an upper arm is a forearm, and a leg above a knee a thigh. */
+static void find_limb(const uint16_t *parents, uint16_t limb[3], const uint16_t other[3])
 {
-    if (limb[0] == NOH_JOINT_ROOT || limb[1] != NOH_JOINT_ROOT || limb[2] == NOH_JOINT_ROOT) return;
-    const uint16_t at = parents[limb[2]];
-    if (at != NOH_JOINT_ROOT && at != limb[0] && is_above(parents, limb[0], at)) limb[1] = at;
+    const uint16_t below = limb[2] == NOH_JOINT_ROOT ? NOH_JOINT_ROOT : parents[limb[2]];
+    if (limb[0] == NOH_JOINT_ROOT && below != NOH_JOINT_ROOT && below != limb[1] && is_above(parents, limb[1], below)) {
+        limb[0] = limb[1];
+        limb[1] = below;
+    }
+    for (uint32_t i = 2; i-- > 0;) {
+        if (limb[i] != NOH_JOINT_ROOT || limb[i + 1u] == NOH_JOINT_ROOT) continue;
+        const uint16_t at = parents[limb[i + 1u]];
+        if (at == NOH_JOINT_ROOT || at == limb[0] || is_above(parents, at, other[i + 1u])) continue;
+        if (!i || limb[0] == NOH_JOINT_ROOT || is_above(parents, limb[0], at)) limb[i] = at;
+    }
 }
 
 void noh_bones_find_trunk(const uint16_t *parents, uint16_t *bones)
 {
     for (uint32_t side = 0; side <= NOH_BONE_RIGHT; side += NOH_BONE_RIGHT) {
-        find_middle(parents, bones + NOH_BONE_UPPER_ARM + side);
-        find_middle(parents, bones + NOH_BONE_UPPER_LEG + side);
+        uint16_t *const own = bones + side, *const other = bones + (NOH_BONE_RIGHT - side);
+        find_limb(parents, own + NOH_BONE_UPPER_ARM, other + NOH_BONE_UPPER_ARM);
+        find_limb(parents, own + NOH_BONE_UPPER_LEG, other + NOH_BONE_UPPER_LEG);
     }
     const uint16_t left = bones[NOH_BONE_UPPER_LEG], right = bones[NOH_BONE_UPPER_LEG + NOH_BONE_RIGHT];
     uint16_t at = left == NOH_JOINT_ROOT || right == NOH_JOINT_ROOT ? NOH_JOINT_ROOT : parents[left];

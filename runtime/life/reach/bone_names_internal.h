@@ -38,7 +38,7 @@ int noh_name_cut(char *key, const char *part, size_t part_bytes);
 uint32_t noh_bone_of(const char *name);
 
 /* Hips are above both thighs, whatever joint has their name; the topmost joint above them is the root if none is yet. A
- * forearm or shin without a name of its own is what its hand or foot hangs from.
+ * bone of a limb without a name of its own is what the next one hangs from.
  * shapes  parents[] of joints, NOH_JOINT_ROOT for those without one; bones[NOH_BONES] */
 void noh_bones_find_trunk(const uint16_t *parents, uint16_t *bones);
 
