@@ -197,7 +197,7 @@ static int has_child(const noh_skeleton *k, uint32_t joint)
     return i < k->joint_count;
 }
 
-/* Limbs whose joints all have one name: arm, arm, arm; leg, knee, ankle, of which the first two are shins by name. */
+/* Limbs whose joints have one name: arm, arm, arm. A leg and a knee are both shins by name. */
 static void divide(part_list *p, part name, part first, part third)
 {
     const part second = (part)(first + 1);
