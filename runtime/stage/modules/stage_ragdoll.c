@@ -342,6 +342,7 @@ static void shift(noh_stage_kind *k, const float by[3])
     for (uint32_t a = 0; a < k->desc->actor_count; a++) {
         noh_stage_body *b = noh_stage_body_of(k, a);
         float lost[3];
+        if (!k->actors[a].alive) continue;
         noh_ragdoll_origin_shift(b->origin, metres, lost);
         for (uint32_t n = 0; n < 2u * NOH_RAGDOLL_BODIES_MAX; n++) {
             float *at = b->bodies[n / NOH_RAGDOLL_BODIES_MAX][n % NOH_RAGDOLL_BODIES_MAX].position;

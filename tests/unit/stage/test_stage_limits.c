@@ -391,7 +391,8 @@ static void use_nothing(busy_stage *s)
 }
 
 /* What actors did leaves no byte in a state once they are despawned, in no module and in no pool of a module: both are
- * as in a stage whose actors did nothing. Slots of levels, which visible actors hold, are not compared. */
+ * as in a stage whose actors did nothing, and an origin that moves finds no place in them. Slots of levels, which visible
+ * actors hold, are not compared. */
 static void despawned_actors_leave_nothing(void **state)
 {
     const float by[3] = { 4.0f, 0.0f, -8.0f };
@@ -406,6 +407,7 @@ static void despawned_actors_leave_nothing(void **state)
         for (uint32_t a = 0; a < ACTORS; a++)
             assert_int_equal(noh_stage_despawn(s[i].c.stage, s[i].actors[a], NULL), NOH_OK);
     }
+    assert_int_equal(noh_stage_shift_origin(s[0].c.stage, by, NULL), NOH_OK);
     for (uint32_t k = 0; k < KINDS; k++) {
         const noh_stage_kind *used = &s[0].c.stage->kinds[k], *unused = &s[1].c.stage->kinds[k];
         const uint8_t *from = k ? used->characters : s[0].c.stage->state;
