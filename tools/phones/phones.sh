@@ -92,8 +92,14 @@ aarch64-linux-gnu-gcc -std=c99 -O1 -Wall -Wextra -idirafter /usr/include tools/p
 rm -rf "$folder/texts" && mkdir "$folder/texts"
 "$folder/texts.bin" "$folder/texts" >"$folder/names" || exit 1
 version=$(sed -n 's/^Version: //p' "$folder"/mesa_*.dsc | head -n 1)
+# What compilers see of a program: the text after its defines, so that a change compiles only the kinds that it concerns.
+text_of() {
+    for file in "$folder/texts/$1".*; do
+        sed '/^#line/d; s/^#\(version\|extension\)/\1/' "$file" | aarch64-linux-gnu-gcc -E -P -undef -nostdinc -x c -
+    done
+}
 while read -r name; do
-    echo "$name $(cat "$folder/texts/$name".* | sha256sum | cut -c1-32)-$version"
+    echo "$name $(text_of "$name" | sha256sum | cut -c1-32)-$version"
 done <"$folder/names" >"$folder/hashes"
 
 # compile GPU DRIVER VARIABLES: a file of figures for each program without one.
