@@ -62,7 +62,7 @@ int main(int argc, char **argv)
 {
     static noh_pack pack;
     static noh_stage_plan plan;
-    noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .root_up = 1 };
+    noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1 };
     const noh_appearance look = { .posed = 1 };
     noh_stage *stage;

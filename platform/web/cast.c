@@ -39,7 +39,6 @@ static noh_kind_desc kind_of(const noh_pack *pack, uint32_t skeleton, const web_
     k.layers = layers;
     k.layer_count = WEB_LAYERS;
     k.root_axes = NOH_ROOT_GROUND;
-    k.root_up = 1;
     k.inertia = 1;
     return k;
 }

@@ -368,6 +368,7 @@ uint32_t noh_controller_step(noh_controller *c, const noh_clip_set *set, uint32_
 #define NOH_ROOT_Z 4u
 #define NOH_ROOT_HEADING 8u
 #define NOH_ROOT_GROUND (NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_HEADING) /* for y up */
+#define NOH_ROOT_BY_GAME 16u                                         /* of noh_kind_desc.root_axes alone */
 
 /* A displacement: turn about the up axis, then translate. */
 typedef struct noh_root_pose {

@@ -205,10 +205,10 @@ uint32_t noh_crowd_hash(const noh_crowd *crowd);
  * above the ground. Without an idle clip the actor always walks. Without soles it turns about its middle at any time,
  * and below a quarter of the walk's speed it takes shorter steps: the walk blended with idle.
  *
- * The kind's clips must not move the actor themselves: set root_axes to NOH_ROOT_X | NOH_ROOT_Z (the heading of a root
- * stays in the pose), root_up to 1 and root_by_game to 1. Init measures how far the root moves in one loop; its sway
- * about the straight line is added to the actor's place. The layer is a base layer whose tracks belong to the walkers;
- * play other clips on layers above it.
+ * The kind's clips must not move the actor themselves: set root_axes to NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_BY_GAME (the
+ * heading of a root stays in the pose). Init measures how far the root moves in one loop; its sway about the straight
+ * line is added to the actor's place. The layer is a base layer whose tracks belong to the walkers; play other clips on
+ * layers above it.
  *
  * Walkers are one block without pointers. A copy of it, of the crowd and of the stage's state continues with the same
  * bits.

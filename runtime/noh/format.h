@@ -727,7 +727,7 @@ NOH_STATIC_ASSERT(sizeof(noh_pack_cover_header) == 32, pack_cover_header);
 #define NOH_MATCH_LEVELS 3u /* boxes of 16, 64 and 512 rows */
 
 typedef struct noh_pack_match_header {
-    uint32_t root_axes, root_up;             /* root motion that the features assume: noh_kind_desc has the same */
+    uint32_t root_axes, root_up;             /* root motion that the features assume: noh_kind_desc.root_axes, and y */
     uint32_t row_count;                      /* 1..NOH_MATCH_ROWS_MAX */
     uint32_t row_ticks;                      /* between two rows of a clip */
     uint32_t clip_count, clips_offset;       /* noh_pack_match_clip[] */

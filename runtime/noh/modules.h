@@ -403,7 +403,7 @@ noh_module noh_springs_module(const noh_world *world);
  *   noh_actor_match    how an actor is to move from now on
  *
  *   kind.match = noh_match_module(&match), kind.inertia = 1;
- *   kind.root_axes = NOH_ROOT_GROUND, kind.root_up = 1;
+ *   kind.root_axes = NOH_ROOT_GROUND;
  *   noh_match_goal goal = { .velocity = { 0, 0, 1.2f } };
  *   noh_actor_match(stage, actor, &goal, &error);
  *

@@ -98,7 +98,7 @@ typedef struct noh_lod_settings {
  * without it.
  *
  * Space     places are in the game's units. At scale 1 a model unit is one game unit. LOD counts a unit as a metre. y
- *           is up unless a kind sets another axis. Matrices are 3 rows of 4, position = rows * (x, y, z, 1).
+ *           is up. Matrices are 3 rows of 4, position = rows * (x, y, z, 1).
  * Time      ticks of 1/48,000 s (NOH_TICKS_PER_SECOND).
  * Threads   a stage belongs to one thread at a time; only noh_stage_job may be called from several at once. Stages may
  *           share packs, which are read-only.
@@ -203,11 +203,10 @@ typedef struct noh_kind_desc {
     uint32_t change_count;                /* fades and other changes over time at once; default (0) 3 for each track */
     uint32_t held_float_count; /* floats that the game may hold at once (noh_actor_hold_float); default (0) 8; NOH_NONE:
                                 * 0 */
-    uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none */
-    uint32_t root_up;          /* axis of the heading: 0 x, 1 y, 2 z; ignored without root_axes */
+    uint32_t root_axes;        /* NOH_ROOT_* that clips move the actor by; default (0) none. With NOH_ROOT_BY_GAME
+                                * they do not move it: noh_actor_root returns the motion */
     uint32_t sample_rate_needed; /* frames per second needed: of a clip with twice as many, half are decoded, into half
                                   * the bytes (low_motion.h); default (0) all frames */
-    int root_by_game;            /* 1: root motion does not move the actor; noh_actor_root returns it */
     int inertia;                 /* 1: room for NOH_PLAY_INERTIA: 48 bytes a joint and 8 a float for each actor */
     int unpickable;              /* 1: noh_stage_pick passes through */
     const noh_texture_set *texture_sets; /* [texture_set_count] for noh_appearance.texture_set; borrowed */

@@ -566,7 +566,6 @@ static void random_casts_use_what_is_planned(void **state)
             kinds[k].layers = test_random_below(&r, 2) ? layers : NULL;
             kinds[k].layer_count = kinds[k].layers ? 3 : 0;
             kinds[k].root_axes = test_random_below(&r, 2) ? NOH_ROOT_GROUND : 0;
-            kinds[k].root_up = 1;
         }
         c.desc.job_count = test_random_below(&r, 5);
         c.desc.slot_moves = test_random_below(&r, 5);

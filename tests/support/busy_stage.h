@@ -64,7 +64,6 @@ static inline void busy_stage_open(busy_stage *s, uint32_t jobs)
     for (uint32_t i = 0; i < KINDS; i++) {
         k[i].mesh = &c->packs[PUPPETS];
         k[i].root_axes = NOH_ROOT_GROUND;
-        k[i].root_up = 1;
         k[i].inertia = 1;
     }
     k[WALKERS].actor_count = BODIES;

@@ -62,7 +62,6 @@ static inline void cast_open(cast *c)
         c->kinds[i].actor_count = cast_counts[i];
     }
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
-    c->kinds[PUPPETS].root_up = 1;
     c->desc.kinds = c->kinds;
     c->desc.kind_count = CAST_KINDS;
 }

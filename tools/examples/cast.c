@@ -74,7 +74,6 @@ static int open_stage(cast *c, const noh_pack *mesh, const noh_pack *const *clip
         kinds[i].clip_packs = clips;
         kinds[i].clip_pack_count = clip_count;
         kinds[i].root_axes = NOH_ROOT_GROUND;
-        kinds[i].root_up = 1;
         kinds[i].springs = noh_springs_module(NULL); /* sleeves and hems swing */
     }
     if (noh_stage_plan_make(&desc, &gl.caps, &c->plan, &e)) return start_fail(&gl, "plan", &e);

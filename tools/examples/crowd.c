@@ -52,9 +52,7 @@ static int open_all(void)
     size_t bytes;
     void *memory;
     kind.ragdoll = noh_ragdoll_module(&dolls);
-    kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z;
-    kind.root_up = 1;
-    kind.root_by_game = 1; /* walkers move them */
+    kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_BY_GAME;
     if (noh_stage_plan_make(&desc, &gl.caps, &plan, &e)) return start_fail(&gl, "plan", &e);
     return MADE("stage", (size_t)plan.cpu_bytes, noh_stage_init(memory, bytes, &gl.device, &desc, &plan, &stage, &e)) ||
            MADE("crowd", noh_crowd_size(&square), noh_crowd_init(memory, bytes, &square, &crowd, &e)) ||

@@ -83,7 +83,7 @@ static void draw_pass(int blended)
 static int open_stage(void)
 {
     const noh_kind_desc kind = {
-        .name = "figures", .mesh = &pack, .actor_count = ACTORS, .root_axes = NOH_ROOT_GROUND, .root_up = 1
+        .name = "figures", .mesh = &pack, .actor_count = ACTORS, .root_axes = NOH_ROOT_GROUND
     };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = HEIGHT, .sort_blended = 1 };
     static noh_stage_plan plan;

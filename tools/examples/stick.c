@@ -50,7 +50,7 @@ int main(int argc, char **argv)
     feet.ground.world = &world;
     on_ground = noh_feet_modifier(&feet);
     kind.modifiers = &on_ground, kind.modifier_count = 1;
-    kind.root_axes = NOH_ROOT_GROUND, kind.root_up = 1;
+    kind.root_axes = NOH_ROOT_GROUND;
     kind.match = noh_match_module(NULL);
     if (noh_stage_plan_make(&desc, &gl.caps, &plan, &e)) return start_fail(&gl, "plan", &e);
     memory = malloc((size_t)plan.cpu_bytes);

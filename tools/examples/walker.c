@@ -21,7 +21,7 @@ int main(int argc, char **argv)
 {
     static noh_pack pack;
     static noh_stage_plan plan;
-    const noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .root_up = 1 };
+    const noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = 720, .gpu = &noh_stage_on_gl };
     const char *out = argc == 4 && !strcmp(argv[2], "-o") ? argv[3] : NULL;
     noh_stage *stage;

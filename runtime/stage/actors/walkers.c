@@ -144,10 +144,10 @@ noh_result noh_walkers_init(void *memory, size_t bytes, const noh_walkers_desc *
     noh_result result = check(desc, error);
     if (result) return result;
     const noh_stage_kind *k = kind_of(stage, desc, 1u + (desc->idle != NULL) + (desc->run != NULL));
-    if (!k || (k->set.roots && !k->desc->root_by_game)) {
+    if (!k || (k->set.roots && !(k->desc->root_axes & NOH_ROOT_BY_GAME))) {
         return noh_fail(
             error, NOH_ERR_ARG,
-            "walkers need root_by_game, a base layer with a track for each clip, and feet_modifier of their kind",
+            "walkers need NOH_ROOT_BY_GAME, a base layer with a track for each clip, and feet_modifier of their kind",
             desc->kind, 0);
     }
     result = noh_arena_open(&arena, memory, bytes, bytes_of(desc), error);

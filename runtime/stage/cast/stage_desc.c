@@ -221,8 +221,8 @@ static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
         if (d->nodes[i] >= (d->mesh->node_count ? d->mesh->node_count : d->mesh->runs[NOH_CHUNK_MESH].count))
             return "nodes of a kind: a node is not in the mesh's pack";
     }
-    if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y)) return "root_axes of a kind has unknown bits";
-    if (d->root_axes && d->root_up > 2u) return "root_up of a kind is not 0, 1 or 2";
+    if (d->root_axes & ~(NOH_ROOT_GROUND | NOH_ROOT_Y | NOH_ROOT_BY_GAME))
+        return "root_axes of a kind has unknown bits";
     if (d->change_count > NOH_CHANGES_MAX) return "change_count of a kind is above NOH_CHANGES_MAX";
     if (d->held_float_count != NOH_NONE && d->held_float_count > NOH_FLOATS_MAX)
         return "held_float_count of a kind is above NOH_FLOATS_MAX";
@@ -321,8 +321,8 @@ static int same_clips(const noh_kind_desc *a, const noh_kind_desc *b)
 
 static int same_play(const noh_kind_desc *a, const noh_kind_desc *b)
 {
-    return a->root_axes == b->root_axes && (!a->root_axes || a->root_up == b->root_up) &&
-           a->sample_rate_needed == b->sample_rate_needed && a->clip_reserve == b->clip_reserve && a->map == b->map;
+    return noh_stage_root_axes(a) == noh_stage_root_axes(b) && a->sample_rate_needed == b->sample_rate_needed &&
+           a->clip_reserve == b->clip_reserve && a->map == b->map;
 }
 
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind)
@@ -352,8 +352,8 @@ noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_sta
                                 .clip_packs = d.clip_packs,
                                 .clip_pack_count = d.clip_pack_count,
                                 .skeleton = d.skeleton,
-                                .root_axes = d.root_axes,
-                                .root_up = d.root_up,
+                                .root_axes = noh_stage_root_axes(&d),
+                                .root_up = NOH_STAGE_UP,
                                 .sample_rate_needed = d.sample_rate_needed,
                                 .reserve_bytes = d.clip_reserve,
                                 .map = d.map,

@@ -402,6 +402,11 @@ struct noh_stage_gpu {
  * only count). */
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
+/* The axes of its root motion. */
+static inline uint32_t noh_stage_root_axes(const noh_kind_desc *kind)
+{
+    return kind->root_axes & ~NOH_ROOT_BY_GAME;
+}
 /* The texture that stands for one of the kind's mesh pack in a set, 0 its own: its pack, and its index there. */
 uint32_t noh_stage_worn(const noh_kind_desc *kind, uint32_t set, uint32_t texture, const noh_pack **pack);
 /* Of a pack's mesh, with the levels that the plan may have: noh_kind_desc.finer, else `mesh`. */
@@ -429,6 +434,7 @@ extern const noh_layer_desc noh_stage_default_layers[3];
 uint32_t noh_stage_bank_kind(const noh_stage_desc *desc, uint32_t kind);
 noh_clip_bank_desc noh_stage_bank_desc(const noh_stage_desc *desc, const noh_stage_plan *plan, uint32_t kind);
 
+#define NOH_STAGE_UP 1u             /* y: the axis of an actor's heading */
 #define NOH_STAGE_VIEW_RAD 0.69813f /* of the view that plans count for: 40 degrees */
 
 /* The levels of a kind's actors, and their slots by an even spread. */

@@ -78,12 +78,12 @@ const noh_stage_event *noh_stage_events(const noh_stage *stage, uint32_t *count)
 
 /* ---- root motion ---- */
 
-static void drive(noh_stage_actor *a, const noh_root_pose *moved, uint32_t up)
+static void drive(noh_stage_actor *a, const noh_root_pose *moved)
 {
     double position[3], rotation[4];
     for (int i = 0; i < 3; i++) position[i] = (double)a->place.position[i] + (double)a->rest[i];
     for (int i = 0; i < 4; i++) rotation[i] = (double)a->place.rotation[i] + (double)a->rotation_rest[i];
-    noh_root_drive(up, moved, (double)a->place.scale, position, rotation);
+    noh_root_drive(NOH_STAGE_UP, moved, (double)a->place.scale, position, rotation);
     for (int i = 0; i < 3; i++) noh_split(position[i], &a->place.position[i], &a->rest[i]);
     for (int i = 0; i < 4; i++) noh_split(rotation[i], &a->place.rotation[i], &a->rotation_rest[i]);
     if (!NOH_PAGE) noh_stage_keep_within(&a->place, a->rest);
@@ -97,7 +97,7 @@ static void move_root(noh_stage_kind *k, uint32_t index, noh_stage_actor *a)
     noh_given_root given;
     const int is_given = type && type->source->root(k, index, &given);
     a->moved = noh_controller_root_motion_given(c, &k->set, is_given ? &given : NULL);
-    if (!k->desc->root_by_game && !a->parent && !noh_stage_is_carried(k, index)) drive(a, &a->moved, k->desc->root_up);
+    if (!(k->desc->root_axes & NOH_ROOT_BY_GAME) && !a->parent && !noh_stage_is_carried(k, index)) drive(a, &a->moved);
 }
 
 /* ---- a step ---- */

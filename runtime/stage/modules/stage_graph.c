@@ -163,7 +163,7 @@ static noh_result measure(const noh_kind_desc *d, const void *names, const noh_s
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "graphs of a kind: none of its packs has clips for them: set clips or clip_packs", n->kind, 0);
     }
-    needs->kind_bytes = carve_tables(&arena, list.count, n->shape.clip_count, d->root_axes != 0, &unused);
+    needs->kind_bytes = carve_tables(&arena, list.count, n->shape.clip_count, noh_stage_root_axes(d) != 0, &unused);
     for (uint32_t i = 0; i < list.count && result == NOH_OK; i++) {
         const noh_graph_pack_desc desc = graph_desc(d, &list, i, &n->shape);
         noh_graph_pack_needs own;
@@ -221,7 +221,7 @@ static noh_result init(noh_stage_kind *k, const void *names, noh_error *error)
     if (result != NOH_OK) {
         return result;
     }
-    at += carve_tables(&arena, list.count, k->bank->clips.clip_count, k->desc->root_axes != 0, &t);
+    at += carve_tables(&arena, list.count, k->bank->clips.clip_count, noh_stage_root_axes(k->desc) != 0, &t);
     t.shared->count = list.count;
     t.shared->graphs = t.graphs;
     join_tables(k, list.count, &t);

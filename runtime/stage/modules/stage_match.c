@@ -91,8 +91,8 @@ static const char *bad(const noh_kind_desc *d, const void *desc)
     noh_match_table table;
     if (!find_table(d, &table)) return "match of a kind: none of its packs has a table: use noh build --match";
     if (!d->inertia) return "match of a kind needs room for inertia: set noh_kind_desc.inertia";
-    if (d->root_axes != table.header->root_axes || d->root_up != table.header->root_up)
-        return "match of a kind: its table is for other root motion: set root_axes to NOH_ROOT_GROUND and root_up to 1";
+    if (noh_stage_root_axes(d) != table.header->root_axes || table.header->root_up != NOH_STAGE_UP)
+        return "match of a kind: its table is for other root motion: set root_axes to NOH_ROOT_GROUND";
     if (m.layer >= d->layer_count) return "match of a kind: layer is not below layer_count";
     if (!(m.response_s >= 0.02f && m.response_s <= 10.0f)) return "match of a kind: response_s must be 0.02 to 10";
     if (!(m.bias >= 0.01f && m.bias <= 1000.0f)) return "match of a kind: bias must be 0.01 to 1000";
@@ -382,7 +382,7 @@ static void turn_actor(matcher *w, float seconds)
     turn.turn = noh_turn_from_radians(by);
     for (int i = 0; i < 3; i++) position[i] = 0.0;
     for (int i = 0; i < 4; i++) rotation[i] = (double)a->place.rotation[i] + (double)a->rotation_rest[i];
-    noh_root_drive(1u, &turn, 1.0, position, rotation);
+    noh_root_drive(NOH_STAGE_UP, &turn, 1.0, position, rotation);
     for (int i = 0; i < 4; i++) noh_split(rotation[i], &a->place.rotation[i], &a->rotation_rest[i]);
     w->heading = heading_of(a->place.rotation);
 }
@@ -410,7 +410,7 @@ static void steer(noh_stage *s, noh_stage_kind *k, uint32_t index, uint32_t tick
     for (int i = 0; i < 2; i++) move(&response, g->wanted[i], &g->velocity[i], &g->change[i]);
     move(&response, g->heading + wrapped(g->wanted_heading - g->heading), &g->heading, &g->turn);
     g->heading = wrapped(g->heading);
-    if (m->desc.steer > 0.0f && !k->desc->root_by_game) turn_actor(&w, seconds);
+    if (m->desc.steer > 0.0f && !(k->desc->root_axes & NOH_ROOT_BY_GAME)) turn_actor(&w, seconds);
     g->since = ticks < UINT32_MAX - g->since ? g->since + ticks : UINT32_MAX;
     if (g->since < m->desc.search_ticks) return;
     g->since = 0;

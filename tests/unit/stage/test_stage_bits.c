@@ -53,7 +53,6 @@ static void open_show(show *s)
     }
     s->kinds[0].actor_count = PUPPETS;
     s->kinds[0].root_axes = NOH_ROOT_GROUND;
-    s->kinds[0].root_up = 1;
     s->kinds[0].inertia = 1;
     s->kinds[0].graphs = noh_graph_module("moves");
     s->joint = look_joint_of(&s->packs[0], "head");

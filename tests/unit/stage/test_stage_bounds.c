@@ -555,7 +555,7 @@ static void the_nearer_of_two_has_the_finer_level(void **state)
     c.desc.kind_count = 1;
     c.kinds[PUPPETS].actor_count = 2;
     c.kinds[PUPPETS].near_count = 1;
-    c.kinds[PUPPETS].root_by_game = 1;
+    c.kinds[PUPPETS].root_axes |= NOH_ROOT_BY_GAME;
     for (uint32_t round = 0; round < 60; round++) {
         const int close = round & 1u;
         const float near = test_random_float(&r, 1.0f, close ? 1.4f : 12.0f);

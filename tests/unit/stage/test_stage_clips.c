@@ -378,7 +378,7 @@ static void walkers_need_their_clips(void **state)
     show w;
     (void)state;
     open_show(&w, both > largest_clip() ? both : largest_clip(), 1);
-    w.c.kinds[0].root_by_game = 1;
+    w.c.kinds[0].root_axes |= NOH_ROOT_BY_GAME;
     make(&w);
     enter(w.c.stage, actors);
     memory = test_aligned(NULL, noh_walkers_size(&desc));

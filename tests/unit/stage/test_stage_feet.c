@@ -61,7 +61,6 @@ static void make_walk(walk *w, uint32_t actors, uint32_t jobs)
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].modifiers = &w->part;
     c->kinds[0].modifier_count = 1;
     c->desc.kinds = c->kinds;

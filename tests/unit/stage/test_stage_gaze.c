@@ -53,7 +53,6 @@ static void make_scene(scene *s, uint32_t actors, uint32_t jobs)
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].modifiers = s->parts;
     c->kinds[0].modifier_count = 2;
     c->desc.kinds = c->kinds;

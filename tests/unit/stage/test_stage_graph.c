@@ -89,7 +89,6 @@ static void open_cast(cast *c, uint32_t actors)
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].inertia = 1;
     c->kinds[0].graphs = noh_graph_module("moves");
     c->desc.kinds = c->kinds;
@@ -248,7 +247,7 @@ static void an_actor_shows_the_graphs_own_pose(void **state)
     cast c;
     (void)state;
     open_cast(&c, 1);
-    c.kinds[0].root_by_game = 1;
+    c.kinds[0].root_axes |= NOH_ROOT_BY_GAME;
     cast_make(&c, NULL);
     open_alone(&c.packs[0], a);
     b = names_of(c.stage);

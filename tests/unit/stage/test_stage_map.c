@@ -193,7 +193,6 @@ static void root_motion_is_of_the_pose_that_is_shown(void **state)
     make_map(&w);
     for (int i = 0; i < 2; i++) w.map.limbs[i].stance[0] += (i ? -0.5f : 0.5f) * w.map.limbs[i].length;
     w.c.kinds[0].root_axes = NOH_ROOT_X | NOH_ROOT_Y | NOH_ROOT_Z;
-    w.c.kinds[0].root_up = 1;
     w.c.desc.full_detail = 1;
     cast_make(&w.c, NULL);
     enter(&w);
@@ -428,7 +427,6 @@ static void it_is_saved_and_forked(void **state)
         show *w = i ? &b : &a;
         make_map(w);
         w->c.kinds[0].root_axes = NOH_ROOT_GROUND;
-        w->c.kinds[0].root_up = 1;
         w->c.desc.cpu_bytes_max = 1; /* as few decoded segments as there can be */
         assert_int_equal(noh_stage_plan_make(&w->c.desc, NULL, &w->c.plan, &said), NOH_ERR_MEMORY);
         w->c.desc.cpu_bytes_max = said.need;

@@ -24,7 +24,6 @@ static void describe(cast *c, const noh_kind_match *match)
     c->kinds[0].clips = &c->packs[ROAM];
     c->kinds[0].actor_count = 2;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].inertia = 1;
     c->kinds[0].match = noh_match_module(match);
     c->desc.kinds = c->kinds;

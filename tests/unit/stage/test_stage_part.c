@@ -14,7 +14,6 @@ static void open_cast(cast *c, uint32_t actors, const noh_modifier *parts, uint3
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].modifiers = parts;
     c->kinds[0].modifier_count = part_count;
     c->desc.kinds = c->kinds;

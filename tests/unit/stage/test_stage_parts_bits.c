@@ -151,7 +151,6 @@ static void open_show(show *s)
     s->kind.mesh = &s->pack;
     s->kind.actor_count = ACTORS;
     s->kind.root_axes = NOH_ROOT_GROUND;
-    s->kind.root_up = 1;
     s->kind.inertia = 1;
     s->kind.modifiers = s->parts;
     s->kind.modifier_count = PARTS;

@@ -26,7 +26,6 @@ static void open_cast(cast *c, uint32_t actors, const noh_kind_ragdoll *ragdoll,
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].ragdoll = noh_ragdoll_module(ragdoll);
     c->kinds[0].inertia = 1;
     c->desc.kinds = c->kinds;

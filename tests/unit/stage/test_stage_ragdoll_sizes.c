@@ -189,7 +189,6 @@ static void open_scene_with(scene *s, const noh_kind_ragdoll *ragdoll, uint32_t 
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = SIZES;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].ragdoll = noh_ragdoll_module(&s->ragdoll);
     c->kinds[0].inertia = 1;
     c->desc.kinds = c->kinds;

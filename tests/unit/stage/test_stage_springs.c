@@ -76,7 +76,6 @@ static void open_dancers(cast *c, sleeves *s, uint32_t actors, uint32_t jobs, ui
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].modifiers = &s->part;
     c->kinds[0].modifier_count = 1;
     c->desc.kinds = c->kinds;
@@ -297,7 +296,6 @@ static void open_swingers(cast *c, uint32_t actors, int without)
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = actors;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     if (!without) c->kinds[0].springs = noh_springs_module(NULL);
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;

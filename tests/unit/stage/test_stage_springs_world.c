@@ -30,7 +30,6 @@ static void open_scene(scene *s, const noh_world *world, uint32_t jobs, float sc
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = ACTORS;
     c->kinds[0].root_axes = NOH_ROOT_GROUND;
-    c->kinds[0].root_up = 1;
     c->kinds[0].springs = noh_springs_module(world);
     c->desc.kinds = c->kinds;
     c->desc.kind_count = 1;

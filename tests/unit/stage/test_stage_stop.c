@@ -25,7 +25,6 @@ static void open_stage(cast *c)
     c->kinds[0].mesh = &c->packs[0];
     c->kinds[0].actor_count = 3;
     c->kinds[0].root_axes = NOH_ROOT_GROUND | NOH_ROOT_HEADING;
-    c->kinds[0].root_up = 1;
     c->kinds[0].graphs = noh_graph_module("moves");
     c->kinds[0].layers = layers;
     c->kinds[0].layer_count = LAYERS;

@@ -93,7 +93,6 @@ static void open_cast(cast *c)
         c->kinds[k].actor_count = counts[k];
     }
     c->kinds[PUPPETS].root_axes = NOH_ROOT_GROUND;
-    c->kinds[PUPPETS].root_up = 1;
     c->kinds[PUPPETS].clip_reserve = 1u << 16;
     c->kinds[PUPPETS].graphs = noh_graph_module("moves");
     joint = look_joint_of(&c->packs[PUPPETS], "head");

@@ -24,7 +24,6 @@ static void wardrobe_open(cast *c, uint32_t jobs)
         c->kinds[i].actor_count = ACTORS;
     }
     c->kinds[BODIES].root_axes = NOH_ROOT_GROUND;
-    c->kinds[BODIES].root_up = 1;
     c->kinds[COATS].worn_by = 1u << BODIES;
     c->kinds[COATS].springs = noh_springs_module(NULL);
     c->desc.kinds = c->kinds;

@@ -102,9 +102,7 @@ static void open_street_of(street *s, uint32_t count, uint32_t near_max, uint32_
     s->ragdoll.world = &s->world;
     k->ragdoll = noh_ragdoll_module(dolls ? &s->ragdoll : NULL);
     k->inertia = dolls != 0;
-    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
-    k->root_up = 1;
-    k->root_by_game = 1;
+    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_BY_GAME;
     k->modifiers = &s->part;
     k->modifier_count = 1;
     s->cast.desc.kinds = s->cast.kinds;

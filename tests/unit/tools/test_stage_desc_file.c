@@ -74,7 +74,7 @@ static void settings_arrive_in_their_fields(void **state)
     assert_true(k[0].actor_count == 20 && k[0].near_count == 4 && k[0].middle_count == 8 && k[0].finest_level == 7);
     assert_true(k[0].visible_max == 15 && k[1].visible_max == 0);
     assert_true(k[0].held_float_count == NOH_NONE && k[1].held_float_count == 9);
-    assert_true(k[0].root_axes == NOH_ROOT_GROUND && k[0].root_up == 1 && k[1].root_axes == 0);
+    assert_true(k[0].root_axes == NOH_ROOT_GROUND && k[1].root_axes == 0);
     assert_true(k[0].clip_pack_count == 2 && k[0].clip_packs[0] == k[0].mesh && k[0].clip_packs[1] == k[1].mesh);
     assert_true(!k[0].clips && !k[1].clips && !k[1].clip_packs && !k[1].layers && k[0].layer_count == 3);
     assert_true(k[0].layers[0].mode == NOH_LAYER_BASE && !k[0].layers[0].joints && !k[0].layers[0].track_count);
@@ -117,7 +117,6 @@ static noh_stage_plan plan_in_c(uint64_t bytes_max, const noh_stage_gpu *drawn, 
     kinds[0].actor_count = 20;
     kinds[0].near_count = 4;
     kinds[0].root_axes = NOH_ROOT_GROUND;
-    kinds[0].root_up = 1;
     kinds[0].layers = layers;
     kinds[0].layer_count = 2;
     kinds[1].name = "mask";

@@ -28,7 +28,7 @@ static int fail(const char *what)
 int main(int argc, char **argv)
 {
     const char *clip = argc > 2 ? argv[2] : "walk";
-    const noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .root_up = 1 };
+    const noh_kind_desc kind = { .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND };
     const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .encode_srgb = 1, .gpu = &noh_stage_on_gl };
     float grey[4] = { 0.16f, 0.17f, 0.2f, 1.0f }, far = 1.0f, sphere[4];
     FILE *in = argc > 1 ? fopen(argv[1], "rb") : NULL;

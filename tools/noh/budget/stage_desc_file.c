@@ -174,7 +174,6 @@ static int begin_kind(reader *r)
     r->kind = &r->file->kinds[d->kind_count++];
     r->kind_line = r->line;
     r->kind->name = r->words[1].text;
-    r->kind->root_up = 1; /* y, as packs have it */
     r->kind->springs = noh_springs_module(NULL);
     return 0;
 }

@@ -153,7 +153,6 @@ static const setting settings[] = {
     { "held_float_count", SET_HELD, 1, 0, offsetof(noh_kind_desc, held_float_count), 0, NOH_FLOATS_MAX },
     { "sample_rate_needed", SET_COUNT, 1, 0, offsetof(noh_kind_desc, sample_rate_needed), 1, 1000 },
     { "root_axes", SET_ROOT, 1, 0, 0, 0, 0 },
-    { "root_up", SET_COUNT, 1, 0, offsetof(noh_kind_desc, root_up), 0, 2 },
     { "layer", SET_LAYER, 1, 1, 0, 0, 0 },
     { "map", SET_MAP, 1, 0, 0, 0, 0 },
     { "finer", SET_FINER, 1, 0, 0, 0, 0 },

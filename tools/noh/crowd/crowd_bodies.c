@@ -76,9 +76,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->kind.layers = layers;
     c->kind.layer_count = LAYERS;
     c->kind.held_float_count = NOH_NONE;
-    c->kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z;
-    c->kind.root_up = 1;
-    c->kind.root_by_game = 1;
+    c->kind.root_axes = NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_BY_GAME;
     c->kind.unpickable = 1;
     c->kind.springs = noh_springs_module(NULL);
     c->desc.kinds = &c->kind;

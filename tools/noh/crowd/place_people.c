@@ -59,9 +59,7 @@ static void fill_kind(place_people *p, const pack_file *file, uint32_t agents, u
     k->layers = layers;
     k->layer_count = PLACE_LAYERS;
     k->held_float_count = 2;
-    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z;
-    k->root_up = 1;
-    k->root_by_game = 1;
+    k->root_axes = NOH_ROOT_X | NOH_ROOT_Z | NOH_ROOT_BY_GAME;
     k->unpickable = 1;
     k->springs = noh_springs_module(NULL);
     k->modifiers = p->parts;

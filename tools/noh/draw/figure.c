@@ -61,7 +61,6 @@ static int add_kind(figure *f, uint32_t skeleton, const uint32_t *nodes, uint32_
     k->inertia = d->inertia;
     k->graphs = noh_graph_module(d->graphs);
     k->root_axes = d->root_axes;
-    k->root_up = 1;
     k->unpickable = !d->pickable && !d->marks;
     if (!d->without_springs) k->springs = noh_springs_module(NULL);
     k->weight_rules = d->weight_rules;

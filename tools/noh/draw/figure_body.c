@@ -160,7 +160,6 @@ static int add_to(figure_body *b, noh_kind_desc *kind, uint32_t k, noh_error *er
         b->feet[k].ground.world = &b->world;
         b->parts[k][count++] = noh_feet_modifier(&b->feet[k]);
         kind->root_axes = NOH_ROOT_GROUND;
-        kind->root_up = 1;
     }
     kind->modifiers = count ? b->parts[k] : NULL;
     kind->modifier_count = count;

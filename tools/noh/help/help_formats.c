@@ -284,7 +284,6 @@ const char *const help_formats_text[] = {
     "     held_float_count N                          floats the game may hold (8; 0: none)",
     "     sample_rate_needed N                        sufficient frames a second: clips of at least twice the rate are halved (all)",
     "     root_axes ground|x,y,z,heading              axes of root motion; ground: x,z,heading",
-    "     root_up 0|1|2                               the axis of the heading: x, y, z (1)",
     "     layer NAME [base|over|add] [joints=NAMES] [floats=NAMES] [tracks=N]",
     "Options of noh budget override the file. Without layers, a kind has body, face and add. NAMES are separated by blanks; '-' before a "
     "name excludes it; an empty list means none. Names are checked when the stage is made. tracks is 1 to 8 (2).",

@@ -36,7 +36,6 @@ static void fill_desc(session_stage *s, uint32_t actor_count)
     s->kind.skeleton = s->pack->runs[NOH_CHUNK_SKELETON].count ? 0u : NOH_NONE;
     s->kind.inertia = s->pack->runs[NOH_CHUNK_SKELETON].count != 0;
     if (s->pack->runs[NOH_CHUNK_SKELETON].count) s->kind.root_axes = NOH_ROOT_GROUND;
-    s->kind.root_up = 1;
     s->kind.graphs = noh_graph_module(s->pack->runs[NOH_CHUNK_GRAPH].count ? "*" : NULL);
     s->kind.springs = noh_springs_module(NULL);
     s->desc.kinds = &s->kind;
