@@ -103,11 +103,12 @@ noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *
 
 /* rest = inverse(E) * root: subtract E's translation, then turn both the remaining translation and the rotation back by
  * the heading, except for `facing`. */
-static void remove_motion(uint32_t axes, uint32_t up, uint32_t facing, noh_transform *root)
+void noh_root_remove(uint32_t axes, uint32_t up, uint32_t facing, noh_transform *root)
 {
     noh_root_pose e = noh_root_extract(axes, up, root);
     float back[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
     double rest[3];
+    NOH_ASSERT(root && axes <= 15u && up <= 2u);
     e.turn -= facing;
     /* half of minus the turn, as a signed angle: the quaternion of the inverse heading */
     noh_sin_cos(-0.5f * noh_radians_from_turn(e.turn), &back[up], &back[3]);
@@ -121,12 +122,6 @@ static void remove_motion(uint32_t axes, uint32_t up, uint32_t facing, noh_trans
     noh_quat_mul(back, root->rotation, root->rotation);
 }
 
-void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root)
-{
-    NOH_ASSERT(root && axes <= 15u && up <= 2u);
-    remove_motion(axes, up, 0u, root);
-}
-
 void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_tick, uint32_t joint_count,
                           noh_transform *pose, float *floats)
 {
@@ -134,7 +129,7 @@ void noh_root_sample_rest(const noh_clip_set *set, uint32_t clip, uint32_t clip_
                joint_count <= set->joint_count);
     set->sample(set->user, clip, clip_tick, joint_count, pose, set->float_count, floats);
     if (set->roots && set->roots[clip].axes) {
-        remove_motion(set->roots[clip].axes, set->roots[clip].up, set->roots[clip].facing, &pose[0]);
+        noh_root_remove(set->roots[clip].axes, set->roots[clip].up, set->roots[clip].facing, &pose[0]);
     }
 }
 
@@ -283,12 +278,6 @@ noh_root_pose noh_root_between(const noh_clip_set *set, const noh_root_track *tr
     back = noh_root_compose(up, &back, &step);
     back = noh_root_compose(up, &back, &start_back);
     return noh_root_compose(up, &back, &b);
-}
-
-noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
-                          int64_t position)
-{
-    return noh_root_between(set, track, clip, loop, 0, position);
 }
 
 /* v turned by q, as noh_quat_rotate does it. */

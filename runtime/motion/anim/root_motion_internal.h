@@ -28,7 +28,7 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
  * L^n has a closed form, so a million passes are as exact as one: headings are 32-bit fractions of a turn, which add
  * without rounding, and the sum of the n displacements is a geometric series of rotations.
  *
- *   noh_root_at       displacement since the start of a clip, after any number of passes
+ *   noh_root_between  displacement from one position to another, over any number of passes
  *   noh_controller_root_motion (clip.h)   weighted displacement of all tracks since the last call
  *
  * source  Granberg 2009, chapter 16, names root motion; adding its displacements in floats drifts
@@ -38,13 +38,9 @@ noh_root_pose noh_root_inverse(uint32_t up, const noh_root_pose *a);
 #define NOH_ROOT_SEAM_TICKS 200u /* 1/240 s: less than a frame, so no position is off by more than its clip's error */
 
 /* Split the root joint's transform: extract returns E, with the heading relative to the model's axes; remove leaves the
- * transform without E. */
+ * transform without E, except for `facing` of its heading. */
 noh_root_pose noh_root_extract(uint32_t axes, uint32_t up, const noh_transform *root);
-void noh_root_remove(uint32_t axes, uint32_t up, noh_transform *root);
-
-/* Displacement from position 0 to an unwrapped position. */
-noh_root_pose noh_root_at(const noh_clip_set *set, const noh_root_track *track, uint32_t clip, noh_loop loop,
-                          int64_t position);
+void noh_root_remove(uint32_t axes, uint32_t up, uint32_t facing, noh_transform *root);
 
 /* Sample a clip for its pose: without root motion, if the set extracts it.
  * shapes  pose[joint_count], floats[the set's float_count] */

@@ -530,18 +530,6 @@ int noh_clip_bank_moves(const noh_clip_bank *bank, uint32_t index, uint32_t grou
     return 0;
 }
 
-int noh_clip_bank_controller_moves(const noh_clip_bank *bank, const noh_controller *controller, uint32_t group)
-{
-    NOH_ASSERT(bank && controller && controller->clip_count == bank->clips.clip_count);
-    for (uint32_t i = 0; i < controller->track_count; i++) {
-        const noh_track *track = noh_controller_track(controller, i);
-        if (track->mode == NOH_TRACK_ON && noh_clip_bank_moves(bank, track->clip, group)) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 uint32_t noh_clip_bank_node_group(const noh_clip_bank *bank, uint32_t node)
 {
     for (uint32_t g = 0; node != NOH_NONE && g < bank->group_count; g++) {

@@ -11,11 +11,6 @@ extern "C" {
 /* Test whether a clip moves the floats of a group. If not, they have their defaults. */
 int noh_clip_bank_moves(const noh_clip_bank *bank, uint32_t index, uint32_t group);
 
-/* Test whether a controller moves the floats of a group: whether some track that is on, at any weight, plays a clip
- * that moves them. A game that sets face weights itself keeps its own if this is 0, and uses the pose's if it is 1.
- * ranges   a controller of the bank's set */
-int noh_clip_bank_controller_moves(const noh_clip_bank *bank, const noh_controller *controller, uint32_t group);
-
 /* Get the float group with the morph weights of a node, or of the first node that draws a mesh.
  * returns  NOH_NONE if that node has no targets or does not exist */
 uint32_t noh_clip_bank_node_group(const noh_clip_bank *bank, uint32_t node);

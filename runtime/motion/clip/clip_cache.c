@@ -588,11 +588,6 @@ noh_clip_cache_stats noh_clip_cache_stats_of(const noh_clip_cache *cache)
     return cache->stats;
 }
 
-uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache)
-{
-    return cache->cached_count;
-}
-
 int noh_clip_cache_holds_all(const noh_clip_cache *cache)
 {
     for (uint32_t i = 0; i < cache->clip_count; i++) {

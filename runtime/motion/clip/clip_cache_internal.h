@@ -35,9 +35,6 @@ size_t noh_clip_cache_needs_size(const noh_clip_cache_needs *needs, uint32_t cac
 uint32_t noh_clip_cache_want_frames(noh_clip_cache *cache, uint32_t clip, uint32_t first, uint32_t last,
                                     uint32_t joint_count);
 
-/* Get the number of segments that it holds at the same time. */
-uint32_t noh_clip_cache_capacity(const noh_clip_cache *cache);
-
 /* Test whether every segment of every clip is decoded; nothing is evicted then, and requests are unnecessary.
  * Linear in the segments; stops at the first one that is missing. */
 int noh_clip_cache_holds_all(const noh_clip_cache *cache);

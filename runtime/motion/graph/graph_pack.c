@@ -396,27 +396,17 @@ uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, c
     return NOH_NONE;
 }
 
-/* Find a node by name, of a kind from `kind` to `last`. */
-static const noh_pack_graph_node *find_node(const noh_pack_graph *g, const char *name, uint32_t kind, uint32_t last)
+uint32_t noh_graph_pack_find_machine(const noh_graph_pack *made, const char *name)
 {
+    const noh_pack_graph *g = &made->source;
     const uint32_t hash = noh_hash_name(name);
     for (uint32_t i = 0; i < g->header->node_count; i++) {
         const noh_pack_graph_node *n = &g->nodes[i];
-        if (n->kind >= kind && n->kind <= last && is_named(g->pack, n->name, n->name_hash, name, hash)) return n;
+        if (n->kind >= NOH_PACK_NODE_MACHINE && n->kind <= NOH_PACK_NODE_ONE_SHOT &&
+            is_named(g->pack, n->name, n->name_hash, name, hash))
+            return n->index;
     }
-    return NULL;
-}
-
-uint32_t noh_graph_pack_find_machine(const noh_graph_pack *made, const char *name)
-{
-    const noh_pack_graph_node *n = find_node(&made->source, name, NOH_PACK_NODE_MACHINE, NOH_PACK_NODE_ONE_SHOT);
-    return n ? n->index : NOH_NONE;
-}
-
-uint32_t noh_graph_pack_find_track(const noh_graph_pack *made, const char *name)
-{
-    const noh_pack_graph_node *n = find_node(&made->source, name, NOH_PACK_NODE_CLIP, NOH_PACK_NODE_CLIP);
-    return n ? n->index : NOH_NONE;
+    return NOH_NONE;
 }
 
 static const noh_pack_graph_node *machine_at(const noh_pack_graph *g, uint32_t machine)
@@ -446,18 +436,6 @@ const char *noh_graph_pack_state_name(const noh_graph_pack *made, uint32_t machi
     const noh_pack_graph_node *n = machine_at(g, machine);
     return n && state < n->child_count ? noh_pack_string(g->pack, g->nodes[g->children[n->first_child + state]].name)
                                        : "";
-}
-
-uint32_t noh_graph_pack_find_state(const noh_graph_pack *made, uint32_t machine, const char *name)
-{
-    const noh_pack_graph *g = &made->source;
-    const noh_pack_graph_node *n = machine_at(g, machine);
-    const uint32_t hash = noh_hash_name(name);
-    for (uint32_t i = 0; n && i < n->child_count; i++) {
-        const noh_pack_graph_node *child = &g->nodes[g->children[n->first_child + i]];
-        if (is_named(g->pack, child->name, child->name_hash, name, hash)) return i;
-    }
-    return NOH_NONE;
 }
 
 noh_result noh_graph_pack_set_param(const noh_graph_pack *made, noh_graph_state *state, uint32_t param, float value)

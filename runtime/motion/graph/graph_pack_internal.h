@@ -51,16 +51,8 @@ uint32_t noh_graph_pack_find_value(const noh_graph_pack *made, uint32_t param, c
  * returns  its number, or NOH_NONE */
 uint32_t noh_graph_pack_find_machine(const noh_graph_pack *made, const char *name);
 
-/* Find a state of a machine by the name of its child node.
- * returns  its number among the machine's children, or NOH_NONE */
-uint32_t noh_graph_pack_find_state(const noh_graph_pack *made, uint32_t machine, const char *name);
-
 /* Get the name of a state, numbered as by noh_graph_machine_state; "" if there is no such machine or state. */
 const char *noh_graph_pack_state_name(const noh_graph_pack *made, uint32_t machine, uint32_t state);
-
-/* Find the track that plays a clip node, by the node's name, for noh_controller_track and noh_event.track.
- * returns  its index, or NOH_NONE */
-uint32_t noh_graph_pack_find_track(const noh_graph_pack *made, const char *name);
 
 /* Set a parameter, clamped to its range; whole numbers and ENUM values are rounded. Set a trigger to 1 to fire it;
  * taking it resets it to 0.

@@ -303,26 +303,6 @@ float noh_lod_fade(const noh_lod *d, int64_t clock)
     return x * x * (3.0f - 2.0f * x);
 }
 
-uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2])
-{
-    const float fade = noh_lod_fade(d, clock);
-    const noh_lod_part whole = { fade < 1.0f ? d->mesh_before : d->mesh, 0.0f, 1.0f };
-    const noh_lod_part new_part = { d->mesh, 0.0f, fade }, old_part = { d->mesh_before, fade, 1.0f };
-    NOH_ASSERT(parts);
-    if (fade > 0.0f && fade < 1.0f) {
-        parts[0] = new_part;
-        parts[1] = old_part;
-        return 2;
-    }
-    parts[0] = whole;
-    return 1;
-}
-
-uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock)
-{
-    return noh_lod_fade(d, clock) < 1.0f && d->mesh_before < d->mesh ? d->mesh_before : d->mesh;
-}
-
 float noh_lod_error_pixels(const noh_lod *d)
 {
     NOH_ASSERT(d);

@@ -46,19 +46,6 @@ noh_result noh_lod_table_check(const noh_lod_table *table, noh_error *error);
  * errors  ARG `what` names the field */
 noh_result noh_lod_settings_check(const noh_lod_settings *settings, noh_error *error);
 
-/* One draw of a dithered fade: a level and its share of the pixels, as in noh_gl_lod. */
-typedef struct noh_lod_part {
-    uint32_t level;
-    float from, to;
-} noh_lod_part;
-
-/* Get the draws of a frame: one part with all pixels or, during a fade, the new level and the old one. Returns their
- * number. */
-uint32_t noh_lod_parts(const noh_lod *d, int64_t clock, noh_lod_part parts[2]);
-
-/* The finest level drawn from now to the end of the fade: for noh_gl_morph_set_lod. */
-uint32_t noh_lod_drawn(const noh_lod *d, int64_t clock);
-
 #ifdef __cplusplus
 }
 #endif

@@ -233,11 +233,6 @@ static uint32_t instance_of(uint64_t key)
     return INSTANCE_LAST - ((uint32_t)key & INSTANCE_LAST);
 }
 
-void noh_lod_pools_ask(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority)
-{
-    noh_lod_pools_ask_at(p, instance, level, priority, 0.0f, 0);
-}
-
 void noh_lod_pools_ask_at(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority, float distance,
                           int afresh)
 {
@@ -568,11 +563,6 @@ void noh_lod_pools_share_some(noh_lod_pools *p, uint32_t moves)
         mark(&p->stats.used_high_water[i], p->stats.used[i]);
     }
     NOH_VALIDATE(is_consistent(p));
-}
-
-void noh_lod_pools_share(noh_lod_pools *p)
-{
-    noh_lod_pools_share_some(p, UINT32_MAX);
 }
 
 /* ---- results ---- */

@@ -7,8 +7,8 @@
  *
  * A frame of a game:
  *   noh_lod_pools_begin(pools);
- *   noh_lod_pools_ask(pools, i, noh_lod_finest(&lod), pixels_per_metre);  for each drawn instance
- *   noh_lod_pools_share(pools);
+ *   noh_lod_pools_ask_at(pools, i, noh_lod_finest(&lod), pixels_per_metre, distance, 0);  for each drawn instance
+ *   noh_lod_pools_share_some(pools, moves);
  *   slot = noh_lod_pools_slot(pools, i);     for each drawn instance: draw it at slot.level or coarser, and
  *   noh_lod_set_limit(&lod, slot.level);     choose no finer level from the next frame on
  *
@@ -80,23 +80,17 @@ noh_result noh_lod_pools_check(const void *copy, const noh_lod_pools *like, noh_
 
 void noh_lod_pools_begin(noh_lod_pools *pools);
 
-/* Request a slot for this frame; at most once per instance. An instance without a request loses its slot.
+/* Request a slot for this frame; at most once per instance. An instance without a request loses its slot. With equal
+ * priorities the nearer instance comes first, to a five-hundredth of its distance.
  * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is
- *         0) */
-void noh_lod_pools_ask(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority);
-
-/* Request a slot; with equal priorities the nearer instance comes first, to a five-hundredth of its distance.
- * ranges  distance at least 0, in any unit; afresh 1: its distance has changed since it got its slot, so holding the
+ *         0). distance at least 0, in any unit; afresh 1: its distance has changed since it got its slot, so holding the
  *         slot does not raise its priority */
 void noh_lod_pools_ask_at(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority, float distance,
                           int afresh);
 
-/* Assign slots to all requests that are not left out, as far as there are slots. Linear in the requests; n log n if a
- * pool has too few slots and requests must be sorted. */
-void noh_lod_pools_share(noh_lod_pools *pools);
-
-/* Assign slots, but reassign at most `moves` in this frame; below 2 counts as 2, because an exchange moves two.
- * Repeated frames with the same requests end with the result of noh_lod_pools_share. */
+/* Assign slots to all requests that are not left out, as far as there are slots, but reassign at most `moves` in this
+ * frame; below 2 counts as 2, because an exchange moves two. Repeated frames with the same requests end with the result
+ * of UINT32_MAX moves. Linear in the requests; n log n if a pool has too few slots and requests must be sorted. */
 void noh_lod_pools_share_some(noh_lod_pools *pools, uint32_t moves);
 
 /* The slot of an instance that requested one in this frame. */

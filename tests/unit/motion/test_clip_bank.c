@@ -871,38 +871,6 @@ static void many_named_floats_are_counted(void **state)
     }
 }
 
-/* Of all its tracks, those that are on count, whatever their weight: time that only runs shows nothing. */
-static void a_controller_moves_what_its_tracks_show(void **state)
-{
-    size_t count;
-    uint8_t *made = named_floats_pack(&count);
-    const noh_pack packed = test_open(made, count);
-    noh_clip_bank *set = set_of(&packed);
-    clip_player p;
-    noh_track_desc d;
-    (void)state;
-    memset(&d, 0, sizeof d);
-    clip_player_open(&p, set);
-    for (uint32_t g = 0; g < 3; g++) {
-        assert_int_equal(noh_clip_bank_controller_moves(set, p.c, g), 0);
-    }
-    d.clip = noh_clip_bank_find(set, "two");
-    assert_int_equal(noh_controller_start(p.c, &set->clips, 1, &d, NULL), NOH_OK);
-    for (uint32_t g = 0; g < 3; g++) {
-        assert_int_equal(noh_clip_bank_controller_moves(set, p.c, g), g != 1); /* glow and cold */
-    }
-    d.clip = noh_clip_bank_find(set, "one");
-    assert_int_equal(noh_controller_start(p.c, &set->clips, 0, &d, NULL), NOH_OK);
-    assert_int_equal(noh_controller_set_weight(p.c, 0, 0.0f), NOH_OK);
-    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 1), 1);
-    assert_int_equal(noh_controller_set_mode(p.c, 0, NOH_TRACK_TIME_ONLY), NOH_OK);
-    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 1), 0);
-    assert_int_equal(noh_clip_bank_controller_moves(set, p.c, 0), 1);
-    clip_player_close(&p);
-    free(set);
-    free(made);
-}
-
 /* ---- what is refused ---- */
 
 static void descs_are_checked(void **state)
@@ -987,7 +955,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_fit_a_mesh_with_an_added_target),
     cmocka_unit_test(named_floats_are_shared),
     cmocka_unit_test(many_named_floats_are_counted),
-    cmocka_unit_test(a_controller_moves_what_its_tracks_show),
+
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(a_pack_without_clips_is_not_found),
     cmocka_unit_test(lies_are_told_with_the_clip),

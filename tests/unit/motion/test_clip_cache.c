@@ -496,7 +496,7 @@ static void memory_and_descs_are_checked(void **state)
     assert_int_equal(error.need, bytes);
     assert_null(cache);
     assert_int_equal(noh_clip_cache_init(memory, bytes, &desc, &cache, &error), NOH_OK);
-    assert_int_equal(noh_clip_cache_capacity(cache), 4);
+    assert_int_equal(cache->cached_count, 4);
     desc.clip_count = NOH_CLIP_CACHE_CLIPS_MAX + 1u;
     assert_int_equal(noh_clip_cache_init(memory, bytes, &desc, &cache, &error), NOH_ERR_ARG);
     desc.clip_count = 0;

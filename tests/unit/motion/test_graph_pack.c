@@ -55,6 +55,23 @@ static noh_graph_pack *make(const noh_graph_pack_desc *desc)
     return made;
 }
 
+/* A state of a machine by the name of its child node, and the track that plays a clip node: NOH_NONE if there is none. */
+static uint32_t find_state(const noh_graph_pack *made, uint32_t machine, const char *name)
+{
+    for (uint32_t i = 0; noh_graph_pack_state_name(made, machine, i)[0]; i++)
+        if (strcmp(noh_graph_pack_state_name(made, machine, i), name) == 0) return i;
+    return NOH_NONE;
+}
+
+static uint32_t find_track(const noh_graph_pack *made, const char *name)
+{
+    const noh_pack_graph *g = &made->source;
+    for (uint32_t i = 0; i < g->header->node_count; i++)
+        if (g->nodes[i].kind == NOH_PACK_NODE_CLIP && strcmp(noh_pack_string(g->pack, g->nodes[i].name), name) == 0)
+            return g->nodes[i].index;
+    return NOH_NONE;
+}
+
 typedef struct player {
     noh_graph_pack *made;
     noh_graph_state *state;
@@ -159,12 +176,12 @@ static void states_are_played_by_name(void **state)
     const uint32_t states = noh_graph_pack_find_machine(p.made, "states");
     (void)state;
     assert_int_equal(noh_graph_pack_find_machine(p.made, "walk"), NOH_NONE); /* a node, but no machine */
-    assert_int_equal(noh_graph_pack_find_state(p.made, states, "aim"), 1);
-    assert_int_equal(noh_graph_pack_find_state(p.made, states, "walk"), NOH_NONE);
-    assert_int_equal(noh_graph_pack_find_state(p.made, NOH_NONE, "aim"), NOH_NONE);
+    assert_int_equal(find_state(p.made, states, "aim"), 1);
+    assert_int_equal(find_state(p.made, states, "walk"), NOH_NONE);
+    assert_int_equal(find_state(p.made, NOH_NONE, "aim"), NOH_NONE);
     assert_string_equal(noh_graph_pack_state_name(p.made, states, 3), "");
-    assert_int_equal(noh_graph_pack_find_track(p.made, "run"), 1);
-    assert_int_equal(noh_graph_pack_find_track(p.made, "states"), NOH_NONE);
+    assert_int_equal(find_track(p.made, "run"), 1);
+    assert_int_equal(find_track(p.made, "states"), NOH_NONE);
     step(&p, 100);
     assert_string_equal(state_of(&p, "choice"), "added"); /* glad */
     set(&p, "mood", 0.0f);
@@ -189,8 +206,8 @@ static void clips_and_nodes_are_those_of_the_text(void **state)
 {
     player p = play();
     const noh_graph *g = &p.made->graph;
-    const uint32_t b = noh_graph_pack_find_track(p.made, "b"), c = noh_graph_pack_find_track(p.made, "c"),
-                   d = noh_graph_pack_find_track(p.made, "d"), e = noh_graph_pack_find_track(p.made, "e");
+    const uint32_t b = find_track(p.made, "b"), c = find_track(p.made, "c"), d = find_track(p.made, "d"),
+                   e = find_track(p.made, "e");
     const noh_graph_node *root = &g->nodes[g->node_count - 1];
     (void)state;
     assert_int_equal(g->clips[0].sync_group, 1);
@@ -204,7 +221,7 @@ static void clips_and_nodes_are_those_of_the_text(void **state)
     assert_int_equal(root->kind, NOH_NODE_ONE_SHOT);
     assert_int_equal(root->fade_ticks, 4800);
     assert_int_equal(root->fade_out_ticks, 9600);
-    assert_int_equal(g->clips[noh_graph_pack_find_track(p.made, "waving")].loop, NOH_LOOP_ONCE);
+    assert_int_equal(g->clips[find_track(p.made, "waving")].loop, NOH_LOOP_ONCE);
     assert_int_equal(g->transition_count, 4);
     assert_int_equal(g->transitions[0].curve, NOH_CURVE_SMOOTHSTEP);
     assert_int_equal(g->transitions[1].flags, NOH_TRANSITION_INERTIAL | NOH_TRANSITION_KEEP);
@@ -662,7 +679,7 @@ static void a_graph_made_in_code_is_a_pack(void **state)
     desc.mesh = &fixture.pack;
     made = make(&desc);
     assert_string_equal(made->source.name, "draft");
-    assert_int_equal(noh_graph_pack_find_state(made, noh_graph_pack_find_machine(made, "moves"), "wave"), 2);
+    assert_int_equal(find_state(made, noh_graph_pack_find_machine(made, "moves"), "wave"), 2);
     assert_int_equal(noh_graph_pack_find_value(made, noh_graph_pack_find_param(made, "mood"), "high"), 1);
     free(made);
 }

@@ -142,8 +142,8 @@ static void positions_keep_the_bound(void **state)
             for (uint32_t f = 0; f < FRAMES; f++) {
                 const root_source want = source_at(c, f);
                 const uint32_t tick = (uint32_t)((uint64_t)duration * f / (FRAMES - 1u));
-                const noh_root_pose e = noh_root_at(&bank->clips, &bank->clips.roots[c], c, NOH_LOOP_REPEAT,
-                                                    noh_position_of(duration) * 1000 + noh_position_of(tick));
+                const noh_root_pose e = noh_root_between(&bank->clips, &bank->clips.roots[c], c, NOH_LOOP_REPEAT, 0,
+                                                         noh_position_of(duration) * 1000 + noh_position_of(tick));
                 const double dx = e.translation[0] - (want.x - from.x), dy = e.translation[1] - (want.y - from.y),
                              dz = e.translation[2] - (want.z - from.z) - (c == WALK ? 140.0e3 : 0.0),
                              turn = (double)(int32_t)e.turn * TWO_PI / 4294967296.0 - (want.heading - from.heading);
@@ -170,8 +170,8 @@ static void headings_count_from_the_clips_own_axes(void **state)
         const uint32_t duration = bank->clips.clips[c].duration_ticks;
         for (uint32_t f = 0; f < FRAMES; f++) {
             const uint32_t tick = (uint32_t)((uint64_t)duration * f / (FRAMES - 1u));
-            const noh_root_pose e = noh_root_at(&bank->clips, &bank->clips.roots[c], c, NOH_LOOP_REPEAT,
-                                                noh_position_of(tick == duration ? tick - 1u : tick));
+            const noh_root_pose e = noh_root_between(&bank->clips, &bank->clips.roots[c], c, NOH_LOOP_REPEAT, 0,
+                                                     noh_position_of(tick == duration ? tick - 1u : tick));
             double facing;
             noh_root_sample_rest(&bank->clips, c, tick, 4, pose, NULL);
             facing = 2.0 * atan2((double)pose[0].rotation[1], (double)pose[0].rotation[3]) +

@@ -91,7 +91,7 @@ static void what_is_extracted_is_removed(void **state)
                 noh_quat_from_rotation(v, root.rotation);
                 rest = root;
                 e = noh_root_extract(axes, up, &root);
-                noh_root_remove(axes, up, &rest);
+                noh_root_remove(axes, up, 0, &rest);
                 noh_sin_cos(0.5f * noh_radians_from_turn(e.turn), &q[up], &q[3]);
                 noh_quat_mul(q, rest.rotation, rest.rotation);
                 noh_quat_rotate(q, rest.translation, moved);
@@ -192,7 +192,7 @@ static void positions_are_the_same_in_every_pass(void **state)
     double worst = 0.0;
     (void)state;
     walk_open(&w, 0.7, 1.3, 48000, NOH_ROOT_GROUND);
-    far = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, million);
+    far = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, 0, million);
     near_by = noh_root_power(1, &w.roots[0].loop, 1000000);
     assert_true(root_apart(&far, &near_by) < 1e-9);
     for (int i = -10; i < 10; i++) {
@@ -206,7 +206,7 @@ static void positions_are_the_same_in_every_pass(void **state)
         assert_true(root_apart(&far, &after) < 1e-12); /* there and back */
     }
     assert_true(worst == 0.0);
-    far = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_PING_PONG, noh_position_of(2 * 48000 * 1000LL));
+    far = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_PING_PONG, 0, noh_position_of(2 * 48000 * 1000LL));
     near_by = noh_root_power(1, &w.roots[0].loop, 0);
     assert_true(root_apart(&far, &near_by) < 1e-12); /* there and back again */
 }
@@ -232,7 +232,7 @@ static void steps_add_up(void **state)
             at = to;
             steps++;
         }
-        want = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, end);
+        want = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, 0, end);
         print_message("%u steps over 100000 passes: %.2g off, %.6g away\n", steps, root_apart(&world, &want),
                       fabs(want.translation[0]) + fabs(want.translation[2]));
         assert_int_equal(world.turn, want.turn);
@@ -260,7 +260,7 @@ static void sums_of_moves_do_not_drift(void **state)
         composed = noh_root_compose(1, &composed, &move);
         position += noh_position_of(800);
     }
-    want = noh_root_at(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, position);
+    want = noh_root_between(&w.set, &w.roots[0], 0, NOH_LOOP_REPEAT, 0, position);
     print_message("20000 passes: %.3g off in floats, %.3g composed\n",
                   fabs((double)x - want.translation[0]) + fabs((double)z - want.translation[2]),
                   root_apart(&composed, &want));
@@ -324,7 +324,7 @@ static void one_track_moves_as_its_clip(void **state)
         move = noh_controller_root_motion(g.c, &g.w.set);
         world = noh_root_compose(1, &world, &move);
     }
-    want = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_controller_track(g.c, 0)->position);
+    want = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_controller_track(g.c, 0)->position);
     assert_true(root_apart(&world, &want) < 1e-6);
 }
 
@@ -380,8 +380,8 @@ static void moves_are_blended_by_weight_and_group(void **state)
     noh_root_pose a, b, got, want;
     (void)state;
     stage_open(&g, NOH_ROOT_GROUND);
-    a = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(3000));
-    b = noh_root_at(&g.w.set, &g.w.roots[1], 1, NOH_LOOP_REPEAT, noh_position_of(3000));
+    a = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
+    b = noh_root_between(&g.w.set, &g.w.roots[1], 1, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
     for (int k = 0; k < 3; k++) want.translation[k] = 0.75 * a.translation[k] + 0.25 * b.translation[k];
     want.turn = (uint32_t)(int32_t)(0.75 * (double)(int32_t)a.turn + 0.25 * (double)(int32_t)b.turn);
     for (int high = 0; high < 2; high++) {
@@ -423,7 +423,7 @@ static void what_moves_no_joints_does_not_hold_the_root(void **state)
             start(&g, 1, face);
             noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
             got = noh_controller_root_motion(g.c, &g.w.set);
-            alone = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(3000));
+            alone = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
             assert_true(fabs(alone.translation[2]) > 0.05);
             assert_true(root_apart(&got, &alone) < 1e-12);
             bow.group = NOH_GROUP_HIGH; /* nor does it dilute another high track */
@@ -459,8 +459,8 @@ static void masks_weigh_root_motion(void **state)
         start(&g, 1, d);
         noh_controller_set_priority_blend(g.c, 0.6f);
         noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
-        a = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(3000));
-        b = noh_root_at(&g.w.set, &g.w.roots[1], 1, NOH_LOOP_REPEAT, noh_position_of(3000));
+        a = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
+        b = noh_root_between(&g.w.set, &g.w.roots[1], 1, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
         w = high ? (double)0.6f * part : part / (1.0 + part);
         for (int k = 0; k < 3; k++) want.translation[k] = (1.0 - w) * a.translation[k] + w * b.translation[k];
         want.turn = (uint32_t)(int32_t)llround((1.0 - w) * (double)(int32_t)a.turn + w * (double)(int32_t)b.turn);
@@ -508,7 +508,7 @@ static void additive_tracks_do_not_travel(void **state)
     start(&g, 1, d);
     noh_controller_step(g.c, &g.w.set, 3000, NULL, NULL);
     got = noh_controller_root_motion(g.c, &g.w.set);
-    want = noh_root_at(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, noh_position_of(3000));
+    want = noh_root_between(&g.w.set, &g.w.roots[0], 0, NOH_LOOP_REPEAT, 0, noh_position_of(3000));
     assert_true(root_apart(&got, &want) < 1e-12);
 }
 

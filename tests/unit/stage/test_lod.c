@@ -355,14 +355,12 @@ static void clocks_at_the_ends(void **state)
     for (uint32_t i = 0; i < sizeof clocks / sizeof *clocks; i++) {
         for (uint32_t k = i; k < sizeof clocks / sizeof *clocks; k++) {
             noh_lod d;
-            noh_lod_part parts[2];
             float fade;
             memset(&d, 0, sizeof d);
             noh_lod_choose(&d, &t, &s, 1e5f, rates, clocks[i]);
             noh_lod_choose(&d, &t, &s, 0.5f, rates, clocks[i]);
             fade = noh_lod_fade(&d, clocks[k]);
             assert_true(k == i ? fade == 0.0f : k > 1 && i < 2 ? fade == 1.0f : fade >= 0.0f && fade <= 1.0f);
-            assert_true(noh_lod_parts(&d, clocks[k], parts) >= 1);
             noh_lod_choose(&d, &t, &s, 0.5f, rates, clocks[k]);
             assert_int_equal(d.mesh, LEVELS - 1u);
         }
@@ -423,52 +421,18 @@ static double greedy_sum(const float *weights, const float *radius, double room)
     return sum;
 }
 
-/* Together the two parts of a fade have all pixels, each part is of a level that is shown, and both have memory. */
-static void parts_of_a_fade_are_all_pixels(void **state)
-{
-    const uint8_t ways[2][2] = { { 1, 2 }, { 3, 0 } }; /* from, to */
-    (void)state;
-    for (int way = 0; way < 2; way++) {
-        noh_lod d;
-        noh_lod_part parts[2];
-        memset(&d, 0, sizeof d);
-        d.mesh_before = ways[way][0];
-        d.mesh = ways[way][1];
-        d.fade_start = 1000;
-        d.fade_ticks = 400;
-        for (int64_t clock = 1000; clock <= 1400; clock += 100) {
-            const float fade = noh_lod_fade(&d, clock);
-            const uint32_t count = noh_lod_parts(&d, clock, parts), drawn = noh_lod_drawn(&d, clock);
-            if (clock == 1000 || clock == 1400) {
-                assert_int_equal(count, 1);
-                assert_int_equal(parts[0].level, clock == 1000 ? d.mesh_before : d.mesh);
-                assert_true(parts[0].from == 0.0f && parts[0].to == 1.0f);
-            } else {
-                assert_int_equal(count, 2);
-                assert_int_equal(parts[0].level, d.mesh);
-                assert_int_equal(parts[1].level, d.mesh_before);
-                assert_true(parts[0].from == 0.0f && parts[0].to == fade && parts[1].from == fade &&
-                            parts[1].to == 1.0f);
-            }
-            assert_int_equal(drawn, clock == 1400 ? d.mesh : d.mesh < d.mesh_before ? d.mesh : d.mesh_before);
-        }
-    }
-}
-
 static void a_fixed_level_does_not_influence_later_choices(void **state)
 {
     const noh_lod_table t = table_of();
     const noh_lod_settings s = settings_of(1.0f);
     noh_lod d, fresh;
-    noh_lod_part parts[2];
     (void)state;
     for (uint32_t level = 0; level < LEVELS + 2u; level++) {
         memset(&d, 0xa5, sizeof d);
         noh_lod_set_mesh(&d, &t, level, 7.0f);
-        assert_int_equal(noh_lod_parts(&d, 123, parts), 1);
-        assert_int_equal(parts[0].level, level < LEVELS ? level : LEVELS - 1u);
-        assert_int_equal(noh_lod_drawn(&d, 123), parts[0].level);
-        assert_true(d.error_m == meshes[parts[0].level].error_m && noh_lod_error_pixels(&d) == 7.0f * d.error_m);
+        assert_true(noh_lod_fade(&d, 123) == 1.0f);
+        assert_int_equal(d.mesh, level < LEVELS ? level : LEVELS - 1u);
+        assert_true(d.error_m == meshes[d.mesh].error_m && noh_lod_error_pixels(&d) == 7.0f * d.error_m);
         memset(&fresh, 0, sizeof fresh);
         noh_lod_choose(&d, &t, &s, 40.0f, rates, 500); /* where hysteresis would keep a coarser level */
         noh_lod_choose(&fresh, &t, &s, 40.0f, rates, 500);
@@ -633,7 +597,6 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_limit_fades_out_finer_levels),
         cmocka_unit_test(clocks_at_the_ends),
         cmocka_unit_test(fades_are_smooth_and_one_at_a_time),
-        cmocka_unit_test(parts_of_a_fade_are_all_pixels),
         cmocka_unit_test(a_fixed_level_does_not_influence_later_choices),
         cmocka_unit_test(skipped_targets_are_the_smallest_and_bounded),
         cmocka_unit_test(fades_follow_the_smoothstep),

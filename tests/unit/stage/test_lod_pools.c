@@ -21,6 +21,16 @@ static noh_lod_pools *pools_open(const noh_lod_pools_desc *desc)
     return p;
 }
 
+static void ask(noh_lod_pools *p, uint32_t instance, uint32_t level, float priority)
+{
+    noh_lod_pools_ask_at(p, instance, level, priority, 0.0f, 0);
+}
+
+static void share(noh_lod_pools *p)
+{
+    noh_lod_pools_share_some(p, UINT32_MAX);
+}
+
 /* ---- descs, memory ---- */
 
 static void bad(noh_lod_pools_desc d, const char *what)
@@ -68,8 +78,8 @@ static void the_size_is_exact(void **state)
     assert_int_equal(noh_lod_pools_init(memory, bytes, &three, &p, NULL), NOH_OK);
     for (uint32_t frame = 0; frame < 5; frame++) {
         noh_lod_pools_begin(p);
-        for (uint32_t i = 0; i < INSTANCES; i++) noh_lod_pools_ask(p, i, (i + frame) % 4u, (float)i);
-        noh_lod_pools_share(p);
+        for (uint32_t i = 0; i < INSTANCES; i++) ask(p, i, (i + frame) % 4u, (float)i);
+        share(p);
     }
     for (size_t i = bytes; i < bytes + 64u; i++) assert_int_equal(memory[i], 0xa5);
     free(memory);
@@ -87,9 +97,9 @@ static void ask_all(noh_lod_pools *p, const wish *wishes)
 {
     noh_lod_pools_begin(p);
     for (uint32_t i = 0; i < INSTANCES; i++) {
-        if (wishes[i].asks) noh_lod_pools_ask(p, i, wishes[i].level, wishes[i].priority);
+        if (wishes[i].asks) ask(p, i, wishes[i].level, wishes[i].priority);
     }
-    noh_lod_pools_share(p);
+    share(p);
 }
 
 /* No slot twice, none past its pool's end, none finer than its pool, and the counts are right. */
@@ -251,9 +261,9 @@ static void pools_may_begin_with_a_coarser_level(void **state)
     noh_lod_pools *p = pools_open(&d);
     (void)state;
     noh_lod_pools_begin(p);
-    noh_lod_pools_ask(p, 0, 0, 1.0f);
-    noh_lod_pools_ask(p, 1, 1, 2.0f);
-    noh_lod_pools_share(p);
+    ask(p, 0, 0, 1.0f);
+    ask(p, 1, 1, 2.0f);
+    share(p);
     assert_int_equal(noh_lod_pools_slot(p, 1).level, 2);
     assert_int_equal(noh_lod_pools_slot(p, 0).level, 3);
     assert_int_equal(noh_lod_pools_stats_of(p)->coarser, 2);
@@ -273,19 +283,19 @@ static void the_nearer_of_equals_comes_first(void **state)
             const float distance = i == nearest ? 3.0f : 3.1f + (float)((i * 5u + nearest) % 6u);
             noh_lod_pools_ask_at(p, i, 0, 7.0f, distance, 1);
         }
-        noh_lod_pools_share(p);
+        share(p);
         for (uint32_t i = 0; i < 6; i++) assert_int_equal(noh_lod_pools_slot(p, i).level == 0, i == nearest);
     }
     for (int afresh = 0; afresh < 2; afresh++) { /* instance 5 holds the slot, 2 is a tenth nearer */
         noh_lod_pools_begin(p);
         noh_lod_pools_ask_at(p, 5, 0, 10.0f, 10.0f, afresh);
         noh_lod_pools_ask_at(p, 2, 0, 11.0f, 9.0f, afresh);
-        noh_lod_pools_share(p);
+        share(p);
         assert_int_equal(noh_lod_pools_slot(p, 2).level, afresh ? 0 : 1);
     }
     noh_lod_pools_begin(p);
     noh_lod_pools_ask_at(p, 4, 0, 10.0f, NAN, 1); /* no distance: as if it were at the eye */
-    noh_lod_pools_share(p);
+    share(p);
     assert_int_equal(noh_lod_pools_slot(p, 4).level, 0);
     free(p);
 }
@@ -300,8 +310,8 @@ static void who_finds_no_slot_rests_and_who_is_too_many_is_left_out(void **state
     (void)state;
     for (uint32_t round = 0; round < 3; round++) {
         noh_lod_pools_begin(p);
-        for (uint32_t i = 0; i < 8; i++) noh_lod_pools_ask(p, i, 1, 100.0f - (float)((i + round) % 8u) * 10.0f);
-        noh_lod_pools_share(p);
+        for (uint32_t i = 0; i < 8; i++) ask(p, i, 1, 100.0f - (float)((i + round) % 8u) * 10.0f);
+        share(p);
         for (uint32_t rank = 0; rank < 8; rank++) {
             const uint32_t i = (rank + 8u - round) % 8u;
             const noh_lod_slot s = noh_lod_pools_slot(p, i);
@@ -343,7 +353,7 @@ static void ask_some(noh_lod_pools *p, const wish *wishes, uint32_t moves)
 {
     noh_lod_pools_begin(p);
     for (uint32_t i = 0; i < INSTANCES; i++) {
-        if (wishes[i].asks) noh_lod_pools_ask(p, i, wishes[i].level, wishes[i].priority);
+        if (wishes[i].asks) ask(p, i, wishes[i].level, wishes[i].priority);
     }
     noh_lod_pools_share_some(p, moves);
 }
