@@ -104,7 +104,12 @@ ifeq ($(SAN)$(CC)$(filter -O2,$(OPT))$(findstring ccache,$(realpath $(shell comm
 $(RUNTIME_O): CALLS = -fcallgraph-info=su
 endif
 PLATFORM_O := $(PLATFORM_C:%.c=$(BUILD)/%.o)
-CONVERT_O  := $(CONVERT_C:%.c=$(BUILD)/%.o) $(CONVERT_CC:%.cpp=$(BUILD)/%.o)
+# The C++ files of a folder are compiled as one, as most of the time goes into the headers that they share; what differs
+# without Draco is compiled alone.
+DRACO_CC   := tools/convert/gltf/gltf_draco.cpp
+CONVERT_ROOMS := $(patsubst %/,%,$(sort $(dir $(CONVERT_CC))))
+CONVERT_CC_O := $(CONVERT_ROOMS:%=$(BUILD)/%.o) $(DRACO_CC:%.cpp=$(BUILD)/%.o)
+CONVERT_O  := $(CONVERT_CC_O) $(CONVERT_C:%.c=$(BUILD)/%.o)
 TOOL_O     := $(TOOL_C:%.c=$(BUILD)/%.o) $(BUILD)/gen/tool_shaders.gen.o
 DEMO_O     := $(DEMO_C:%.c=$(BUILD)/%.o)
 $(DEMO_O): INCLUDES += -Itools/demo_assets

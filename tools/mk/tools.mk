@@ -8,9 +8,19 @@ $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 	$(call say,CXX,$@)
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
 
+# Written again only if the folder has other files than before.
+$(CONVERT_ROOMS:%=$(BUILD)/gen/%.cpp): $(BUILD)/gen/%.cpp: FORCE
+	@mkdir -p $(@D)
+	@printf '#include "%s"\n' $(filter-out $(DRACO_CC),$(filter $*/%,$(CONVERT_CC))) >$@.new
+	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+$(CONVERT_ROOMS:%=$(BUILD)/%.o): $(BUILD)/%.o: $(BUILD)/gen/%.cpp
+	@mkdir -p $(@D)
+	$(call say,CXX,$@)
+	$(Q)$(CXX) $(ALL_CXXFLAGS) -I. -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
+
 # Tests and users spend their time in the converter's C, the compiler in this: -O1 takes two thirds of the time of -O2, and
 # with sanitizers -O0 two thirds of the time of -O1.
-$(CONVERT_CC:%.cpp=$(BUILD)/%.o): OPT := $(if $(SAN),-O0 -g1,$(patsubst -O2,-O1,$(OPT)))
+$(CONVERT_CC_O): OPT := $(if $(SAN),-O0 -g1,$(patsubst -O2,-O1,$(OPT)))
 $(BUILD)/tools/convert/gltf/gltf_draco.o: ALL_CXXFLAGS += $(if $(HAVE_DRACO),-DNOH_DRACO)
 $(BUILD)/tools/convert/gltf/gltf_draco.o: $(BUILD)/gen/with_draco
 
@@ -82,8 +92,7 @@ $(BUILD)/noh: $(TOOL_O) $(VIEW_O) $(CONVERT_O) $(PLATFORM_O) $(KERNELS) $(BUILD)
 	$(Q)$(CXX) $(ALL_LDFLAGS) $(filter %.o %.a,$^) -o $@ $(VIEW_LIBS) $(TOOL_LIBS)
 
 # The same as on a machine that has only what it must: no Draco, no window. For the tests.
-WITHOUT_CC := tools/convert/gltf/gltf_draco.cpp
-WITHOUT_O  := $(WITHOUT_CC:%.cpp=$(BUILD)/without/%.o) $(VIEW_NOT_C:%.c=$(BUILD)/without/%.o)
+WITHOUT_O  := $(DRACO_CC:%.cpp=$(BUILD)/without/%.o) $(VIEW_NOT_C:%.c=$(BUILD)/without/%.o)
 $(BUILD)/without/%.o: %.cpp
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)

@@ -57,7 +57,7 @@ static void check_memory(int failed)
 
 /* --- the effect of errors --- */
 
-static double column_length(const double *m)
+static double longest_column(const double *m)
 {
     return std::fmax(std::fmax(std::sqrt(vec_dot(m, m)), std::sqrt(vec_dot(m + 3, m + 3))),
                      std::sqrt(vec_dot(m + 6, m + 6)));
@@ -114,7 +114,7 @@ static void find_levers(set_job &job)
     for (uint32_t j = 0; j < skeleton.joint_count; ++j) {
         job.lever_cm[j] = std::fmax(job.lever_cm[j], job.shell_cm);
         if (skeleton.joints[j].parent != MODEL_NONE)
-            job.parent_scale_cm[j] = skeleton.unit_cm * column_length(&pose[size_t{ skeleton.joints[j].parent } * 12]);
+            job.parent_scale_cm[j] = skeleton.unit_cm * longest_column(&pose[size_t{ skeleton.joints[j].parent } * 12]);
     }
 }
 

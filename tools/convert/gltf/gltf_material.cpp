@@ -17,7 +17,7 @@ namespace gltf
 
 static const int SPECULAR_KEY = -1, MATCAP_KEY = -2; /* in file.texture_of, in place of a use */
 
-static std::string where_of(const file &f, size_t material)
+static std::string material_where(const file &f, size_t material)
 {
     return "material '" + printable(name_or(f.json.materials[material].name, "material", material)) + "'";
 }
@@ -601,7 +601,7 @@ static void read_material(file &f, size_t index, model_material &out)
 {
     const tinygltf::Material &m = f.json.materials[index];
     const tinygltf::PbrMetallicRoughness &pbr = m.pbrMetallicRoughness;
-    std::string where = where_of(f, index);
+    std::string where = material_where(f, index);
     out = model_material_default();
     out.name = copy_string(name_or(m.name, "material", index));
     for (size_t i = 0; i < 4; ++i) out.base_color[i] = share_of(f, pbr.baseColorFactor[i], where, "baseColorFactor");

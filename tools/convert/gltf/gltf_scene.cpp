@@ -17,7 +17,7 @@ struct visit {
     uint32_t parent;
 };
 
-static std::string where_of(const file &f, size_t node)
+static std::string node_where(const file &f, size_t node)
 {
     return "node '" + printable(name_or(f.json.nodes[node].name, "node", node)) + "'";
 }
@@ -38,9 +38,9 @@ static std::vector<bool> nodes_with_parent(file &f)
     for (size_t i = 0; i < f.json.nodes.size(); ++i) {
         std::vector<int> kept;
         for (int child : f.json.nodes[i].children) {
-            if (!node_exists(f, child, where_of(f, i) + " children")) continue;
+            if (!node_exists(f, child, node_where(f, i) + " children")) continue;
             if (has_parent[static_cast<size_t>(child)]) {
-                leave_out(f, where_of(f, static_cast<size_t>(child)),
+                leave_out(f, node_where(f, static_cast<size_t>(child)),
                           ": the node has two parents: it was left below the first");
                 continue;
             }
@@ -86,7 +86,7 @@ static void visit_below(file &f, const std::vector<size_t> &roots, std::vector<v
         visit v = open.back();
         open.pop_back();
         if (f.node_of[v.node] != MODEL_NONE) {
-            leave_out(f, where_of(f, v.node),
+            leave_out(f, node_where(f, v.node),
                       v.parent == MODEL_NONE
                           ? " is listed in the scene, and there already"
                           : " is below itself, or listed in the scene before its parent: it was left where it "
@@ -128,7 +128,7 @@ static std::vector<visit> visit_order(file &f)
     const std::vector<size_t> forgotten = forgotten_roots(f);
     f.in_scene = order.size();
     for (size_t root : forgotten)
-        leave_out(f, where_of(f, root),
+        leave_out(f, node_where(f, root),
                   " holds joints of a skin but is not in the default scene: its joints were read, its meshes were not");
     visit_below(f, forgotten, order);
     /* every node has at most one parent, so nodes that no root leads to form a cycle */
@@ -333,7 +333,7 @@ static void read_weights(file &f, const tinygltf::Node &node, model_node &out, c
 static void read_node(file &f, const visit &v, model_node &out)
 {
     const tinygltf::Node &node = f.json.nodes[v.node];
-    std::string where = where_of(f, v.node);
+    std::string where = node_where(f, v.node);
     out.name = copy_string(name_or(node.name, "node", v.node));
     out.parent = v.parent;
     out.skin = MODEL_NONE;
@@ -374,7 +374,7 @@ static bool read_instances(file &f, size_t node, instances &out)
 {
     const auto extension = f.json.nodes[node].extensions.find("EXT_mesh_gpu_instancing");
     const uint32_t index = f.node_of[node];
-    const std::string where = where_of(f, node) + " EXT_mesh_gpu_instancing";
+    const std::string where = node_where(f, node) + " EXT_mesh_gpu_instancing";
     if (extension == f.json.nodes[node].extensions.end() || index == MODEL_NONE) return false;
     if (f.out->nodes[index].mesh == MODEL_NONE || f.json.nodes[node].skin >= 0) {
         leave_out(f, where, " was ignored: its node has no mesh, or a skin");
@@ -399,7 +399,7 @@ static void copy_numbers(const std::vector<float> &from, size_t instance, size_t
 static void add_instance(file &f, const instances &all, size_t i)
 {
     const uint32_t parent = f.node_of[all.node];
-    const std::string where = where_of(f, all.node) + text(" instance %zu", i);
+    const std::string where = node_where(f, all.node) + text(" instance %zu", i);
     model_node &out = f.out->nodes[f.out->node_count++];
     transform t = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0, 1.0 }, { 1.0, 1.0, 1.0 }, { 0.0 } };
     out.name = copy_string(f.out->nodes[parent].name + text("_%zu", i));

@@ -45,7 +45,7 @@ static void vector_or(const value &given, const float otherwise[3], float out[3]
     }
 }
 
-static const value &member(const value &object, const char *key)
+static const value &member_or_none(const value &object, const char *key)
 {
     static const value none;
     return object.IsObject() && object.Has(key) ? object.Get(key) : none;
@@ -126,17 +126,17 @@ static void warn_center(springs_job &job, const value &spring)
 static uint32_t read_collider(springs_job &job, const value &given)
 {
     static const float zero[3] = { 0.0f, 0.0f, 0.0f };
-    const value &shape = member(given, "shape"), &sphere = member(shape, "sphere"), &capsule = member(shape, "capsule");
+    const value &shape = member_or_none(given, "shape"), &sphere = member_or_none(shape, "sphere"), &capsule = member_or_none(shape, "capsule");
     const value &round = capsule.IsObject() ? capsule : sphere;
     model_collider c = {};
-    c.node = node_of(job.f, member(given, "node"));
+    c.node = node_of(job.f, member_or_none(given, "node"));
     if (c.node == MODEL_NONE || !round.IsObject()) {
         leave_out(job.f, "springs", ": a collider was left out: it has no node, or is neither a sphere nor a capsule");
         return 0;
     }
     c.radius = limited(round, "radius", 0.0, 0.0, 1e3);
-    vector_or(member(round, "offset"), zero, c.from);
-    vector_or(member(capsule, "tail"), c.from, c.to);
+    vector_or(member_or_none(round, "offset"), zero, c.from);
+    vector_or(member_or_none(capsule, "tail"), c.from, c.to);
     return add_collider(job, c);
 }
 
@@ -164,11 +164,11 @@ static model_spring_joint read_joint(springs_job &job, const value &given)
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
     model_spring_joint joint = {};
     const float power = limited(given, "gravityPower", 0.0, 0.0, 1e3);
-    joint.node = node_of(job.f, member(given, "node"));
+    joint.node = node_of(job.f, member_or_none(given, "node"));
     joint.radius = limited(given, "hitRadius", 0.0, 0.0, 1e3);
     joint.stiffness = limited(given, "stiffness", 1.0, 0.0, 1e3);
     joint.drag = limited(given, "dragForce", 0.5, 0.0, 1.0);
-    vector_or(member(given, "gravityDir"), down, joint.gravity);
+    vector_or(member_or_none(given, "gravityDir"), down, joint.gravity);
     for (float &axis : joint.gravity) axis *= power;
     return joint;
 }
@@ -176,7 +176,7 @@ static model_spring_joint read_joint(springs_job &job, const value &given)
 /* The last joint of a spring is only the end of the bone before it. */
 static void read_spring(springs_job &job, const value &given)
 {
-    const value &listed = member(given, "joints");
+    const value &listed = member_or_none(given, "joints");
     std::vector<model_spring_joint> joints;
     float end[3] = { 0.0f, 0.0f, 0.0f };
     for (size_t i = 0; i < length_of(listed); ++i) {
@@ -193,18 +193,18 @@ static void read_spring(springs_job &job, const value &given)
     warn_center(job, given);
     place_in(*job.f.out, joints.back().node, joints[joints.size() - 2].node, end);
     joints.pop_back();
-    uint32_t collides = bits_of(job, member(given, "colliderGroups"), "collider group");
+    uint32_t collides = bits_of(job, member_or_none(given, "colliderGroups"), "collider group");
     add_chain(job, std::move(joints), collides, end);
 }
 
 static void read_vrm1(springs_job &job, const value &extension)
 {
-    const value &colliders = member(extension, "colliders"), &groups = member(extension, "colliderGroups");
-    const value &springs = member(extension, "springs");
+    const value &colliders = member_or_none(extension, "colliders"), &groups = member_or_none(extension, "colliderGroups");
+    const value &springs = member_or_none(extension, "springs");
     std::vector<uint32_t> of_groups;
     for (size_t i = 0; i < length_of(colliders); ++i) job.bits.push_back(read_collider(job, item(colliders, i)));
     for (size_t i = 0; i < length_of(groups); ++i)
-        of_groups.push_back(bits_of(job, member(item(groups, i), "colliders"), "collider"));
+        of_groups.push_back(bits_of(job, member_or_none(item(groups, i), "colliders"), "collider"));
     job.bits = of_groups;
     for (size_t i = 0; i < length_of(springs); ++i) read_spring(job, item(springs, i));
 }
@@ -214,8 +214,8 @@ static void read_vrm1(springs_job &job, const value &extension)
 static uint32_t read_group0(springs_job &job, const value &group)
 {
     static const float zero[3] = { 0.0f, 0.0f, 0.0f };
-    const value &colliders = member(group, "colliders");
-    const uint32_t node = node_of(job.f, member(group, "node"));
+    const value &colliders = member_or_none(group, "colliders");
+    const uint32_t node = node_of(job.f, member_or_none(group, "node"));
     uint32_t bits = 0;
     if (node == MODEL_NONE && length_of(colliders) > 0)
         leave_out(job.f, "springs", ": a collider group was left out: its node does not exist");
@@ -223,7 +223,7 @@ static uint32_t read_group0(springs_job &job, const value &group)
         model_collider c = {};
         c.node = node;
         c.radius = limited(item(colliders, i), "radius", 0.0, 0.0, 1e3);
-        vector_or(member(item(colliders, i), "offset"), zero, c.from);
+        vector_or(member_or_none(item(colliders, i), "offset"), zero, c.from);
         c.from[2] = -c.from[2];
         std::copy(c.from, c.from + 3, c.to);
         bits |= add_collider(job, c);
@@ -282,23 +282,23 @@ static void read_bone0(springs_job &job, uint32_t top, const model_spring_joint 
 static void read_vrm0(springs_job &job, const value &extension)
 {
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
-    const value &secondary = member(extension, "secondaryAnimation");
-    const value &groups = member(secondary, "boneGroups"), &colliders = member(secondary, "colliderGroups");
+    const value &secondary = member_or_none(extension, "secondaryAnimation");
+    const value &groups = member_or_none(secondary, "boneGroups"), &colliders = member_or_none(secondary, "colliderGroups");
     for (size_t i = 0; i < length_of(colliders); ++i) job.bits.push_back(read_group0(job, item(colliders, i)));
     for (size_t i = 0; i < length_of(groups); ++i) {
-        const value &group = item(groups, i), &bones = member(group, "bones");
+        const value &group = item(groups, i), &bones = member_or_none(group, "bones");
         model_spring_joint values = {};
         const float power = limited(group, "gravityPower", 0.0, 0.0, 1e3);
         values.stiffness = limited(group, "stiffiness", 1.0, 0.0, 1e3); /* spelt so in the format */
         values.drag = limited(group, "dragForce", 0.4, 0.0, 1.0);
         values.radius = limited(group, "hitRadius", 0.02, 0.0, 1e3);
-        vector_or(member(group, "gravityDir"), down, values.gravity);
+        vector_or(member_or_none(group, "gravityDir"), down, values.gravity);
         for (float &axis : values.gravity) axis *= power;
         warn_center(job, group);
         for (size_t k = 0; k < length_of(bones); ++k) {
             const uint32_t top = node_of(job.f, item(bones, k));
             if (top != MODEL_NONE)
-                read_bone0(job, top, values, bits_of(job, member(group, "colliderGroups"), "collider group"));
+                read_bone0(job, top, values, bits_of(job, member_or_none(group, "colliderGroups"), "collider group"));
             else
                 leave_out(job.f, "springs", joint_lost);
         }

@@ -121,7 +121,7 @@ static std::string lower(std::string word)
 }
 
 /* A word of a recipe: those with blanks are quoted. */
-static std::string quoted(const std::string &name)
+static std::string in_quotes(const std::string &name)
 {
     return "\"" + name + "\"";
 }
@@ -153,8 +153,8 @@ static void add_line(file &f, expression &e, uint32_t mesh, size_t target, doubl
     }
     if (!e.channel && name == e.name && weight != 1.0)
         leave_out(f, e.where, ": its target of the same name moves by all of its weight");
-    const std::string start = e.channel ? std::string(e.channel) : "expression " + quoted(e.name);
-    const std::string line = start + text(" %s %.6g\n", quoted(name).c_str(), weight);
+    const std::string start = e.channel ? std::string(e.channel) : "expression " + in_quotes(e.name);
+    const std::string line = start + text(" %s %.6g\n", in_quotes(name).c_str(), weight);
     if (r.lines.insert(line).second) r.of_mesh[mesh] += line;
     if (e.mesh == MODEL_NONE) e.mesh = mesh;
     if (!e.channel) f.expressions[mesh].insert(e.name);
@@ -194,7 +194,7 @@ static void add_rules(file &f, const expression &e, const value &from, recipes &
                                             { "overrideLookAt", "eyes" },
                                             { "overrideMouth", "speech" } };
     const bool has_rules = e.channel ? strstr(e.channel, "-upper") && f.out->mesh_count : e.mesh != MODEL_NONE;
-    const std::string who = e.channel ? std::string(e.channel) : quoted(e.name);
+    const std::string who = e.channel ? std::string(e.channel) : in_quotes(e.name);
     const value *binary = member(from, "isBinary");
     std::vector<std::string> lines;
     if (binary && binary->IsBool() && binary->Get<bool>()) {

@@ -37,7 +37,7 @@ std::vector<double> target_sizes(const model_mesh &mesh)
 }
 
 /* c = a * b; nine numbers each, three columns. c may be neither. */
-static void multiply(const double *a, const double *b, double *c)
+static void multiply_3x3(const double *a, const double *b, double *c)
 {
     for (int column = 0; column < 3; ++column)
         for (int row = 0; row < 3; ++row)
@@ -92,7 +92,7 @@ static attachment node_attachment(const model &m, uint32_t node, uint32_t joint,
     for (uint32_t n = node; n != stop && n != MODEL_NONE; n = m.nodes[n].parent) {
         double local[9], product[9];
         local_columns(m.nodes[n], local);
-        multiply(local, a.columns, product);
+        multiply_3x3(local, a.columns, product);
         memcpy(a.columns, product, sizeof product);
     }
     return a;
@@ -105,7 +105,7 @@ static double scale_in_pose(const std::vector<attachment> &attachments, const st
         if (a.joint == MODEL_NONE)
             memcpy(product, a.columns, sizeof product);
         else
-            multiply(&pose[size_t{ a.joint } * 12], a.columns, product);
+            multiply_3x3(&pose[size_t{ a.joint } * 12], a.columns, product);
         largest = std::fmax(largest, norm_bound(product));
     }
     return largest;
