@@ -9,10 +9,10 @@ $(BUILD)/tools/convert/%.o: tools/convert/%.cpp
 	$(Q)$(CXX) $(ALL_CXXFLAGS) -Iruntime -Itools -isystem /usr/include/stb -MMD -MP -c $< -o $@
 
 # Written again only if the folder has other files than before.
+include_all = printf '\#include "%s"\n' $(filter-out $(DRACO_CC),$(filter $(1)/%,$(CONVERT_CC)))
 $(CONVERT_ROOMS:%=$(BUILD)/gen/%.cpp): $(BUILD)/gen/%.cpp: FORCE
 	@mkdir -p $(@D)
-	@printf '#include "%s"\n' $(filter-out $(DRACO_CC),$(filter $*/%,$(CONVERT_CC))) >$@.new
-	@if cmp -s $@.new $@; then rm $@.new; else mv $@.new $@; fi
+	@$(call include_all,$*) | cmp -s - $@ || $(call include_all,$*) >$@
 $(CONVERT_ROOMS:%=$(BUILD)/%.o): $(BUILD)/%.o: $(BUILD)/gen/%.cpp
 	@mkdir -p $(@D)
 	$(call say,CXX,$@)
