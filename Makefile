@@ -122,7 +122,7 @@ AMALGAM_TESTS := $(patsubst tests/%.c,$(AMALGAM)/%,$(filter %/test_morph.c %/tes
 # Skinning kernels and lanes built for other instruction sets, for `noh bench` and the tests.
 KERNELS    := $(if $(filter x86_64%,$(MACHINE)),$(foreach set,sse2 avx2,$(BUILD)/kernel/skin_$(set).o $(BUILD)/kernel/ragdoll_lanes_$(set).o $(BUILD)/kernel/spring_lanes_$(set).o $(BUILD)/kernel/hair_lanes_$(set).o)) $(BUILD)/kernel/ragdoll_lanes_scalar.o $(BUILD)/kernel/spring_lanes_scalar.o $(BUILD)/kernel/hair_lanes_scalar.o
 
-.PHONY: FORCE phones phones-update mutants mutants-seed mutants-seed-programs mutants-seed-lines check-long deps-long ear-tables install install-lib uninstall amalgam docs pictures examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-validator golden golden-day golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look heads lib tests demo-run check-run fuzz sizes release release-check api-update
+.PHONY: FORCE phones phones-update mutants mutants-seed mutants-seed-programs mutants-seed-lines check-long deps-long ear-tables install install-lib uninstall amalgam docs pictures examples sizes-update deps-docs deps-lint lint all demo demo-body demo-face demo-crowd view check check-build check-validator golden golden-day golden-update budgets budgets-update bench bench-lod help clean deps-build deps-check deps-view deps-cross deps-web deps-fuzz threads cross cross-tests npm web web-festival web-check web-serve web-bench look heads lib tests demo-run check-run fuzz sizes release release-check api-update
 .SECONDARY:
 .DELETE_ON_ERROR:
 

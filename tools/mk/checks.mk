@@ -38,9 +38,10 @@ view: deps-view
 
 # What tests read of the demo.
 TEST_PACKS := $(addprefix $(BUILD)/,mask.noh $(if $(SANITIZED),,mask_far.noh) wig.noh mask_levels.noh demo/puppet_levels.noh demo/puppet.noh demo/puppet_falls.noh demo/roam.noh demo/coat.noh demo/arm.glb demo/nell.noh demo/flush.noh)
-check: deps-check
+check-build: deps-check
 	@[ "$(DEPS)" = 0 ] || sh tools/angle.sh $(BUILD)/angle
 	@$(MAKE) --no-print-directory -j$(JOBS) WERROR="$(CHECK_WERROR)" $(if $(SANITIZED),$(BUILD)/noh,all) tests $(TEST_PACKS)
+check: check-build
 	@CC="$(CC)" NOH_BUILD="$(BUILD)" NOH_ASSETS="$(ASSETS)" NOH_SAN="$(SAN)" sh tests/run.sh
 
 # Under ThreadSanitizer.
