@@ -1,5 +1,6 @@
 /* A camera that follows keeps a figure in the picture (tools/noh/draw/framing.h): at every frame of every clip of a
- * body, at least 95 % of its silhouette (draw/silhouette.h). Without NOH_LONG every fourth frame is looked at. */
+ * body, at least 95 % of its silhouette (draw/silhouette.h). Without NOH_LONG every fourth frame is looked at,
+ * under sanitizers every sixteenth. */
 #include "draw/framing.h"
 #include "draw/silhouette.h"
 
@@ -50,7 +51,7 @@ static void close_scene(scene *s)
 static double watch(scene *s, const char *clip, double azimuth, double aspect, double *largest)
 {
     const noh_play play = { .loop = NOH_LOOP_ONCE };
-    const uint32_t step = getenv("NOH_LONG") ? 1u : 4u;
+    const uint32_t step = getenv("NOH_LONG") ? 1u : test_is_sanitized() ? 16u : 4u;
     orbit o = { azimuth, 0.05, 0.0, { 0.0, 0.0, 0.0 }, 0.0, aspect };
     double anchor[3], before[3] = { 0.0, 0.0, 0.0 }, seconds, worst = 1.0;
     bounds box;
