@@ -13,7 +13,10 @@ const types = { '.glb': 'model/gltf-binary', '.html': 'text/html', '.js': 'text/
 const fileOf = (place, name) => name || !fs.statSync(place, { throwIfNoEntry: false })?.isFile() ? path.join(place, !name || name.endsWith('/') ? `${name}index.html` : name) : place;
 
 // What is text or program goes over the wire with brotli or gzip, as servers send it; of the rest, parts that are asked for.
-const codings = [['br', zlib.brotliCompressSync], ['gzip', zlib.gzipSync]], coded = new Map(); // by coding and contents
+// quality: of brotli. Where bytes are counted it is 11, which takes seconds for each program.
+const wire = { quality: 4 };
+const brotli = (bytes) => zlib.brotliCompressSync(bytes, { params: { [zlib.constants.BROTLI_PARAM_QUALITY]: wire.quality } });
+const codings = [['br', brotli], ['gzip', zlib.gzipSync]], coded = new Map(); // by coding and contents
 function packedBy(request, bytes) {
     const coding = codings.find(([name]) => new RegExp(`\\b${name}\\b`).test(request.headers['accept-encoding'] || ''));
     if (!coding) return null;
@@ -60,7 +63,7 @@ function launch(executablePath, flags) {
     return require('playwright-core').chromium.launch({
         executablePath,
         args: ['--headless', '--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
-            '--disable-background-networking', '--disable-component-update', ...(flags || [])],
+            '--disable-background-networking', '--disable-component-update', '--js-flags=--wasm-lazy-compilation --expose-gc', ...(flags || [])],
     });
 }
 
@@ -70,6 +73,19 @@ function slowly(page) {
     return page.addInitScript(() => {
         const next = window.requestAnimationFrame.bind(window);
         window.requestAnimationFrame = (call) => setTimeout(() => next(call), 70);
+    });
+}
+
+// Without the worker that prepares lights (package/prepare.js): it takes a second of a processor, and ends at any time.
+function unprepared(page) {
+    return page.addInitScript(() => {
+        const { Worker } = window;
+        window.Worker = class extends Worker {
+            constructor(url, options) {
+                if (String(url).includes('prepare')) throw new Error('not in this test');
+                super(url, options);
+            }
+        };
     });
 }
 
@@ -88,4 +104,4 @@ async function save(page, selector, file) {
     fs.writeFileSync(file, Buffer.from(url.split(',')[1], 'base64'));
 }
 
-module.exports = { serve, launch, save, slowly, newPage };
+module.exports = { wire, serve, launch, save, slowly, unprepared, newPage };

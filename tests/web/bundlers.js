@@ -16,7 +16,7 @@ const bin = (name, ...args) => execFileSync(path.join(project, 'node_modules/.bi
 const html = (script) => `<!DOCTYPE html><html lang="en"><meta charset="utf-8"><title>test</title><link rel="stylesheet" href="style.css"><script type="module" src="${script}"></script></html>`;
 const main = `import { convert } from 'noh-character';
 const it = document.createElement('noh-character');
-Object.assign(it, { id: 'it', src: new URL('face.nohz', document.baseURI).href });
+Object.assign(it, { id: 'it', light: 'plain', src: new URL('face.noh', document.baseURI).href });
 document.body.append(it);
 window.convertModel = async () => (await convert([new File([await (await fetch('arm.glb')).arrayBuffer()], 'arm.glb')])).length;
 `;
@@ -42,7 +42,7 @@ function files(name) {
     fs.writeFileSync(path.join(project, 'main.js'), main);
     build[name](out);
     if (pages[name] === 'bundle.js') fs.writeFileSync(path.join(out, 'index.html'), html('bundle.js'));
-    for (const file of ['face.nohz', 'arm.glb']) fs.copyFileSync(path.join(project, file), path.join(out, file));
+    for (const file of ['face.noh', 'arm.glb']) fs.copyFileSync(path.join(project, file), path.join(out, file));
     fs.writeFileSync(path.join(out, 'style.css'), 'noh-character { height: 100px; width: 80px }');
     return out;
 }
@@ -81,6 +81,7 @@ async function tried(browser, name) {
         it.listen();
     }));
     check(`${name}: the microphone is heard`, heard.speaks, JSON.stringify(heard));
+    await page.evaluate(() => document.getElementById('it').character.prepared); // by a worker of its own
     check(`${name}: the policy refuses nothing`, page.problems.length === 0, page.problems.join(' | '));
     await page.close();
     server.close();

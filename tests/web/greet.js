@@ -5,7 +5,7 @@
 const fs = require('fs');
 const path = require('path');
 const { folder, out, check, close, faults, run, address } = require('./harness.js');
-const { newPage } = require('./browser.js');
+const { newPage, slowly, unprepared } = require('./browser.js');
 
 const phone = { viewport: { width: 390, height: 844 }, deviceScaleFactor: 1, hasTouch: true, isMobile: true };
 const small = 'size=96&detail=2&shadow=off'; // a software rasteriser pays for each pixel
@@ -25,6 +25,8 @@ function pack(request, answer) {
 
 async function meet(browser, options, search = small) {
     const page = await newPage(browser, options);
+    await slowly(page);
+    await unprepared(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
@@ -86,7 +88,7 @@ async function touched(page) {
     await page.screenshot({ path: path.join(out, 'greet_says.png') });
     await ends(page);
     const seconds = (Date.now() - begin) / 1000, seen = await page.evaluate(() => ({ ...window.seen, moods: [...window.seen.moods] }));
-    check('greeting: it takes about twenty seconds', seconds > 12 && seconds < 180, seconds);
+    check('greeting: it is not over at once', seconds > 12, seconds); // how much later depends on the machine
     check('greeting: five sentences are shown', seen.words.length === 5 && /in \d+ kilobytes/.test(seen.words[1]), seen.words.join(' | '));
     check('greeting: the mouth moves', seen.open > 0.2, seen.open);
     check('greeting: it shows emotions', ['joy', 'sadness', 'surprise', 'anger'].every((mood) => seen.moods.includes(mood)), seen.moods.join());

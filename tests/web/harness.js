@@ -3,7 +3,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, newPage, save, slowly } = require('./browser.js');
+const { serve, launch, newPage, save, slowly, unprepared } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
 let told = 0, failures = 0, address = '';
@@ -12,7 +12,7 @@ function check(name, right, more) {
     told++;
     if (!right) failures++;
     console.log(`${right ? '' : 'not '}ok ${told} - ${name}`);
-    if (!right && more !== undefined) console.log(`#   ${more}`);
+    if (more !== undefined && (!right || process.env.NOH_WEB_VALUES)) console.log(`#   ${more}`);
 }
 
 const keep = (page, name) => save(page, '#canvas', path.join(out, name));
@@ -35,13 +35,14 @@ const setTarget = (page, target, value) => slide(page, `input[data-target="${tar
 
 // In plain light, without faces that live, without a shadow on the floor, as `noh render` has it, and with all panels,
 // unless the search says otherwise; in a small picture at a coarse level, since a software rasteriser pays for each pixel
-// and triangle.
-const asTested = { light: 'plain', floor: 'off', alive: 'off', tab: 'all', size: 192, detail: 3, pixels: 'all' };
+// and triangle; of the pack as it is, which opens one stage and not two (load.js has the wire form).
+const asTested = { pack: 'page.noh', light: 'plain', floor: 'off', alive: 'off', tab: 'all', size: 192, detail: 3, pixels: 'all' };
 async function open(browser, options, search) {
     const asked = new URLSearchParams(search);
     for (const [name, value] of Object.entries(asTested)) if (!asked.has(name)) asked.set(name, value);
     const page = await newPage(browser, options);
     await slowly(page);
+    await unprepared(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
@@ -75,18 +76,25 @@ async function faults(page, part) {
 const choose = (page, selector, label) => drawn(page, () => page.selectOption(selector, { label }));
 const toggle = (page, selector) => drawn(page, () => page.click(selector));
 
-// CPU seconds of the browser's processes so far, by kind, with NOH_WEB_TIMES=1; a closed page's are gone.
+// CPU seconds of the browser's processes so far, those that have ended included, and of node, with NOH_WEB_TIMES=1.
 async function spent(browser) {
     if (process.env.NOH_WEB_TIMES !== '1') return null;
-    const client = await browser.newBrowserCDPSession(), { processInfo } = await client.send('SystemInfo.getProcessInfo'), sum = {};
+    const client = await browser.newBrowserCDPSession(), { processInfo } = await client.send('SystemInfo.getProcessInfo'), { user, system } = process.cpuUsage(), all = new Map();
     await client.detach();
-    for (const { type, cpuTime } of processInfo) sum[type] = (sum[type] || 0) + cpuTime;
-    return sum;
+    for (const id of fs.readdirSync('/proc').filter((name) => /^\d+$/.test(name))) {
+        try {
+            const fields = fs.readFileSync(`/proc/${id}/stat`, 'utf8').replace(/.*\) /, '').split(' ').map(Number); // from the third on
+            all.set(Number(id), { parent: fields[1], seconds: fields.slice(11, 15).reduce((a, b) => a + b) / 100 });
+        } catch { /* has ended */ }
+    }
+    const { id: root } = processInfo.find(({ type }) => type === 'browser'), isOf = (id) => id === root || (all.has(id) && isOf(all.get(id).parent));
+    return { browser: [...all].reduce((sum, [id, { seconds }]) => sum + (isOf(id) ? seconds : 0), 0), node: (user + system) / 1e6,
+        GPU: processInfo.reduce((sum, { type, cpuTime }) => sum + (type === 'GPU' ? cpuTime : 0), 0) };
 }
 
 function tell(name, seconds, before, after) {
-    const cpu = ['GPU', 'browser'].map((type) => `${type} ${(after[type] - (before[type] || 0)).toFixed(1)}`).join(', ');
-    console.log(`# ${path.basename(folder)} ${name}: ${seconds.toFixed(1)} s; of processors: ${cpu}`);
+    const took = (what) => (after[what] - before[what]).toFixed(1);
+    console.log(`# ${path.basename(folder)} ${name}: ${seconds.toFixed(1)} s; of processors: browser ${took('browser')}, of it GPU ${took('GPU')}; node ${took('node')}`);
 }
 
 // { name: async (browser) => ... }, run one after another. flags: of the browser's command line; places: served with

@@ -4,7 +4,7 @@
 'use strict';
 const fs = require('fs');
 const path = require('path');
-const { serve, launch, newPage, save, slowly } = require('./browser.js');
+const { serve, launch, newPage, save, slowly, unprepared } = require('./browser.js');
 
 const [folder, executablePath, out] = process.argv.slice(2);
 const rate = 16000;
@@ -14,7 +14,7 @@ function check(name, right, more) {
     told++;
     if (!right) failures++;
     console.log(`${right ? '' : 'not '}ok ${told} - ${name}`);
-    if (!right && more !== undefined) console.log(`#   ${more}`);
+    if (more !== undefined && (!right || process.env.NOH_WEB_VALUES)) console.log(`#   ${more}`);
 }
 
 // ---- a voice ----
@@ -64,11 +64,12 @@ function wav() {
 async function open(browser, options, prepare) {
     const page = await newPage(browser, { viewport: { width: 1000, height: 700 }, ...options });
     await slowly(page);
+    await unprepared(page);
     page.problems = [];
     page.on('pageerror', (error) => page.problems.push(String(error)));
     page.on('console', (message) => { if (message.type() === 'error') page.problems.push(message.text()); });
     if (prepare) await page.addInitScript(prepare);
-    await page.goto(`${address}/?clip=none&light=plain&size=192&detail=3&tab=all`);
+    await page.goto(`${address}/?pack=page.noh&clip=none&light=plain&size=192&detail=3&tab=all`);
     await page.waitForFunction(() => window.noh.whole || window.noh.error);
     await page.click('#alive'); // a mouth that moves is then the speech's
     return page;
@@ -78,6 +79,16 @@ async function close(page, name) {
     check(`${name}: the browser reports no problem`, page.problems.length === 0, page.problems.join(' | '));
     await page.context().close();
 }
+
+// How far the mouth was open in any frame from now on, and the captions: whatever the test sees, and when.
+const record = (page) => page.evaluate(() => {
+    window.most = 0;
+    window.captions = [];
+    character.addEventListener('frame', () => { window.most = Math.max(window.most, character.speech.now.open); });
+    character.addEventListener('caption', ({ detail }) => captions.push(detail.words));
+});
+const opened = (page) => page.waitForFunction(() => window.most > 0.15).then(() => true, () => false);
+const shown = (page, caption) => page.waitForFunction((c) => captions.includes(c), caption).then(() => true, () => false);
 
 const words = (page, part) => page.waitForFunction((p) => document.getElementById('speech-text').textContent.includes(p), part)
     .then(() => true, () => false);
@@ -123,6 +134,7 @@ async function file(browser) {
     const page = await open(browser, {});
     await page.setInputFiles('#sound', { name: 'no_sound.wav', mimeType: 'audio/wav', buffer: Buffer.from('this is no sound') });
     check('a file: what is no sound is refused by name', await words(page, 'no_sound.wav: this browser cannot decode it'), await page.textContent('#speech-text'));
+    await record(page);
     await page.setInputFiles('#sound', path.join(out, 'voice.wav'));
     check('a file: it plays', await words(page, 'voice.wav, 3.0 s'), await page.textContent('#speech-text'));
     const frames = await page.evaluate(() => window.noh.said.frames.map((f) => f.open));
@@ -131,7 +143,7 @@ async function file(browser) {
     check('a file: silent before', mean(20, 95) < 0.05, mean(20, 95));
     check('a file: open in the vowel', mean(115, 190) > 0.3, mean(115, 190));
     check('a file: silent after', mean(220, 290) < 0.05, mean(220, 290));
-    check('a file: the mouth opens', await opens(page));
+    check('a file: the mouth opens', await opened(page));
     await page.waitForFunction(() => !character.speech.speaks);
     check('a file: and is shut at its end', await shuts(page));
     await close(page, 'a file');
@@ -155,10 +167,11 @@ async function text(browser) {
         window.heard = [];
         for (const type of ['word', 'caption']) character.addEventListener(type, ({ detail }) => heard.push(detail.word ?? detail.words));
     });
+    await record(none);
     await none.fill('#line', 'A man came home.');
     await none.click('#say button');
     check('text: a visitor reads that there is no voice', await words(none, 'This browser has no voice: the words are shown'), await none.textContent('#speech-text'));
-    check('text: and the face says it without one', await opens(none) && await none.textContent('#caption') === 'A man came home.');
+    check('text: and the face says it without one', await opened(none) && await shown(none, 'A man came home.'));
     await none.screenshot({ path: path.join(out, 'silent.png') });
     await none.waitForFunction(() => !character.speech.speaks);
     const heard = await none.evaluate(() => heard.join('|'));
@@ -174,9 +187,10 @@ async function text(browser) {
     await late.waitForFunction(() => window.voice.now);
     check('text: voices that come late speak the first time', await late.evaluate(() => window.voice.now.text) === 'mama');
     await late.evaluate(() => { speechSynthesis.speak = () => {}; });
+    await record(late);
     await late.fill('#line', 'papa');
     await late.click('#say button');
-    check('text: a voice that does not begin is done without', await words(late, 'This browser has no voice') && await late.textContent('#caption') === 'papa');
+    check('text: a voice that does not begin is done without', await words(late, 'This browser has no voice') && await shown(late, 'papa'));
     await close(late, 'late voices');
     const page = await open(browser, {}, voices);
     await page.fill('#line', `Papa und Mama ${'a'.repeat(300)}`); // half a minute: frames may be slow
@@ -228,8 +242,8 @@ async function program(browser) {
             }
             told[name] = [open > 0.2, await done].join();
         };
-        const buffer = await context.decodeAudioData(new Uint8Array(bytes).buffer), silence = context.createBuffer(1, 8000, 16000);
-        await most('visemes', silence, { visemes: [{ viseme: 0, ms: 0 }, { viseme: 10, ms: 100 }, { viseme: 0, ms: 400 }] });
+        const buffer = await context.decodeAudioData(new Uint8Array(bytes).buffer), silence = context.createBuffer(1, 32000, 16000);
+        await most('visemes', silence, { visemes: [{ viseme: 0, ms: 0 }, { viseme: 10, ms: 100 }, { viseme: 0, ms: 1800 }] }); // long enough for slow frames
         const resampled = await (async () => { const o = new OfflineAudioContext(1, 48000, 16000), n = o.createBufferSource(); n.buffer = buffer; n.connect(o.destination); n.start(); return o.startRendering(); })();
         await most('chunks', (async function* () { for (let i = 0; i < 48000; i += 8000) yield resampled.getChannelData(0).slice(i, i + 8000); })(), { rate: 16000 });
         const audio = new Audio(URL.createObjectURL(new Blob([new Uint8Array(bytes)], { type: 'audio/wav' })));

@@ -16,7 +16,7 @@ function checked() {
 }
 
 function build() {
-    renderer.setSize(320, 320, false);
+    renderer.setSize(200, 200, false);
     Object.assign(renderer.shadowMap, { enabled: true, type: PCFShadowMap });
     scene.background = new Color(0x4e5054);
     sun.position.set(0.6, 1.2, 0.9);
