@@ -45,6 +45,12 @@ async function first(browser) {
         return { name: image.currentSrc, wide: image.naturalWidth };
     });
     check('first: a poster for a tall screen', /poster_tall/.test(poster.name) && poster.wide > 0 && await page.isVisible('#poster img'), JSON.stringify(poster));
+    const shape = await page.evaluate(async () => { // as a phone lies
+        const image = Object.assign(new Image(), { src: 'poster_wide.jpg' });
+        await image.decode();
+        return image.naturalWidth / image.naturalHeight;
+    });
+    check('first: the wide poster is cut at its sides alone', shape >= phone.viewport.height / phone.viewport.width, shape);
     for (const name of ['tall', 'wide']) check(`first: the ${name} poster has 5 kB at most`, fs.statSync(path.join(folder, `poster_${name}.jpg`)).size <= 5000);
     await page.waitForFunction(() => /^loading: [1-9]\d? %$/.test(document.getElementById('progress-text').textContent));
     check('first: the share of what has come is a bar, too', await page.evaluate(() => { const { value, max } = document.getElementById('progress-bar'); return value > 0 && value < max; }));

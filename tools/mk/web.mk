@@ -76,7 +76,8 @@ $(WEB)/index.html: platform/web/index.html tools/web_index.sh $(WEB)/page.nohz $
 	@mv $@.new $@
 # The face as the page draws it, shown until it does: pictures of 3 kB.
 POSTER_tall := 150x325
-POSTER_wide := 320x200
+# Wider than most screens, which cut its sides: the face is as tall as the one that is drawn.
+POSTER_wide := 400x170
 $(BUILD)/web_poster: tools/web_poster/web_poster.c
 	@mkdir -p $(@D)
 	$(call say,CC,$@)
