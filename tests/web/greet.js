@@ -75,6 +75,8 @@ async function first(browser) {
 async function touched(page) {
     await page.evaluate(() => {
         window.seen = { moods: new Set(), words: [], turned: 0, lit: 0, open: 0 };
+        const feel = character.feel.bind(character); // some moods last less than a slow frame
+        character.feel = (mood, ...more) => { if (mood) window.seen.moods.add(mood); feel(mood, ...more); };
         const before = { azimuth: character.camera.azimuth, degrees: character.chosen.degrees };
         character.addEventListener('caption', ({ detail }) => { if (detail.words) window.seen.words.push(detail.words); });
         character.addEventListener('frame', () => {
