@@ -42,15 +42,23 @@ noh_result web_light_bake(void)
     return result;
 }
 
-/* Pass the lighting to the stage. Without a shadow map no key light is split off. */
-static void tell(void)
+static void rotate(float degrees, float rotation[9])
 {
     float s, c;
-    noh_sin_cos_turn(web_turn((double)web.light.degrees / 360.0), &s, &c);
-    const float rotation[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    noh_sin_cos_turn(web_turn((double)degrees / 360.0), &s, &c);
+    const float turn[9] = { c, 0.0f, s, 0.0f, 1.0f, 0.0f, -s, 0.0f, c };
+    memcpy(rotation, turn, sizeof turn);
+}
+
+/* Pass the lighting to the stage, turned to the figures' front. Without a shadow map no key light is split off. */
+static void tell(void)
+{
+    float rotation[9];
     if (!is_lit()) return;
+    rotate(web.light.degrees + web.facing, rotation);
     noh_lighting_make(&web.light.all, rotation, web.light.shadow == WEB_SHADOW_MAP, &web.light.told);
     web.light.told.tonemap = (noh_tonemap)web.light.tonemap;
+    rotate(web.light.degrees, rotation);
     web.light.told.exposure = noh_light_exposure(&web.light.all, rotation);
     noh_stage_set_lighting(web.stage, &web.light.told);
 }

@@ -163,6 +163,7 @@ EMSCRIPTEN_KEEPALIVE int web_open(int path, uint32_t characters, int alive, int 
     };
     noh_result result = web_load(&web.pack);
     web.character_count = characters;
+    if (!result) web.facing = web_cast_facing(&web.pack);
     if (!result) result = web_open_context();
     return (int)(result ? result : begin(&wants));
 }
@@ -417,6 +418,12 @@ EMSCRIPTEN_KEEPALIVE int web_fades(void)
 }
 
 /* ---- a frame ---- */
+
+/* Where the figures' front is, in degrees from +z towards +x, in steps of 90. */
+EMSCRIPTEN_KEEPALIVE float web_facing(void)
+{
+    return web.facing;
+}
 
 /* The position of the first character, which the camera follows: 3 floats, valid until the next call. */
 EMSCRIPTEN_KEEPALIVE float *web_walked(void)

@@ -81,6 +81,7 @@ struct web {
     web_light light;
     web_hair hair;
     noh_fall falls[WEB_ACTORS_MAX];
+    float facing;                      /* web_cast_facing */
     float bounds[6], from[3], spacing; /* from: position of the first character when bounds were measured */
     int32_t speed;                     /* playback speed, 1/65,536 */
     uint8_t smoothed;                  /* noh_appearance.smoothed of all figures */

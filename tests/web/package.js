@@ -327,6 +327,30 @@ async function stands(browser) {
     await close(page, 'stands');
 }
 
+// A body that faces -z is framed and lit from its own front.
+async function turned(browser) {
+    if (!fs.existsSync(path.join(project, 'turned.noh'))) return;
+    const page = await show(browser, ['standing', 'turned'].map((name) => `<noh-character id="${name}" src="${name}.noh" light="studio" shadow="off" view="upper" style="width: 64px; height: 80px"></noh-character>`).join(''));
+    await whole(page, 'standing', 'turned');
+    const told = await page.evaluate(async () => {
+        const all = ['standing', 'turned'].map((id) => document.getElementById(id).character), pixels = ({ gl, canvas }) => {
+            const out = new Uint8Array(4 * canvas.width * canvas.height);
+            gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, out);
+            return out;
+        };
+        const look = (character) => { character.stopped = true; character.advance(1); character.advance(0); return pixels(character); };
+        const [ahead, round] = all.map(look), apart = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+        all[1].turn(Math.PI, 0);
+        return { facing: all.map(({ program }) => program._web_facing()).join(), front: apart(ahead, round), back: apart(ahead, look(all[1])) };
+    });
+    check('turned: where it faces is known', told.facing === '0,180', told.facing);
+    check('turned: its front is shown, in the same light', told.front < told.back / 4, JSON.stringify(told));
+    await page.evaluate(() => document.getElementById('turned').character.home());
+    await frames(page, 'turned', 1);
+    await page.screenshot({ path: path.join(out, 'turned.png') });
+    await close(page, 'turned');
+}
+
 // The colour behind the figure: the page's own where it is transparent, with the shadow on the floor.
 async function behind(browser) {
     const page = await show(browser, `<style>#it { background-color: rgb(255, 200, 0); width: 100px; height: 125px }</style>
@@ -592,4 +616,4 @@ async function long(browser) {
     await close(page, 'minutes');
 }
 
-run({ readme, two, used, programs, lights, early, model, lazy, stands, behind, hotspots, voice, keys, dropped, still, long }, ['--enable-precise-memory-info'], { '/project/': project });
+run({ readme, two, used, programs, lights, early, model, lazy, stands, turned, behind, hotspots, voice, keys, dropped, still, long }, ['--enable-precise-memory-info'], { '/project/': project });

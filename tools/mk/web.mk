@@ -102,9 +102,9 @@ $(WEB)/%: platform/web/%
 
 # The program with everything, the ones of bodies and of faces, and the planner that the tests run under node.
 # context.c brings functions of WebGL in place of gl_api_load.c.
-WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/unmoved.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C))
+WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/unmoved.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C)) tools/noh/draw/facing.c
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
-WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
+WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o %/draw/facing.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
 WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
 WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o cast_fall.o) $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
@@ -142,11 +142,12 @@ $(WEB_OBJECTS)/ear.bin: tools/web_ear/web_ear.c runtime/life/face/ear_tables.c r
 	$(Q)$(CC) -std=c99 -O1 $(WARN) $(INCLUDES) $(filter %.c,$^) -o $(BUILD)/web_ear
 	$(Q)$(BUILD)/web_ear >$@.new
 	@mv $@.new $@
+# The rows of bone_names.c are words that are compared, no sentences.
 $(WEB_PROGRAMS): tools/web_messages.js
 	$(call say,EMCC,$@)
 	$(Q)$(WEB_CC) $(WEB_FLAGS) $(filter %.o,$^) $(WEB_LINK) -o $@ 2>$@.log || { cat $@.log; exit 1; }
 	$(Q)$(WEB_OPT) $@ -o $@
-	$(Q)node tools/web_messages.js $@ $(@:.wasm=.txt) $(filter runtime/%,$(RUNTIME_C)) $(call sources,runtime,*_internal.h)
+	$(Q)node tools/web_messages.js $@ $(@:.wasm=.txt) $(filter-out %/bone_names.c,$(filter runtime/%,$(RUNTIME_C))) $(call sources,runtime,*_internal.h)
 	$(Q)! grep 'undefined symbol' $@.log | grep -v 'symbol: \(gl[A-Z]\|enable\|extension\|feedback\|height\|keep_baked\|lost\|string\|take_baked\|width\)'
 $(WEB_OBJECTS)/%.txt: $(WEB_OBJECTS)/%.wasm ;
 

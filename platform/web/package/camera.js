@@ -25,9 +25,18 @@ const within = (value, [from, to]) => Math.max(from, Math.min(to, value));
 const faceIsAll = 0.4, upperShare = 0.45; // of the figure's height: a higher face is a head alone; of a body, its upper part
 const belowFace = [0.12, 0.12, 1.3], aboveFace = [0.12, 0.9, 0.35]; // room around a face, of its height: less at the sides, so that it fills a tall screen; above and behind, a drawn head is half hair
 
+// A box turned about the vertical axis, by a multiple of 90 degrees.
+function turned(b, degrees) {
+    const [s, c] = [Math.sin, Math.cos].map((of) => Math.round(of(degrees * units.deg)));
+    const x = [c * b[0] + s * b[2], c * b[3] + s * b[5]], z = [c * b[2] - s * b[0], c * b[5] - s * b[3]];
+    return [Math.min(...x), b[1], Math.min(...z), Math.max(...x), b[4], Math.max(...z)];
+}
+
 // The box of a view: 'face', 'upper' or 'full'. Boxes: minimum, maximum. face: what targets move; its minimum is above its
-// maximum if there is none.
-export function framed(all, face, view) {
+// maximum if there is none. facing: where the front is, in degrees from +z towards +x.
+export const framed = (all, face, view, facing) => turned(framedAhead(turned(all, -facing), turned(face, -facing), view), facing);
+
+function framedAhead(all, face, view) {
     const tall = all[4] - all[1], high = face[4] - face[1], middle = (all[0] + all[3]) / 2, half = upperShare * tall / 2;
     if (view === 'full' || (high < 0 && view === 'face')) return all;
     if (high > 0 && (view === 'face' || high > faceIsAll * tall)) {
@@ -45,14 +54,14 @@ function product(a, b, out) {
 
 export class Camera {
     constructor() {
-        // distance: 1 frames the figures; pixel: size of a page pixel at the figures, in world units
-        Object.assign(this, front, { limits: free, distance: 0, box: null, all: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
+        // azimuth: from the front; distance: 1 frames the figures; pixel: size of a page pixel at the figures, in world units
+        Object.assign(this, front, { limits: free, facing: 0, distance: 0, box: null, all: null, from: [0, 0, 0], offset: [0, 0, 0], right: [1, 0, 0], up: [0, 1, 0], pixel: 0, follows: true, byHand: false });
         this.matrix = new Float32Array(16);
     }
 
-    // Frame a box, measured at the figures' position, as near as possible. all: the box of the figures.
-    fit(box, from, all = box) {
-        Object.assign(this, { box, from, all, distance: 0, offset: [0, 0, 0], byHand: false });
+    // Frame a box, measured at the figures' position, as near as possible. all: the box of the figures; facing: as in framed.
+    fit(box, from, all = box, facing = 0) {
+        Object.assign(this, { box, from, all, facing, distance: 0, offset: [0, 0, 0], byHand: false });
     }
 
     zoom(by) {
@@ -81,13 +90,13 @@ export class Camera {
     write(out, walked, aspect, height) {
         const b = this.box, to = this.follows ? walked : this.from;
         const centre = [0, 1, 2].map((c) => (b[c] + b[3 + c]) / 2 + to[c] - this.from[c] + this.offset[c]);
-        const half = [0, 1, 2].map((c) => (b[3 + c] - b[c]) / 2), f = 1 / Math.tan(Math.PI / 12);
+        const ahead = turned(b, -this.facing), half = [0, 1, 2].map((c) => (ahead[3 + c] - ahead[c]) / 2), f = 1 / Math.tan(Math.PI / 12);
         const radius = Math.max(Math.hypot(...half), 1e-6);
         const need = Math.max(half[1], Math.max(half[0], half[2] * 0.7) / aspect) * 1.05;
         const d = (this.distance || 1) * Math.max(need * f + half[2], radius * 1.02);
         const depth = 2 * (radius + Math.max(...b.map((at, i) => Math.abs(this.all[i] - at))));
         const near = Math.max(d - depth, d * 0.02), far = d + depth;
-        const ca = Math.cos(this.azimuth), sa = Math.sin(this.azimuth), ce = Math.cos(this.elevation), se = Math.sin(this.elevation);
+        const azimuth = this.azimuth + this.facing * units.deg, ca = Math.cos(azimuth), sa = Math.sin(azimuth), ce = Math.cos(this.elevation), se = Math.sin(this.elevation);
         const right = [ca, 0, -sa], up = [-sa * se, ce, -ca * se], back = [sa * ce, se, ca * ce];
         Object.assign(this, { right, up, pixel: 2 * d / f / height });
         const eye = centre.map((c, i) => c + back[i] * d);

@@ -324,13 +324,13 @@ export class Character extends EventTarget {
     get walked() { return Array.from(this.program.floats(this.program._web_walked(), 3)); }
 
     // Frame the figures as near as possible, in their present pose or in all poses of a running clip; with the view 'upper'
-    // or 'face' that part of them, as `noh render --camera` does.
+    // or 'face' that part of them, as `noh render --camera` does, and from their own front.
     fit() {
         const p = this.program, clip = this.runs && this.playing[0].clip !== null ? this.clipNamed(this.playing[0].clip) : null;
         const poses = clip ? Math.min(mostPoses, Math.max(4, Math.ceil(clip.seconds * posesASecond))) : 0;
         const still = Array.from(p.floats(p._web_measure(), 6)), face = Array.from(p.floats(p._web_measure_face(), 6));
         const all = clip ? Array.from(p.floats(p._web_measure_clip(clip.index, clip.seconds, poses), 6)) : still;
-        this.camera.fit(this.view === 'full' ? all : framed(still, face, this.view), this.walked, all);
+        this.camera.fit(this.view === 'full' ? all : framed(still, face, this.view, p._web_facing()), this.walked, all, p._web_facing());
         this.redraw();
     }
 

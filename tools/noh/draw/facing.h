@@ -1,4 +1,5 @@
-/* facing.h: which way a body faces. In glTF it should be +z; pictures show others from their own front. */
+/* facing.h: which way a body faces. In glTF it should be +z; pictures, and the page (platform/web), show others from
+ * their own front. */
 #ifndef NOH_NOH_DRAW_FACING_H
 #define NOH_NOH_DRAW_FACING_H
 
