@@ -65,7 +65,7 @@ async function readme(browser) {
 
 async function two(browser) {
     const page = await show(browser, `<noh-character id="one" src="face.nohz" auto-life shadow="off" style="height: 50px; width: 50px"></noh-character>
-        <noh-character id="two" src="face.noh" characters="2" light="plain" clip="smile"></noh-character>`);
+        <noh-character id="two" src="face.noh" characters="2" light="plain" clip="smile" level="3"></noh-character>`);
     await whole(page, 'one', 'two');
     const all = await page.evaluate(() => ['one', 'two'].map((id) => document.getElementById(id)).map((e) => ({
         error: e.error, memory: e.memory, bytes: e.character.program.memory.buffer.byteLength,
