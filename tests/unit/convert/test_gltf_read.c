@@ -2451,6 +2451,22 @@ static void accessors_outside_their_bytes_are_left_out(void **state)
     check_lost(s, "has 2 elements, but 3 are needed");
 }
 
+/* A program that adds data to a .glb may leave its buffer's length as it was. */
+static void bytes_behind_a_wrong_length_are_read(void **state)
+{
+    (void)state;
+    write_text("test.gltf",
+               "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":12,\"uri\":"
+               "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}],"
+               "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+               "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+               "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
+    model *m = load_file();
+    assert_true(m->meshes[0].vertex_count == 3 && m->meshes[0].position[3] == 1.0f);
+    assert_true(has_warning(m, "buffer 0: it has 36 bytes, but 'byteLength' says 12: what lies behind them is used"));
+    model_free(m);
+}
+
 static void giant_counts_are_refused(void **state)
 {
     (void)state;
@@ -3132,6 +3148,7 @@ int main(void)
         cmocka_unit_test(half_a_triangle_is_left_out),
         cmocka_unit_test(wrong_types_are_left_out),
         cmocka_unit_test(accessors_outside_their_bytes_are_left_out),
+        cmocka_unit_test(bytes_behind_a_wrong_length_are_read),
         cmocka_unit_test(giant_counts_are_refused),
         cmocka_unit_test(missing_buffers_are_refused),
         cmocka_unit_test(numbers_that_are_not_finite_are_zeros),

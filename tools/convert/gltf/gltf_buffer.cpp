@@ -141,11 +141,18 @@ span buffer_bytes(file &f, int index, uint64_t offset, uint64_t size, const std:
 {
     if (index < 0 || static_cast<size_t>(index) >= f.buffers.size())
         fail(where, text("buffer %d does not exist: the file has %zu", index, f.buffers.size()));
-    const buffer &b = f.buffers[static_cast<size_t>(index)];
+    buffer &b = f.buffers[static_cast<size_t>(index)];
     if (!b.has_data)
         fail(where,
              text("buffer %d has no data: it has no 'uri', and is not the first of a .glb with a BIN chunk", index));
-    if (size > b.byte_length || offset > b.byte_length - size)
+    const auto has = [&](uint64_t bytes) { return size <= bytes && offset <= bytes - size; };
+    if (!has(b.byte_length) && has(b.data.size())) {
+        leave_out(f, text("buffer %d", index),
+                  text(": it has %zu bytes, but 'byteLength' says %llu: what lies behind them is used, and was read",
+                       b.data.size(), static_cast<unsigned long long>(b.byte_length)));
+        b.byte_length = b.data.size();
+    }
+    if (!has(b.byte_length))
         fail(where, text("bytes %llu to %llu are out of range: buffer %d has %llu",
                          static_cast<unsigned long long>(offset), static_cast<unsigned long long>(offset + size), index,
                          static_cast<unsigned long long>(b.byte_length)));
