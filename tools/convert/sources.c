@@ -51,6 +51,7 @@ static int turn(raw_set *set, const source_options *options, model_error *error)
     if (options->turn.rest_first_frame && raw_rest_from_frame(set, 0)) {
         return model_fail(error, "", "--rest first-frame: no clip moves the skeleton's joints");
     }
+    if (raw_stand_up(set) && options->skin.report) fprintf(options->skin.report, "+z is up: it was turned to +y\n");
     if (options->turn.faces_ahead) {
         if (raw_facing(&set->skeleton, &degrees)) {
             return model_fail(

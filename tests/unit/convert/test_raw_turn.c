@@ -105,6 +105,34 @@ static void all_of_it_is_turned(void **state)
     raw_set_free(was);
 }
 
+/* A head over two feet, along z in the bind pose and in frames: only then z is up. */
+static void who_stands_along_z_is_stood_up(void **state)
+{
+    static const char *const names[JOINTS] = { "Hips", "LeftFoot", "RightFoot", "Head", "Tail" };
+    static const float places[JOINTS][3] = {
+        { 0, 0, 90 }, { 10, 0, -80 }, { -10, 0, -80 }, { 0, -5, 60 }, { 0, 9, 0 }
+    };
+    (void)state;
+    for (int lies = 0; lies < 2; lies++) {
+        raw_set *set = figure(names);
+        const raw_joint *head = &set->skeleton.joints[3], *hips = &set->skeleton.joints[0];
+        double pose[JOINTS * 12];
+        for (uint32_t j = 0; j < JOINTS; j++) memcpy(set->skeleton.joints[j].translation, places[j], sizeof places[j]);
+        if (!lies) {
+            for (size_t i = 0; i < (size_t)FRAMES * JOINTS; i++) {
+                memcpy(set->clips[0].rotations + 4 * i, (const float[4]){ 0, 0, 0, 1 }, 4 * sizeof(float));
+                memcpy(set->clips[0].translations + 3 * i, places[i % JOINTS], sizeof places[0]);
+            }
+        }
+        assert_int_equal(raw_stand_up(set), !lies);
+        assert_true(fabsf(hips->translation[lies ? 2 : 1] - 90.0f) < 1e-4f && head->translation[2] == 60.0f);
+        raw_pose_object(&set->skeleton, lies ? NULL : &set->clips[0], 1, pose);
+        assert_true(fabs(pose[12 * 3 + 9 + (lies ? 2 : 1)] - 150.0) < 1e-3);
+        assert_int_equal(raw_stand_up(set), 0);
+        raw_set_free(set);
+    }
+}
+
 static void the_rest_is_the_first_frame(void **state)
 {
     raw_set *set = figure(spelled[0]);
@@ -126,6 +154,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(facing_is_found_by_any_spelling),
         cmocka_unit_test(who_has_no_sides_faces_nowhere),
         cmocka_unit_test(all_of_it_is_turned),
+        cmocka_unit_test(who_stands_along_z_is_stood_up),
         cmocka_unit_test(the_rest_is_the_first_frame),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "convert/base/quat.h"
+#include "convert/retarget/bones.h"
 #include "raw_set.h"
 
 #define DEGREE (3.14159265358979323846 / 180.0)
@@ -123,9 +124,8 @@ static void turn_root(const double q[4], float *rotation, float *translation)
     for (int i = 0; i < 3; i++) translation[i] = (float)t[i];
 }
 
-void raw_turn(raw_set *set, double degrees)
+static void turn_roots(raw_set *set, const double q[4])
 {
-    const double q[4] = { 0.0, sin(0.5 * degrees * DEGREE), 0.0, cos(0.5 * degrees * DEGREE) };
     for (uint32_t j = 0; j < set->skeleton.joint_count; j++) {
         raw_joint *joint = &set->skeleton.joints[j];
         if (joint->parent != MODEL_NONE) continue;
@@ -138,4 +138,45 @@ void raw_turn(raw_set *set, double degrees)
             }
         }
     }
+}
+
+void raw_turn(raw_set *set, double degrees)
+{
+    const double q[4] = { 0.0, sin(0.5 * degrees * DEGREE), 0.0, cos(0.5 * degrees * DEGREE) };
+    turn_roots(set, q);
+}
+
+/* ---- standing up ---- */
+
+/* Whether the head is above the feet along +z. */
+static int z_is_up(const raw_skeleton *skeleton, const raw_clip *clip, const uint16_t *bones, double *pose)
+{
+    double up[3];
+    raw_pose_object(skeleton, clip, 0, pose);
+    for (int i = 0; i < 3; i++) {
+        const double *origins = pose + 9 + i;
+        up[i] = origins[12u * (size_t)bones[NOH_BONE_HEAD]] -
+                0.5 * (origins[12u * (size_t)bones[NOH_BONE_FOOT]] +
+                       origins[12u * (size_t)bones[NOH_BONE_FOOT + NOH_BONE_RIGHT]]);
+    }
+    return up[2] > 2.0 * hypot(up[0], up[1]);
+}
+
+int raw_stand_up(raw_set *set)
+{
+    const double q[4] = { -sqrt(0.5), 0.0, 0.0, sqrt(0.5) };
+    uint16_t bones[NOH_BONES];
+    double *pose = malloc((set->skeleton.joint_count + 1u) * 12u * sizeof *pose);
+    int is_up;
+    bones_find(&set->skeleton, bones);
+    is_up = pose && bones[NOH_BONE_HEAD] != NOH_JOINT_ROOT && bones[NOH_BONE_FOOT] != NOH_JOINT_ROOT &&
+            bones[NOH_BONE_FOOT + NOH_BONE_RIGHT] != NOH_JOINT_ROOT && z_is_up(&set->skeleton, NULL, bones, pose);
+    for (uint32_t c = 0; c < set->clip_count && is_up; c++) {
+        if (set->clips[c].joint_count && set->clips[c].frame_count) {
+            is_up = z_is_up(&set->skeleton, &set->clips[c], bones, pose);
+        }
+    }
+    free(pose);
+    if (is_up) turn_roots(set, q);
+    return is_up;
 }

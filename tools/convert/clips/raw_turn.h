@@ -3,7 +3,8 @@
  *   raw_rest_from_frame  take the bind pose from a frame
  *   raw_side             whether a joint is a left or a right one
  *   raw_facing           where a skeleton faces, by its left and right
- *   raw_turn             skeleton and clips turned about +y */
+ *   raw_turn             skeleton and clips turned about +y
+ *   raw_stand_up         skeleton and clips turned from +z up to +y up */
 #ifndef NOH_CONVERT_CLIPS_RAW_TURN_H
 #define NOH_CONVERT_CLIPS_RAW_TURN_H
 
@@ -33,6 +34,10 @@ int raw_facing(const raw_skeleton *skeleton, double *degrees);
 
 /* Roots, in the bind pose and in every frame, from +z towards +x. */
 void raw_turn(raw_set *set, double degrees);
+
+/* A person whose head is above its feet along +z, in the bind pose and as each clip begins, is turned so that +y is up.
+ * Returns 1 if it was. */
+int raw_stand_up(raw_set *set);
 
 #ifdef __cplusplus
 }
