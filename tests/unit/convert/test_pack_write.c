@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "convert/pack/triangle_order.h"
 #include "support/pack_walk.h"
 
 static model *whole(void)
@@ -221,6 +222,23 @@ static void models_of_any_size_open(void **state)
     }
 }
 
+/* Sorting takes the square of the triangles that meet in a vertex: thousands stay as they are. */
+static void large_fans_are_not_sorted(void **state)
+{
+    enum { TRIANGLES = 5000 };
+    static float positions[TRIANGLES + 1][3];
+    static uint32_t indices[2][3 * TRIANGLES];
+    (void)state;
+    for (uint32_t i = 0; i < TRIANGLES; i++) {
+        const float angle = 6.2831853f * (float)i / (float)TRIANGLES;
+        const uint32_t at = i * 7u % TRIANGLES, of[3] = { at, (at + 1u) % TRIANGLES, TRIANGLES };
+        positions[i][0] = cosf(angle), positions[i][1] = sinf(angle);
+        for (int n = 0; n < 2; n++) memcpy(&indices[n][3 * i], of, sizeof of);
+    }
+    assert_int_equal(triangle_order(indices[0], 3 * TRIANGLES, positions[0], TRIANGLES + 1), 0);
+    assert_memory_equal(indices[0], indices[1], sizeof indices[0]);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(models_of_any_size_open),
     cmocka_unit_test(the_same_model_gives_the_same_bytes),
@@ -230,6 +248,7 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(wrap_modes_and_filters_are_kept),
     cmocka_unit_test(the_scene_is_kept),
     cmocka_unit_test(targets_say_how_far_they_move),
+    cmocka_unit_test(large_fans_are_not_sorted),
 };
 
 TEST_MAIN(tests, NULL, NULL)
