@@ -4,6 +4,7 @@
  * cross: long, thousands of frames */
 #include "support/busy_stage.h"
 
+#include "core/base/math_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "stage/modules/stage_ragdoll_internal.h"
 
@@ -465,13 +466,38 @@ static void a_ragdoll_has_one_actor_in_states(void **state)
     busy_stage_close(&s);
 }
 
+/* The places that add up over time are taken up to their limit, and refused beyond it. */
+static void sums_in_states_have_a_limit(void **state)
+{
+    const double most = (double)NOH_SOUND_MAX;
+    busy_stage s;
+    size_t bytes;
+    uint8_t *copy;
+    (void)state;
+    busy_stage_open(&s, 1);
+    busy_stage_enter(&s);
+    const uint8_t *own = noh_stage_state(s.c.stage, &bytes);
+    copy = test_aligned(own, bytes);
+    noh_stage_actor *first = (void *)(copy + ((const uint8_t *)s.c.stage->actors - own));
+    first->home[0] = most;
+    first->moved.translation[1] = -most;
+    assert_int_equal(noh_stage_set_state(s.c.stage, copy, bytes, NULL), NOH_OK);
+    first->home[0] = nextafter(most, INFINITY);
+    assert_refused(&s, copy, bytes, "place is not a number");
+    first->home[0] = most;
+    first->moved.translation[1] = nextafter(-most, -INFINITY);
+    assert_refused(&s, copy, bytes, "place is not a number");
+    free(copy);
+    busy_stage_close(&s);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_stage_takes_its_own_states),   cmocka_unit_test(despawned_actors_leave_nothing),
-        cmocka_unit_test(a_free_ragdoll_rests_in_states), cmocka_unit_test(a_ragdoll_has_one_actor_in_states),
-        cmocka_unit_test(what_moves_stays_within),        cmocka_unit_test(what_staggers_stays_within),
-        cmocka_unit_test(what_is_let_go_stays_within)
+        cmocka_unit_test(sums_in_states_have_a_limit),       cmocka_unit_test(a_stage_takes_its_own_states),
+        cmocka_unit_test(despawned_actors_leave_nothing),    cmocka_unit_test(a_free_ragdoll_rests_in_states),
+        cmocka_unit_test(a_ragdoll_has_one_actor_in_states), cmocka_unit_test(what_moves_stays_within),
+        cmocka_unit_test(what_staggers_stays_within),        cmocka_unit_test(what_is_let_go_stays_within)
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
