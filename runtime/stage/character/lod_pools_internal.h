@@ -80,7 +80,8 @@ noh_result noh_lod_pools_check(const void *copy, const noh_lod_pools *like, noh_
 
 void noh_lod_pools_begin(noh_lod_pools *pools);
 
-/* Request a slot for this frame; at most once per instance. An instance without a request loses its slot. With equal
+/* Request a slot for this frame; at most once per instance. An instance without a request loses its slot: the slot of a
+ * despawned actor is free from the next frame on, and what the actor leaves in the block is never drawn. With equal
  * priorities the nearer instance comes first, to a five-hundredth of its distance.
  * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is
  *         0). distance at least 0, in any unit; afresh 1: its distance has changed since it got its slot, so holding the
