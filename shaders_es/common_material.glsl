@@ -98,15 +98,8 @@ struct noh_surface {
 };
 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
-/* The unit vector of a normal map in tangent space. */
-vec3 noh_unpack_normal(vec3 texel, float scale)
-{
-    vec3 v = noh_map_vector(texel);
-    return normalize(vec3(v.xy * scale, max(v.z, 1e-3)));
-}
-
-/* From tangent space to the world. The frame is made orthogonal at each pixel, because targets, joints and filtering do
- * not keep the tangent perpendicular to the normal. */
+/* From tangent space to the world, unit whatever the length of v. The frame is made orthogonal at each pixel, because
+ * targets, joints and filtering do not keep the tangent perpendicular to the normal. */
 vec3 noh_map_normal(vec3 v, vec3 normal, vec4 tangent)
 {
     vec3 t = tangent.xyz - normal * dot(normal, tangent.xyz);
@@ -169,7 +162,7 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
 #if defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)
     vec3 mapped = vec3(0.0, 0.0, 1.0);
 #ifdef NOH_NORMAL_MAP
-    mapped = noh_unpack_normal(texture(noh_normal_texture, uv).rgb, noh_maps.x);
+    mapped = noh_map_vector(texture(noh_normal_texture, uv).rgb, noh_maps.x);
 #endif
 #ifdef NOH_WRINKLES
     s.wrinkles = noh_wrinkle_by_model(uv);

@@ -8,13 +8,13 @@
  * The weight maps are read at vertices (common_vertex.glsl): three textures fewer at each pixel. With NOH_WRINKLE_PIXEL
  * each pixel reads a mask of codes instead, one texture, texel by texel. */
 #if (defined(NOH_NORMAL_MAP) || defined(NOH_WRINKLES)) && !defined(NOH_DEPTH_ONLY)
-/* The vector of a normal map's texel. Bytes cannot represent 0 exactly; 128 stands for it. A map of two channels has no
- * blue: z follows from x and y. */
-vec3 noh_map_vector(vec3 texel)
+/* The vector of a normal map's texel, not unit, its slopes scaled. Bytes cannot represent 0 exactly; 128 stands for it.
+ * A map of two channels has no blue: z follows from x and y. */
+vec3 noh_map_vector(vec3 texel, float scale)
 {
     vec3 v = (texel * 255.0 - 128.0) / 127.0;
     if (texel.b == 0.0) v.z = sqrt(max(1.0 - dot(v.xy, v.xy), 0.0));
-    return v;
+    return vec3(v.xy * scale, max(v.z, 1e-3));
 }
 #endif
 
@@ -100,18 +100,17 @@ vec3 noh_wrinkle_by_model()
 #endif
 
 /* Reoriented normal mapping (Barre-Brisebois, Hill: "Blending in Detail", 2012): the detail is rotated with the base
- * normal, so that neither flattens the other. Both unit, tangent space. */
+ * normal, so that neither flattens the other. base: unit; in tangent space. The result is as long as detail. */
 vec3 noh_blend_normals(vec3 base, vec3 detail)
 {
     vec3 t = base + vec3(0.0, 0.0, 1.0), u = detail * vec3(-1.0, -1.0, 1.0);
-    return normalize(t * (dot(t, u) / t.z) - u);
+    return t * (dot(t, u) / t.z) - u;
 }
 
-/* A normal in tangent space with its wrinkles. */
+/* A vector of a normal map with its wrinkles, not unit. */
 vec3 noh_wrinkled(vec3 base, vec3 texel, vec3 by)
 {
-    vec3 detail = noh_map_vector(texel);
     float weight = max(by.x, max(by.y, by.z));
-    return noh_blend_normals(base, normalize(vec3(detail.xy * weight, max(detail.z, 1e-3))));
+    return noh_blend_normals(normalize(base), noh_map_vector(texel, weight));
 }
 #endif

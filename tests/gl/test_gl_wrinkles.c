@@ -114,7 +114,7 @@ static const char blend_fragment[] =
     "    vec3 base = normalize(vec3(vec2(i) / 16.0 - 2.0, 1.0));\n"
     "    vec3 texel = vec3(i.x * 37 + i.y * 11 & 255, i.x * 7 + i.y * 91 & 255, 130 + (i.x + i.y & 127) * 125 / 127) / 255.0;\n"
     "    float weight = float(i.x * 5 + i.y * 3 & 15) / 15.0;\n"
-    "    show(noh_wrinkled(base, texel, vec3(0.0, weight, 0.5 * weight))[test_pick]);\n"
+    "    show(normalize(noh_wrinkled(base, texel, vec3(0.0, weight, 0.5 * weight)))[test_pick]);\n"
     "}\n";
 
 static void expected_blend(uint32_t x, uint32_t y, float out[3])
@@ -158,7 +158,7 @@ static void normals_are_those_of_the_cpu(void **state)
 static const char channel_fragment[] =
     "void main() {\n"
     "    vec3 by = noh_wrinkle_by_model();\n"
-    "    vec3 n = noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by);\n"
+    "    vec3 n = normalize(noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by));\n"
     "    show(test_pick < 3 ? n[test_pick] : by[test_pick - 3]);\n"
     "}\n";
 
@@ -415,10 +415,11 @@ static uint32_t covered_by(const char *fragment)
  */
 static void what_has_no_wrinkles_is_drawn(void **state)
 {
-    static const char ours[] = "void main() {\n"
-                               "    vec3 by = max(noh_wrinkle_by_model(), vec3(0.0));\n"
-                               "    show(noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by).z);\n"
-                               "}\n",
+    static const char ours[] =
+        "void main() {\n"
+        "    vec3 by = max(noh_wrinkle_by_model(), vec3(0.0));\n"
+        "    show(normalize(noh_wrinkled(vec3(0.0, 0.0, 1.0), vec3(200.0, 90.0, 210.0) / 255.0, by)).z);\n"
+        "}\n",
                       literal[] = "void main() {\n"
                                   "    if (noh_wrinkle_by_model().y - 0.001 < 0.0) discard;\n"
                                   "    show(1.0);\n"
@@ -435,7 +436,7 @@ static void texels_become_normals_before_they_mix(void **state)
         "void main() {\n"
         "    vec3 flat_texel = vec3(128.0, 128.0, 255.0) / 255.0, base = vec3(0.0, 0.0, 1.0);\n"
         "    vec3 literal = normalize(mix(base, flat_texel, 1.0));\n"
-        "    show(test_pick == 0 ? noh_wrinkled(base, flat_texel, vec3(1.0)).z : literal.z);\n"
+        "    show(test_pick == 0 ? normalize(noh_wrinkled(base, flat_texel, vec3(1.0))).z : literal.z);\n"
         "}\n";
     program p;
     fixture_frame frame;
