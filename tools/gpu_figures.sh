@@ -1,6 +1,6 @@
 #!/bin/sh
 # gpu_figures.sh BUILD [OPTIONS OF noh bench]: what morphing costs on the GPU at hand, by its timers: every path against
-# loops over targets, 2 to all targets active, in one draw and in three, and a hundred heads; on the mask, and, where
+# loops over targets, 2 to all targets active, in one draw and in three, and 10 to 1,000 heads; on the mask, and, where
 # $NOH_ASSETS has them, on head.glb and identity.glb. 9 rounds, unless the options say so: --quick is for a try, also
 # on a software rasteriser, whose figures are processor time. Prints the cost of each path as a share of the loop over
 # active targets, and counts the shares above 1. BUILD/gpu_figures has the whole output of the bench.

@@ -1,5 +1,6 @@
 /* bench_crowd.c: a hundred heads in one accumulator, each with weights of its own, against
- * one head alone, with all targets active and with few; and how cost grows with pairs. */
+ * one head alone, with all targets active and with few; ten and a thousand heads with few;
+ * and how cost grows with pairs. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 
 #define SAMPLE_NS 1e7
 #define HEADS 100u
+#define FEW 6u   /* active targets of an expression */
 #define STEPS 4u /* quarters of the targets that are active */
 
 typedef struct crowd {
@@ -50,9 +52,8 @@ static int open_morph(crowd *c, gpu_morph *m, uint32_t heads)
     return gpu_morph_open(m, &c->job->g, &desc, c->job->files[0].path);
 }
 
-static int can_run(const crowd *c)
+static int can_run(const crowd *c, uint32_t heads)
 {
-    const uint32_t heads = HEADS;
     noh_gl_morph_desc desc;
     noh_gl_morph_plan plan;
     memset(&desc, 0, sizeof desc);
@@ -119,22 +120,23 @@ static int measure(crowd *c)
     return status;
 }
 
-/* One head and a hundred heads with this many active targets. */
-static int measure_few(crowd *c, uint32_t active)
+/* One head and many heads with this many active targets. */
+static int measure_few(crowd *c, uint32_t heads, uint32_t active)
 {
     bench_weights weights;
-    crowd_work works[2] = { { c, &c->one, &weights, 1 }, { c, &c->many, &weights, HEADS } };
+    crowd_work works[2] = { { c, &c->one, &weights, 1 }, { c, &c->many, &weights, heads } };
     bench_cells cells;
     char name[64];
     int status = bench_weights_open(&weights, &c->job->mesh, active);
     if (status) return status;
     memset(&cells, 0, sizeof cells);
-    snprintf(name, sizeof name, "crowd/100-heads/%u-active/%s-f32", (unsigned)active, noh_morph_path_name(c->path));
+    snprintf(name, sizeof name, "crowd/%u-heads/%u-active/%s-f32", (unsigned)heads, (unsigned)active,
+             noh_morph_path_name(c->path));
     for (int i = 0; i < 2; i++) bench_add_cell(&cells, run_update, &works[i]);
     status = bench_run_cells(&cells, &c->job->gl_clock, c->job->rounds, SAMPLE_NS, name);
     if (!status) {
         bench_add_row(&c->job->rows, name, "one-head", 1e-3 * bench_median(&cells, 0),
-                      1e-3 * bench_median(&cells, 1) / HEADS, "us/head", cells.rounds);
+                      1e-3 * bench_median(&cells, 1) / heads, "us/head", cells.rounds);
     }
     bench_free_cells(&cells);
     bench_weights_close(&weights);
@@ -143,7 +145,7 @@ static int measure_few(crowd *c, uint32_t active)
 
 static int bench_path(crowd *c)
 {
-    static const uint32_t few[] = { 2, 6, 34 };
+    static const uint32_t few[] = { 2, FEW, 34 }, others[] = { 10, 1000 };
     int status = open_morph(c, &c->one, 1);
     if (!status) {
         status = open_morph(c, &c->many, HEADS);
@@ -152,9 +154,15 @@ static int bench_path(crowd *c)
         status = measure(c);
     }
     for (size_t i = 0; i < sizeof few / sizeof few[0] && !status; i++) {
-        if (c->job->mesh.header->target_count >= few[i] && !c->job->quick) status = measure_few(c, few[i]);
+        if (c->job->mesh.header->target_count >= few[i] && !c->job->quick) status = measure_few(c, HEADS, few[i]);
     }
     gpu_morph_close(&c->many);
+    for (size_t i = 0; i < sizeof others / sizeof others[0] && !status && !c->job->quick; i++) {
+        if (c->job->mesh.header->target_count < FEW || !can_run(c, others[i])) continue;
+        status = open_morph(c, &c->many, others[i]);
+        if (!status) status = measure_few(c, others[i], FEW);
+        gpu_morph_close(&c->many);
+    }
     gpu_morph_close(&c->one);
     return status;
 }
@@ -173,7 +181,7 @@ int bench_crowd(bench_job *job)
     }
     for (size_t p = 0; p < sizeof paths / sizeof paths[0] && !status; p++) {
         c.path = paths[p];
-        if (can_run(&c)) {
+        if (can_run(&c, HEADS)) {
             status = bench_path(&c);
         }
     }
