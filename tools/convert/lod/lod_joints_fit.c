@@ -8,9 +8,9 @@
 #include "lod_joints_weights.h"
 
 #define ROUNDS 60u
-#define RIDGE 1e-3  /* of a diagonal element */
-#define RESTING 0.1 /* points that rest at a joint's centre: what moves hardly anything moves little */
-#define LAWSON_MOST 400.0
+#define RIDGE 1e-3    /* of a diagonal element */
+#define RESTING 0.1   /* points that rest at a joint's centre: what moves hardly anything moves little */
+#define SEED_EVERY 3u /* rounds, in the first three quarters of them */
 
 /* The results of the round that was off the least. */
 typedef struct fit_round {
@@ -32,6 +32,7 @@ typedef struct fit_state {
     float *left;        /* [target_count][6] */
     uint32_t *same;     /* [count] the first point that lies there and is moved alike */
     double *importance; /* [count] */
+    float *stress;      /* [count][target_count] how much a target counts at a point */
     double *off;        /* [count] the farthest off in any target, squared */
     double *matrix;     /* [6 joint_count][6 joint_count] */
     double *right;      /* [target_count][6 joint_count] */
@@ -115,32 +116,48 @@ static void fill_columns(fit_state *s, uint32_t v)
         const size_t from = 3u * (v * targets + t);
         memcpy(s->wanted + 6u * t, p->move + from, 3u * sizeof(float));
         for (size_t k = 0; k < 3u; k++) s->wanted[6u * t + 3u + k] = p->normal_length * p->turn[from + k];
+        for (size_t k = 0; k < 6u; k++) s->wanted[6u * t + k] *= s->stress[v * targets + t];
     }
     for (uint32_t j = 0; j < s->out->joint_count; j++) {
         for (size_t t = 0; t < targets; t++) {
             const size_t at = 6u * (j * targets + t);
             apply(s->motion + at, s->out->centre + 3u * j, place, s->predicted + at);
             cross(s->motion + at + 3u, normal, p->normal_length, s->predicted + at + 3u);
+            for (size_t k = 0; k < 6u; k++) s->predicted[at + k] *= s->stress[v * targets + t];
         }
     }
 }
 
-/* The farthest that any target takes the point off, squared. */
-static double farthest_off(const fit_state *s, uint32_t v)
+/* How far a target takes a point off, squared. */
+static double off_by(const fit_state *s, uint32_t v, size_t t)
+{
+    const size_t targets = s->points->target_count;
+    double square = 0.0;
+    for (size_t k = 0; k < 3u; k++) {
+        double d = -(double)s->wanted[6u * t + k];
+        for (size_t i = 0; i < JOINTS_PER_VERTEX; i++) {
+            const size_t at = v * (size_t)JOINTS_PER_VERTEX + i;
+            d += (double)s->out->weight[at] * (double)s->predicted[6u * (s->out->joint[at] * targets + t) + k];
+        }
+        square += d * d;
+    }
+    return square / ((double)s->stress[v * targets + t] * (double)s->stress[v * targets + t]);
+}
+
+/* The farthest that any target takes the point off, squared. Those that take it far count more in the next round: a
+ * point whose targets all but one suit no joint would stay where it is in that one, too. */
+static double farthest_off(fit_state *s, uint32_t v)
 {
     const size_t targets = s->points->target_count;
     double most = 0.0;
     for (size_t t = 0; t < targets; t++) {
-        double square = 0.0;
-        for (size_t k = 0; k < 3u; k++) {
-            double d = -(double)s->wanted[6u * t + k];
-            for (size_t i = 0; i < JOINTS_PER_VERTEX; i++) {
-                const size_t at = v * (size_t)JOINTS_PER_VERTEX + i;
-                d += (double)s->out->weight[at] * (double)s->predicted[6u * (s->out->joint[at] * targets + t) + k];
-            }
-            square += d * d;
-        }
+        const double square = off_by(s, v, t);
+        s->left[t] = (float)sqrt(square);
         most = square > most ? square : most;
+    }
+    for (size_t t = 0; t < targets && most > 0.0; t++) {
+        float *stress = &s->stress[v * targets + t];
+        *stress = sqrtf(*stress * (0.1f + s->left[t] / (float)sqrt(most)));
     }
     return most;
 }
@@ -292,14 +309,46 @@ static void weigh_importance(fit_state *s)
     double mean = 0.0, sum = 0.0;
     for (uint32_t v = 0; v < count; v++) mean += sqrt(s->off[v]) / count;
     for (uint32_t v = 0; v < count && mean > 0.0; v++) {
-        s->importance[v] *= 0.5 + 0.5 * sqrt(s->off[v]) / mean;
+        const double off = 0.05 + sqrt(s->off[v]) / mean, root = sqrt(s->importance[v]);
+        s->importance[v] = root * sqrt(root) * off * sqrt(off);
         sum += s->importance[v] / count;
     }
-    for (uint32_t v = 0; v < count && sum > 0.0; v++) {
-        s->importance[v] /= sum;
-        s->importance[v] = s->importance[v] < LAWSON_MOST ? s->importance[v] : LAWSON_MOST;
-        s->importance[v] = s->importance[v] > 1.0 / LAWSON_MOST ? s->importance[v] : 1.0 / LAWSON_MOST;
+    for (uint32_t v = 0; v < count && sum > 0.0; v++) s->importance[v] /= sum;
+}
+
+/* How much a joint does. */
+static double use_of(const fit_state *s, uint32_t j)
+{
+    const size_t width = 3u * (size_t)s->points->target_count;
+    double use = 0.0;
+    for (size_t i = 0; i < s->points->count * (size_t)JOINTS_PER_VERTEX; i++) {
+        const float *move = s->points->move + i / JOINTS_PER_VERTEX * width;
+        if (s->out->joint[i] == j) use += (double)s->out->weight[i] * joint_dot(move, move, width);
     }
+    return use;
+}
+
+/* The joint that does least becomes what moves the point that is farthest off. */
+static void seed_again(fit_state *s)
+{
+    joint_fit *f = s->out;
+    const uint32_t count = f->joint_count;
+    uint32_t worst = 0, least = count;
+    double least_use = HUGE_VAL;
+    for (uint32_t v = 1; v < s->points->count; v++) worst = s->off[v] > s->off[worst] ? v : worst;
+    for (uint32_t j = 0; j < count; j++) {
+        const double use = f->parent[j] == s->points->parent[worst] ? use_of(s, j) : HUGE_VAL;
+        if (!(use < least_use)) continue;
+        least_use = use;
+        least = j;
+    }
+    if (least == count) return;
+    for (size_t i = 0; i < s->points->count * (size_t)JOINTS_PER_VERTEX; i++) {
+        if (f->joint[i] == least) f->weight[i] = 0.0f;
+    }
+    f->joint_count = least;
+    add_joint(s, worst);
+    f->joint_count = count;
 }
 
 /* Round a joint's numbers, and use them as they will be read. */
@@ -359,6 +408,7 @@ static void run(fit_state *s)
 {
     find_same(s);
     for (uint32_t v = 0; v < s->points->count; v++) s->importance[v] = 1.0;
+    for (size_t i = 0; i < s->points->count * (size_t)s->points->target_count; i++) s->stress[i] = 1.0f;
     s->best.off = HUGE_VAL;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         const double off = weigh_all(s);
@@ -368,6 +418,7 @@ static void run(fit_state *s)
         }
         if (round) weigh_importance(s);
         move_joints(s);
+        if (round % SEED_EVERY == 1u && round < ROUNDS / 4u * 3u) seed_again(s);
         round_joints(s);
     }
     copy_round(s, 1);
@@ -396,11 +447,12 @@ static int allocate(fit_state *s, uint32_t joint_max)
     s->same = model_zeros(count, sizeof *s->same);
     s->importance = model_zeros(count, sizeof *s->importance);
     s->off = model_zeros(count, sizeof *s->off);
+    s->stress = model_zeros(count * targets, sizeof *s->stress);
     s->matrix = model_zeros(36u * joints * joints, sizeof *s->matrix);
     s->right = model_zeros(6u * joints * targets, sizeof *s->right);
     return !f->parent || !f->centre || !f->scale || !f->motion || !f->joint || !f->weight || !s->motion ||
            !s->best.motion || !s->best.centre || !s->best.joint || !s->best.weight || !s->predicted || !s->wanted ||
-           !s->left || !s->same || !s->importance || !s->off || !s->matrix || !s->right;
+           !s->left || !s->same || !s->importance || !s->off || !s->stress || !s->matrix || !s->right;
 }
 
 int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit *out)
@@ -424,6 +476,7 @@ int joint_fit_make(const joint_fit_points *points, uint32_t joint_max, joint_fit
     free(s.same);
     free(s.importance);
     free(s.off);
+    free(s.stress);
     free(s.matrix);
     free(s.right);
     return failed;
