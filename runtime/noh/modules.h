@@ -205,6 +205,7 @@ typedef struct noh_kind_stand {
     noh_reach_rig arms; /* arm_count 0: none */
     noh_feet_rig legs;  /* leg_count 0: none */
     noh_gaze_rig trunk; /* joint_count 0: none */
+    uint32_t front;     /* where the body faces: quarter turns from +z towards +x, 0..3 */
 } noh_kind_stand;
 
 /* Make the rig of a kind, from its mesh and skeleton.

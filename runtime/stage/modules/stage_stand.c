@@ -7,6 +7,7 @@
 #include "core/base/assert_internal.h"
 #include "life/face/face_internal.h"
 #include "core/base/vector_internal.h"
+#include "life/physics/ragdoll_rig_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -56,54 +57,91 @@ static float held(const noh_modifier_work *w, uint32_t stream, float period, flo
     return from + (to - from) * s * s * s * (10.0f - s * (15.0f - 6.0f * s));
 }
 
+/* ---- front ---- */
+
+/* Of the knees in the bind pose: noh_kind_stand.front. */
+static uint32_t front_of(const noh_skeleton *joints, const noh_feet_rig *rig)
+{
+    float ahead[3] = { 0.0f, 0.0f, 0.0f };
+    for (uint32_t i = 0; i < rig->leg_count; i++) {
+        float knee[3], rotation[4], unused[3];
+        noh_ragdoll_bind(joints, rig->legs[i].thigh, unused, rotation);
+        noh_quat_rotate(rotation, rig->legs[i].knee, knee);
+        noh_madd3(ahead, 1.0f, knee, ahead);
+    }
+    if (ahead[0] * ahead[0] > ahead[2] * ahead[2]) return ahead[0] > 0.0f ? 1u : 3u;
+    return ahead[2] < 0.0f ? 2u : 0u;
+}
+
+/* A vector of the body, to its left, up and ahead, in the model. */
+static void vector_of(const noh_kind_stand *s, float left, float up, float ahead, float out[3])
+{
+    static const float quarters[4][2] = { { 0.0f, 1.0f }, { 1.0f, 0.0f }, { 0.0f, -1.0f }, { -1.0f, 0.0f } };
+    const float *way = quarters[s->front & 3u];
+    out[0] = way[1] * left + way[0] * ahead;
+    out[1] = up;
+    out[2] = way[1] * ahead - way[0] * left;
+}
+
 /* ---- arms ---- */
 
-static void point(const noh_modifier_work *w, uint32_t joint, uint32_t next, const float direction[3])
+static void point(const noh_modifier_work *w, const noh_kind_stand *s, uint32_t joint, uint32_t next, float side,
+                  float forth)
 {
-    static const float ahead[3] = { 0.0f, 0.0f, 1.0f };
-    float bone[3], turn[4];
+    float bone[3], direction[3], ahead[3], turn[4];
+    vector_of(s, side, -1.0f, forth, direction);
+    vector_of(s, 0.0f, 0.0f, 1.0f, ahead);
     noh_rig_bone(w->skeleton, w->local, joint, next, bone);
     noh_quat_between(bone, direction, ahead, turn);
     noh_rig_turn(w->skeleton, w->local, joint, turn);
 }
 
-static void lower_arm(const noh_modifier_work *w, const noh_reach_arm *arm, float side)
+static void lower_arm(const noh_modifier_work *w, const noh_kind_stand *s, const noh_reach_arm *arm, float side)
 {
-    const float upper[3] = { side * ARM_OUT, -1.0f, 0.0f }, fore[3] = { side * FORE_OUT, -1.0f, FORE_AHEAD };
     float bone[3];
     noh_rig_bone(w->skeleton, w->local, arm->upper, arm->fore, bone);
     if (-bone[1] >= LOWERED * noh_length3(bone)) return;
-    point(w, arm->upper, arm->fore, upper);
-    point(w, arm->fore, arm->hand, fore);
+    point(w, s, arm->upper, arm->fore, side * ARM_OUT, 0.0f);
+    point(w, s, arm->fore, arm->hand, side * FORE_OUT, FORE_AHEAD);
 }
 
-static void lower_arms(const noh_modifier_work *w, const noh_reach_rig *rig)
+static void lower_arms(const noh_modifier_work *w, const noh_kind_stand *s)
 {
+    const noh_reach_rig *rig = &s->arms;
+    float left[3];
+    vector_of(s, 1.0f, 0.0f, 0.0f, left);
     for (uint32_t i = 0; i < rig->arm_count && w->joint_count > rig->last; i++) {
         float root[3], hand[3], unused[4];
         noh_rig_joint(w->skeleton, w->local, 0, root, unused);
         noh_rig_joint(w->skeleton, w->local, rig->arms[i].hand, hand, unused);
-        lower_arm(w, &rig->arms[i], hand[0] < root[0] ? -1.0f : 1.0f);
+        lower_arm(w, s, &rig->arms[i], noh_dot3(hand, left) < noh_dot3(root, left) ? -1.0f : 1.0f);
     }
 }
 
 /* ---- body ---- */
 
-static void turn_by(const noh_modifier_work *w, uint32_t joint, float x, float y, float z)
+/* Turn by radians about the axes of vector_of. */
+static void turn_by(const noh_modifier_work *w, const noh_kind_stand *s, uint32_t joint, float side, float up,
+                    float ahead)
 {
-    noh_rig_rotate(w->skeleton, w->local, joint, (const float[3]){ x, y, z });
+    float turn[3];
+    vector_of(s, side, up, ahead, turn);
+    noh_rig_rotate(w->skeleton, w->local, joint, turn);
 }
 
-static void shift_weight(const noh_modifier_work *w, const noh_feet_rig *rig, const noh_gaze_rig *trunk)
+static void shift_weight(const noh_modifier_work *w, const noh_kind_stand *s)
 {
+    const noh_feet_rig *rig = &s->legs;
+    const noh_gaze_rig *trunk = &s->trunk;
     const float weight = held(w, WEIGHT, 6.0f, 1.6f), size = rig->length;
-    const float by[3] = { size * (SHIFT * weight + DRIFT * held(w, DRIFT_X, 2.2f, 2.2f)), 0.0f,
-                          size * DRIFT * held(w, DRIFT_Z, 1.7f, 1.7f) };
     noh_stage_leg legs[NOH_FEET_LEGS_MAX];
+    float by[3];
     if (!rig->leg_count || w->joint_count <= rig->last) return;
+    vector_of(s, size * (SHIFT * weight + DRIFT * held(w, DRIFT_X, 2.2f, 2.2f)), 0.0f,
+              size * DRIFT * held(w, DRIFT_Z, 1.7f, 1.7f), by);
     for (uint32_t i = 0; i < rig->leg_count; i++) noh_stage_read_leg(rig, w, i, &legs[i]);
-    turn_by(w, rig->top, 0.0f, 0.0f, -TILT * weight);
-    if (trunk->joint_count > 1u) turn_by(w, trunk->joints[0], 0.0f, 0.0f, TILT * weight);
+    turn_by(w, s, rig->top, 0.0f, 0.0f, -TILT * weight);
+    if (trunk->joint_count > 1u) turn_by(w, s, trunk->joints[0], 0.0f, 0.0f, TILT * weight);
     for (uint32_t i = 0; i < rig->leg_count; i++) {
         const noh_stage_leg was = legs[i];
         noh_stage_read_leg(rig, w, i, &legs[i]);
@@ -113,25 +151,26 @@ static void shift_weight(const noh_modifier_work *w, const noh_feet_rig *rig, co
     noh_stage_move_pelvis(rig, w, legs, by);
 }
 
-static void move_trunk(const noh_modifier_work *w, const noh_gaze_rig *rig)
+static void move_trunk(const noh_modifier_work *w, const noh_kind_stand *s)
 {
+    const noh_gaze_rig *rig = &s->trunk;
     const noh_stage_kind *k = w->kind;
     const float breath = BREATH * noh_stage_breath(w->clock), yaw = TURN * held(w, YAW, 4.3f, 0.7f);
     const float pitch = NOD * held(w, PITCH, 3.1f, 0.8f);
     if (!rig->joint_count || w->joint_count <= rig->last) return;
-    if (rig->joint_count > 1u) turn_by(w, rig->joints[0], -breath, 0.0f, 0.0f);
+    if (rig->joint_count > 1u) turn_by(w, s, rig->joints[0], -breath, 0.0f, 0.0f);
     for (uint32_t i = 0; i < rig->joint_count && !k->modules[NOH_SLOT_FACE].type; i++) {
-        turn_by(w, rig->joints[i], rig->shares[i] * pitch, rig->shares[i] * yaw, 0.0f);
+        turn_by(w, s, rig->joints[i], rig->shares[i] * pitch, rig->shares[i] * yaw, 0.0f);
     }
-    turn_by(w, rig->joints[rig->joint_count - 1u], breath, 0.0f, 0.0f);
+    turn_by(w, s, rig->joints[rig->joint_count - 1u], breath, 0.0f, 0.0f);
 }
 
 static void stand_pose(noh_modifier_work *w)
 {
     const noh_kind_stand *s = w->user;
-    lower_arms(w, &s->arms);
-    shift_weight(w, &s->legs, &s->trunk);
-    move_trunk(w, &s->trunk);
+    lower_arms(w, s);
+    shift_weight(w, s);
+    move_trunk(w, s);
 }
 
 /* ---- made ---- */
@@ -151,6 +190,7 @@ noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand,
     source.metres = header->unit_cm / 100.0f;
     if (noh_reach_rig_make(&source, &stand->arms, NULL)) stand->arms.arm_count = 0;
     if (noh_feet_rig_make(&source, &stand->legs, NULL)) stand->legs.leg_count = 0;
+    stand->front = front_of(&source.joints, &stand->legs);
     if (noh_gaze_rig_make(source.pack, source.skeleton, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
     if (stand->arms.arm_count || stand->legs.leg_count || stand->trunk.joint_count) return NOH_OK;
     return noh_fail(error, NOH_ERR_NOT_FOUND,
