@@ -248,7 +248,7 @@ float noh_key_glossed(float nh, float nl, float nv, float roughness)
  * where there is less than white; more does not bleach them, and no tone map changes them. */
 vec3 noh_light(noh_surface s)
 {
-    vec3 light = noh_lighting[13].x * (noh_lighting[0].rgb + noh_key_color);
+    vec3 light = noh_lighting[13].x * vec3(noh_lighting[3].w, noh_lighting[4].w, noh_lighting[5].w);
     float most = max(light.r, max(light.g, light.b));
 #ifdef NOH_OUTLINE
     vec3 color = noh_toon(s, 1.0);

@@ -621,6 +621,35 @@ static void a_toon_has_two_tones(void **state)
     scene_close(&s);
 }
 
+/* Its edge and its brightness are the same whether or not a key was split off the light for a shadow. */
+static void a_toon_needs_no_key(void **state)
+{
+    static const float values[4] = { 0.9f, 1.0f, 0.0f, 0.0f };
+    const model_material plain = scene_material(values);
+    (void)state;
+    for (uint32_t e = 0; e < 3u; e++) {
+        model_material toon = plain;
+        uint8_t *rgba[2];
+        noh_light light;
+        scene s;
+        toon.surface = NOH_SURFACE_TOON;
+        toon.surface_values[0] = toon.surface_values[1] = toon.surface_values[2] = 0.3f;
+        toon.surface_more[0] = 0.6f;
+        noh_light_from_environment(noh_environment_at(e), 6, &light);
+        scene_open(&s, &toon, noh_environment_at(e), 0, NULL);
+        for (int key = 0; key < 2; key++) {
+            noh_lighting lighting;
+            noh_lighting_make(&light, NULL, key, &lighting);
+            rgba[key] = scene_draw(&s, SPHERE, scene_identity, &lighting);
+        }
+        assert_true(rgba[0][4 * (SIDE / 2 * SIDE + SIDE / 2)] > 20);
+        for (uint32_t i = 0; i < 4 * SIDE * SIDE; i++) assert_in_range(rgba[0][i] - rgba[1][i] + 1, 0, 2);
+        free(rgba[0]);
+        free(rgba[1]);
+        scene_close(&s);
+    }
+}
+
 /* ---- MToon ---- */
 
 #define CAP 64u
@@ -732,6 +761,7 @@ int main(void)
         cmocka_unit_test(teeth_are_dark_behind_the_lips),
         cmocka_unit_test(cheeks_are_not_inside_the_mouth),
         cmocka_unit_test(a_toon_has_two_tones),
+        cmocka_unit_test(a_toon_needs_no_key),
         cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),
         cmocka_unit_test(a_toon_has_an_outline),
         cmocka_unit_test(a_highlight_is_seen_from_its_point),

@@ -21,13 +21,14 @@ void noh_lighting_make(const noh_light *light, const float rotation[9], int key,
 {
     static const float identity[9] = { 1.0f, 0.0f, 0.0f, 0.0f, 1.0f, 0.0f, 0.0f, 0.0f, 1.0f };
     const float *r = rotation ? rotation : identity;
-    noh_light turned;
+    noh_light turned, rest;
+    float rgb[3];
     NOH_ASSERT(light && out && light->order >= 2u);
     memset(out, 0, sizeof *out);
     noh_light_rotate(light, r, &turned);
-    out->rest = turned;
-    out->key_direction[1] = 1.0f;
-    if (key) noh_light_key(&turned, out->key_direction, out->key, &out->rest);
+    noh_light_key(&turned, out->key_direction, rgb, &rest);
+    out->rest = key ? rest : turned;
+    if (key) memcpy(out->key, rgb, sizeof rgb);
     for (uint32_t i = 0; i < 9u; i++) out->turn[i] = r[i % 3u * 3u + i / 3u];
     out->exposure = 1.0f;
 }
@@ -37,6 +38,18 @@ void noh_lighting_shadow(noh_lighting *lighting, const float view_projection[16]
     NOH_ASSERT(lighting && view_projection && radius > 0.0f && shadow_px);
     memcpy(lighting->shadow, view_projection, sizeof lighting->shadow);
     lighting->shadow_texel = 2.0f * radius / (float)shadow_px;
+}
+
+/* A toon takes one colour, in the fourth column: the mean light and the key, also where no key was split off. */
+static void pack_toon(const noh_lighting *l, float rows[NOH_LIGHTING_ROWS][4])
+{
+    noh_light rest = l->rest;
+    float key[3], direction[3];
+    memcpy(key, l->key, sizeof key);
+    if (rest.order >= 2u && key[0] + key[1] + key[2] <= 0.0f) noh_light_key(&l->rest, direction, key, &rest);
+    for (uint32_t c = 0; c < 3u; c++) {
+        rows[3u + c][3] = rest.coefs[0][c] * 0.282094792f * noh_sh_cosine_lobe[0] + key[c];
+    }
 }
 
 /* Convert spherical harmonics to the light that a matte surface reflects, as factors of the polynomials 1, y, z, x, xy,
@@ -52,6 +65,7 @@ void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float r
         const uint32_t band = i > 3u ? 2u : i > 0u;
         for (uint32_t c = 0; c < 3u; c++) rows[i][c] = l->rest.coefs[i][c] * scale[i] * noh_sh_cosine_lobe[band];
     }
+    pack_toon(l, rows);
     rows[1][3] = l->has_floor ? NOH_SOFT_DEEPEST : 1.0f;
     if (shadow_px) rows[0][3] = noh_gl_soft_hardness(0.5f * l->shadow_texel * (float)shadow_px, shadow_px);
     for (uint32_t i = 0; i < 9u; i++) rows[9u + i / 3u][i % 3u] = l->turn[i];
