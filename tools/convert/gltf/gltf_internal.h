@@ -86,7 +86,7 @@ struct file {
     std::vector<buffer> buffers;
     std::vector<image> images;
     std::vector<std::string> cameras; /* their names */
-    bytes bin; /* the BIN chunk of a .glb */
+    bytes bin;                        /* the BIN chunk of a .glb */
     bool has_bin = false;
     std::vector<bytes> decoded_views; /* by meshopt, empty until used; by Draco, behind the file's own */
     uint64_t input_bytes = 0;         /* of all files read */

@@ -126,7 +126,8 @@ static void warn_center(springs_job &job, const value &spring)
 static uint32_t read_collider(springs_job &job, const value &given)
 {
     static const float zero[3] = { 0.0f, 0.0f, 0.0f };
-    const value &shape = member_or_none(given, "shape"), &sphere = member_or_none(shape, "sphere"), &capsule = member_or_none(shape, "capsule");
+    const value &shape = member_or_none(given, "shape"), &sphere = member_or_none(shape, "sphere"),
+                &capsule = member_or_none(shape, "capsule");
     const value &round = capsule.IsObject() ? capsule : sphere;
     model_collider c = {};
     c.node = node_of(job.f, member_or_none(given, "node"));
@@ -199,7 +200,8 @@ static void read_spring(springs_job &job, const value &given)
 
 static void read_vrm1(springs_job &job, const value &extension)
 {
-    const value &colliders = member_or_none(extension, "colliders"), &groups = member_or_none(extension, "colliderGroups");
+    const value &colliders = member_or_none(extension, "colliders"),
+                &groups = member_or_none(extension, "colliderGroups");
     const value &springs = member_or_none(extension, "springs");
     std::vector<uint32_t> of_groups;
     for (size_t i = 0; i < length_of(colliders); ++i) job.bits.push_back(read_collider(job, item(colliders, i)));
@@ -283,7 +285,8 @@ static void read_vrm0(springs_job &job, const value &extension)
 {
     static const float down[3] = { 0.0f, -1.0f, 0.0f };
     const value &secondary = member_or_none(extension, "secondaryAnimation");
-    const value &groups = member_or_none(secondary, "boneGroups"), &colliders = member_or_none(secondary, "colliderGroups");
+    const value &groups = member_or_none(secondary, "boneGroups"),
+                &colliders = member_or_none(secondary, "colliderGroups");
     for (size_t i = 0; i < length_of(colliders); ++i) job.bits.push_back(read_group0(job, item(colliders, i)));
     for (size_t i = 0; i < length_of(groups); ++i) {
         const value &group = item(groups, i), &bones = member_or_none(group, "bones");
