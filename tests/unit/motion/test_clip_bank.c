@@ -955,7 +955,6 @@ static const struct CMUnitTest tests[] = {
     cmocka_unit_test(clips_fit_a_mesh_with_an_added_target),
     cmocka_unit_test(named_floats_are_shared),
     cmocka_unit_test(many_named_floats_are_counted),
-
     cmocka_unit_test(descs_are_checked),
     cmocka_unit_test(a_pack_without_clips_is_not_found),
     cmocka_unit_test(lies_are_told_with_the_clip),
