@@ -236,7 +236,8 @@ static noh_result check_desc(const noh_clip_bank_desc *desc, noh_error *error)
     const noh_result r = check_packs(desc, error);
     if (r) return r;
     if (desc->root_axes > (NOH_ROOT_GROUND | NOH_ROOT_Y)) {
-        return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank must be bits of NOH_ROOT_*", desc->root_axes, 0);
+        return noh_fail(error, NOH_ERR_ARG, "root_axes of a clip bank must be bits of NOH_ROOT_GROUND and NOH_ROOT_Y",
+                        desc->root_axes, 0);
     }
     if (desc->root_axes && desc->root_up > 2u)
         return noh_fail(error, NOH_ERR_ARG, "root_up of a clip bank must be 0, 1 or 2", desc->root_up, 0);

@@ -402,7 +402,7 @@ struct noh_stage_gpu {
  * only count). */
 noh_kind_desc noh_stage_kind_desc(const noh_stage_desc *desc, uint32_t kind);
 uint32_t noh_stage_items(const noh_kind_desc *kind, noh_stage_item *items);
-/* The axes of its root motion. */
+/* The axes of a kind's root motion: root_axes without NOH_ROOT_BY_GAME. */
 static inline uint32_t noh_stage_root_axes(const noh_kind_desc *kind)
 {
     return kind->root_axes & ~NOH_ROOT_BY_GAME;

@@ -882,8 +882,8 @@ static void descs_are_checked(void **state)
     expect_error(&desc, NOH_ERR_ARG, "skeleton");
     desc = desc_of(&pack), desc.cached_segment_count = 1;
     expect_error(&desc, NOH_ERR_ARG, "cached_segment_count");
-    desc = desc_of(&pack), desc.root_axes = 16;
-    expect_error(&desc, NOH_ERR_ARG, "root_axes");
+    desc = desc_of(&pack), desc.root_axes = NOH_ROOT_GROUND | NOH_ROOT_BY_GAME;
+    expect_error(&desc, NOH_ERR_ARG, "bits of NOH_ROOT_GROUND and NOH_ROOT_Y");
     desc = desc_of(&pack), desc.root_axes = NOH_ROOT_X, desc.root_up = 3;
     expect_error(&desc, NOH_ERR_ARG, "root_up");
     desc = desc_of(&pack), desc.skeleton = NOH_NONE;

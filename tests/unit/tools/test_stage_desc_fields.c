@@ -340,6 +340,9 @@ static void other_fields_change_no_byte(void **state)
             fail_msg("%s.%s changes bytes: give it a key", structs[r->of].name, r->field);
         memcpy(at, kept, r->bytes);
     }
+    f->kinds[0].root_axes |= NOH_ROOT_BY_GAME; /* a bit without a key: it is no axis */
+    const noh_stage_plan by_game = plan_of(f);
+    assert_true(by_game.cpu_bytes == plan.cpu_bytes && by_game.hash == plan.hash);
     stage_desc_file_free(f);
 }
 
