@@ -504,9 +504,10 @@ static void warn_unused_deltas(file &f, const part &p, size_t t, const std::stri
         bool known = delta.first == "POSITION" || delta.first == "NORMAL" || delta.first == "TANGENT" ||
                      delta.first == uv_name(f, *p.source);
         if (known && gives(p, t, delta.first.c_str())) continue;
-        const char *why = known                                ? " because the primitive has no such attribute"
-                          : delta.first.compare(0, 6, "COLOR_") == 0 ? ": noh build --color-map makes colours that fade in"
-                                                                     : " which cannot be morphed";
+        const char *why = known ? " because the primitive has no such attribute"
+                          : delta.first.compare(0, 6, "COLOR_") == 0
+                              ? ": noh build --color-map makes colours that fade in"
+                              : " which cannot be morphed";
         leave_out(f, where, ": the deltas of " + printable(delta.first) + " were ignored" + why);
     }
 }
