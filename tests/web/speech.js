@@ -85,7 +85,7 @@ const record = (page) => page.evaluate(() => {
     window.most = 0;
     window.captions = [];
     character.addEventListener('frame', () => { window.most = Math.max(window.most, character.speech.now.open); });
-    character.addEventListener('caption', ({ detail }) => captions.push(detail.words));
+    character.addEventListener('caption', () => captions.push(document.getElementById('caption').textContent));
 });
 const opened = (page) => page.waitForFunction(() => window.most > 0.15).then(() => true, () => false);
 const shown = (page, caption) => page.waitForFunction((c) => captions.includes(c), caption).then(() => true, () => false);
