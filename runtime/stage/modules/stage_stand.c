@@ -59,7 +59,7 @@ static float held(const noh_modifier_work *w, uint32_t stream, float period, flo
 
 /* ---- front ---- */
 
-/* Of the knees in the bind pose: noh_kind_stand.front. */
+/* noh_kind_stand.front, by where the knees point in the bind pose. */
 static uint32_t front_of(const noh_skeleton *joints, const noh_feet_rig *rig)
 {
     float ahead[3] = { 0.0f, 0.0f, 0.0f };
