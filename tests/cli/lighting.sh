@@ -43,7 +43,7 @@ check 'no picture of it' test ! -e "$work/cut.png"
 echo text >"$work/text.hdr"
 noh render "$pack" -o "$work/cut.png" --light "$work/text.hdr"
 expect 1 'no picture at all'
-says 'neither'
+says 'neither a Radiance file'
 noh render "$pack" -o "$work/cut.png" --light "$work/none.hdr"
 expect 1 'no such file'
 noh render "$pack" -o "$work/cut.png" --light rooom

@@ -51,7 +51,7 @@ static int decode_picture(light_file *file, const char *path)
     model_error error;
     image_file image;
     if (image_read(path, &image, &error)) {
-        return tool_fail(path, "not a readable Radiance file, PNG or other picture: %s", error.what);
+        return tool_fail(path, "neither a Radiance file nor another picture that is read: %s", error.what);
     }
     file->width = image.width;
     file->height = image.height;
