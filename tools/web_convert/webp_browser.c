@@ -37,6 +37,7 @@ static int read_pixels(FILE *f, uint64_t pixels_max, uint32_t size[2], unsigned 
     if (!*rgba) return model_fail(error, "", "there is not enough memory for the image");
     if (fread(*rgba, 1, bytes, f) == bytes) return 0;
     free(*rgba);
+    *rgba = NULL;
     return model_fail(error, "", "the image data is damaged");
 }
 

@@ -32,6 +32,15 @@ static void pixels_are(const unsigned char *bytes, size_t count, uint32_t channe
     free(image.rgba);
 }
 
+static uint32_t bits_of(const unsigned char *bytes, size_t count)
+{
+    image_file image;
+    model_error error;
+    assert_int_equal(decode(bytes, count, &image, &error), 0);
+    free(image.rgba);
+    return image.bits;
+}
+
 static void refused(const unsigned char *bytes, size_t count, const char *what)
 {
     image_file image;
@@ -62,14 +71,20 @@ static void cuts_and_changes(const unsigned char *bytes, size_t count, size_t ma
     'B', 'M', BMP_LONG(0), BMP_LONG(0), BMP_LONG(begin), BMP_LONG(40), BMP_LONG(width), height, BMP_SHORT(1), \
         BMP_SHORT(bits), BMP_LONG(packing), BMP_LONG(0), BMP_LONG(0), BMP_LONG(0), BMP_LONG(0), BMP_LONG(0)
 #define DOWN(n) 256 - (n), 255, 255, 255
+#define DOWN_MOST 0, 0, 0, 128
 
 static void bmp_has_rows_and_palettes(void **state)
 {
     static const unsigned char up[] = { BMP(1, BMP_LONG(2), 24, 0, 54), 3, 2, 1, 0, 6, 5, 4, 0 };
     static const unsigned char down[] = { BMP(1, DOWN(2), 24, 0, 54), 3, 2, 1, 0, 6, 5, 4, 0 };
     static const unsigned char palette[] = { BMP(2, BMP_LONG(1), 8, 0, 62), 3, 2, 1, 0, 6, 5, 4, 0, 1, 0, 0, 0 };
+    static const unsigned char odd[] = { BMP(3, BMP_LONG(1), 4, 0, 62), 3, 2, 1, 0, 6, 5, 4, 0, 0x10, 0x1f, 0, 0 };
     unsigned char outside[sizeof palette];
     (void)state;
+    pixels_are(odd, sizeof odd, 3, (const unsigned char[]){ 4, 5, 6, 255, 1, 2, 3, 255, 4, 5, 6, 255 }, 12);
+    memcpy(outside, odd, sizeof odd);
+    outside[63] = 0x21; /* the last pixel, in half a byte */
+    refused(outside, sizeof outside, "colours that its palette lacks");
     pixels_are(up, sizeof up, 3, (const unsigned char[]){ 4, 5, 6, 255, 1, 2, 3, 255 }, 8);
     pixels_are(down, sizeof down, 3, (const unsigned char[]){ 1, 2, 3, 255, 4, 5, 6, 255 }, 8);
     pixels_are(palette, sizeof palette, 3, (const unsigned char[]){ 4, 5, 6, 255, 1, 2, 3, 255 }, 8);
@@ -80,10 +95,20 @@ static void bmp_has_rows_and_palettes(void **state)
     cuts_and_changes(palette, sizeof palette, 62);
 }
 
-static void bmp_that_is_packed_says_so(void **state)
+static void bmp_that_is_not_read_says_so(void **state)
 {
     static const unsigned char packed[] = { BMP(1, BMP_LONG(1), 8, 1, 58), 0, 0, 0, 0, 1, 0, 0, 1 };
+    static const unsigned char narrow[] = { BMP(0, DOWN_MOST, 8, 0, 54), 0, 0, 0, 0 };
+    /* clang-format off */
+    static const unsigned char first[] = {
+        'B', 'M', BMP_LONG(0), BMP_LONG(0), BMP_LONG(38), BMP_LONG(12), BMP_SHORT(1), BMP_SHORT(4), BMP_SHORT(1),
+        BMP_SHORT(4), 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 0x10, 0, 0, 0, 0x20, 0, 0, 0, 0x30, 0, 0, 0, 0x10, 0,
+        0, 0, 0
+    };
+    /* clang-format on */
     (void)state;
+    refused(narrow, sizeof narrow, "damaged"); /* in no time: it has no pixel in 2,147,483,648 rows */
+    refused(first, sizeof first, "a BMP picture of OS/2 with a palette, which is not read: save it as PNG");
     refused(packed, sizeof packed, "a BMP picture with packed pixels, which is not read: save it as PNG");
 }
 
@@ -118,6 +143,8 @@ static void psd_has_its_flattened_picture(void **state)
     pixels_are(plain, sizeof plain, 3, (const unsigned char[]){ 1, 2, 3, 255, 4, 5, 6, 255 }, 8);
     pixels_are(packed, sizeof packed, 3, (const unsigned char[]){ 7, 8, 6, 255, 7, 9, 6, 255, 7, 10, 6, 255 }, 12);
     pixels_are(wide, sizeof wide, 1, (const unsigned char[]){ 255, 255, 255, 255, 127, 127, 127, 255 }, 8);
+    assert_int_equal(bits_of(wide, sizeof wide), 16);
+    assert_int_equal(bits_of(plain, sizeof plain), 8);
     cuts_and_changes(plain, sizeof plain, 27);
     cuts_and_changes(packed, sizeof packed, 27);
     cuts_and_changes(wide, sizeof wide, 27);
@@ -129,7 +156,15 @@ static void psd_alpha_is_of_layers_or_a_channel(void **state)
     static const unsigned char channel[] = { PSD(4, 1, 1, 8, 3), NO_SECTIONS, SHORT(0), 240, 190, 140, 128 };
     static const unsigned char layers[] = { PSD(4, 1, 1, 8, 3), LAYERS(SHORT(0xffff)), SHORT(0), 227, 177, 127, 128 };
     static const unsigned char other[] = { PSD(4, 1, 1, 8, 3), LAYERS(SHORT(0xffff)), SHORT(0), 200, 100, 0, 128 };
+    /* clang-format off */
+    static const unsigned char wide[] = {
+        PSD(4, 1, 1, 16, 3), LONG(0), LONG(0), LONG(20), LONG(0), LONG(0), '8', 'B', 'I', 'M', 'M', 't', '1', '6',
+        LONG(0), SHORT(0), 227, 227, 177, 177, 127, 127, 128, 128
+    };
+    /* clang-format on */
     (void)state;
+    pixels_are(wide, sizeof wide, 4, (const unsigned char[]){ 199, 100, 0, 128 }, 4);
+    cuts_and_changes(wide, sizeof wide, 27);
     pixels_are(channel, sizeof channel, 4, (const unsigned char[]){ 240, 190, 140, 128 }, 4);
     pixels_are(layers, sizeof layers, 4, (const unsigned char[]){ 199, 100, 0, 128 }, 4);
     pixels_are(other, sizeof other, 4, (const unsigned char[]){ 200, 100, 0, 128 }, 4);
@@ -144,8 +179,10 @@ static void psd_that_is_not_read_says_so(void **state)
         PSD(3, 1, 1, 8, 3), LONG(0), LONG(17), '8', 'B', 'I', 'M', 4, 0x21, 0, 0, LONG(5), LONG(1),
         0 /* no */,         LONG(0), SHORT(0), 255, 255, 255
     };
+    static const unsigned char zip[] = { PSD(3, 1, 1, 8, 3), NO_SECTIONS, SHORT(2), 1, 2, 3, 4 };
     unsigned char large[sizeof cmyk];
     (void)state;
+    refused(zip, sizeof zip, "a Photoshop file packed with ZIP, which is not read: save it as PNG");
     memcpy(large, cmyk, sizeof cmyk);
     large[5] = 2;
     refused(cmyk, sizeof cmyk, "a Photoshop file in CMYK, which is not read: save it as PNG");
@@ -155,6 +192,29 @@ static void psd_that_is_not_read_says_so(void **state)
 }
 
 /* ---- others ---- */
+
+/* A picture that many textures name must not take its time for each of them. */
+static void damaged_pixels_are_counted(void **state)
+{
+    static const unsigned char psd[] = { PSD(3, 1, 3, 8, 3), NO_SECTIONS, SHORT(1), SHORT(1), SHORT(1),
+                                         SHORT(1),           9,           9,        9 };
+    static const unsigned char tga[] = { 0, 0, 10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 3, 0, 1, 0, 24, 0, 0x80, 1, 2 };
+    static const struct {
+        const unsigned char *bytes;
+        size_t count;
+    } pictures[] = { { psd, sizeof psd }, { tga, sizeof tga } };
+    (void)state;
+    for (size_t i = 0; i < 2; i++) {
+        image_file image;
+        model_error error;
+        uint64_t pixels_left = 5;
+        assert_int_equal(image_decode(pictures[i].bytes, pictures[i].count, &pixels_left, &image, &error), 1);
+        assert_int_equal(pixels_left, 2);
+        assert_int_equal(image_decode(pictures[i].bytes, pictures[i].count, &pixels_left, &image, &error), 1);
+        assert_non_null(strstr(error.what, "the limit is 2"));
+        assert_int_equal(pixels_left, 2);
+    }
+}
 
 static void other_formats_are_named(void **state)
 {
@@ -174,14 +234,18 @@ static void other_formats_are_named(void **state)
         refused((const unsigned char *)kinds[i].begins, 17, kinds[i].what);
     }
     refused((const unsigned char *)"", 0, "it is empty");
+    refused((const unsigned char *)"\x89PNG\r\n", 6, "it is a PNG picture of 6 bytes, which was cut off");
+    refused((const unsigned char *)"\xff\xd8\xff", 3, "it is a JPEG picture of 3 bytes, which was cut off");
+    refused((const unsigned char *)"8BPS\0\1", 6, "it is a Photoshop file of 6 bytes, which was cut off");
 }
 
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(bmp_has_rows_and_palettes),     cmocka_unit_test(bmp_that_is_packed_says_so),
+        cmocka_unit_test(bmp_has_rows_and_palettes),     cmocka_unit_test(bmp_that_is_not_read_says_so),
         cmocka_unit_test(psd_has_its_flattened_picture), cmocka_unit_test(psd_alpha_is_of_layers_or_a_channel),
         cmocka_unit_test(psd_that_is_not_read_says_so),  cmocka_unit_test(other_formats_are_named),
+        cmocka_unit_test(damaged_pixels_are_counted),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,16 +14,16 @@ int bmp_begins(const unsigned char *bytes, size_t count)
     return count > BMP_HEADER && bytes[0] == 'B' && bytes[1] == 'M' && little(bytes + 14) <= 124u;
 }
 
-/* Whether a pixel has a number behind the last colour of the palette, which stb_image takes from memory that is not set. */
-static int leaves_palette(const unsigned char *rows, uint64_t row, uint64_t used, uint64_t height, unsigned bits,
+/* Whether a pixel has a number behind the last colour of the palette, which stb_image takes from memory that is not set.
+ * bits  1, 4 or 8 */
+static int leaves_palette(const unsigned char *rows, uint64_t row, uint64_t width, uint64_t height, unsigned bits,
                           uint64_t colours)
 {
     const unsigned mask = (1u << bits) - 1u;
     for (uint64_t y = 0; colours <= mask && y < height; y++) {
-        for (uint64_t i = 0; i < used; i++) {
-            for (unsigned shift = 0; shift < 8u; shift += bits) {
-                if ((rows[y * row + i] >> shift & mask) >= colours) return 1;
-            }
+        for (uint64_t x = 0; x < width; x++) {
+            const unsigned shift = 8u - bits - (unsigned)(x * bits % 8u);
+            if ((rows[y * row + x * bits / 8u] >> shift & mask) >= colours) return 1;
         }
     }
     return 0;
@@ -46,9 +46,11 @@ int bmp_is_refused(const unsigned char *bytes, size_t count, model_error *error)
                           "the BMP file ends at byte %zu, before its last pixel: it was cut off; save or copy it again",
                           count);
     }
-    if (bits && bits <= 8u &&
-        leaves_palette(bytes + begin, row, width * bits / 8u, height, (unsigned)bits,
-                       (begin - header) / (first ? 3u : 4u))) {
+    if (first && bits < 16u) { /* stb_image takes its palette for four colours shorter */
+        return model_fail(error, "", "it is a BMP picture of OS/2 with a palette, which is not read: save it as PNG");
+    }
+    if (width && (bits == 1u || bits == 4u || bits == 8u) &&
+        leaves_palette(bytes + begin, row, width, height, (unsigned)bits, (begin - header) / 4u)) {
         return model_fail(error, "", "pixels of the BMP picture have colours that its palette lacks: save it as PNG");
     }
     return 0;

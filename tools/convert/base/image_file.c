@@ -102,21 +102,25 @@ static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixe
 {
     const uint64_t most = *pixels_left < IMAGE_PIXELS ? *pixels_left : IMAGE_PIXELS;
     const file_kind *kind = file_kind_of_bytes(bytes, count);
+    const int is_psd = psd_begins(bytes, count);
     int failed;
-    image->bits = 8;
+    image->bits = is_psd ? bytes[23] : 8;
     if (webp_begins(bytes, count)) {
         failed = webp_read(bytes, count, most, &image->width, &image->height, &image->rgba, error);
         image->channels = failed ? 0 : channels_of(image);
-    } else if (psd_begins(bytes, count) || (!kind && tga_begins(bytes, count))) {
-        failed = (kind ? psd_read : tga_read)(bytes, count, most, &image->width, &image->height, &image->channels,
-                                              &image->rgba, error);
+    } else if (is_psd || (!kind && tga_begins(bytes, count))) {
+        failed = (is_psd ? psd_read : tga_read)(bytes, count, most, &image->width, &image->height, &image->channels,
+                                                &image->rgba, error);
+    } else if (kind && strstr(".png .jpg .psd", kind->ending)) {
+        return model_fail(error, "", "it is %s of %zu bytes, which was cut off: save or copy it again", kind->what,
+                          count);
     } else {
         return model_fail(error, "", "it is %s, not a PNG, JPEG, WebP, TGA, BMP or Photoshop picture: save it as PNG",
                           kind    ? kind->what
                           : count ? "of an unknown kind"
                                   : "empty");
     }
-    if (!failed) *pixels_left -= (uint64_t)image->width * image->height;
+    *pixels_left -= (uint64_t)image->width * image->height; /* of damaged pixels as well: they took time */
     return failed;
 }
 

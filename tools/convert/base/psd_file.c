@@ -32,7 +32,7 @@ int psd_begins(const unsigned char *bytes, size_t count)
 static int cut(const psd *p, model_error *error)
 {
     return model_fail(
-        error, "", "the Photoshop file ends at byte %zu, before its last pixel: it was cut off; save or copy it again",
+        error, "", "the Photoshop file of %zu bytes lacks pixels: it was cut off or is damaged; save or copy it again",
         p->count);
 }
 
@@ -89,6 +89,14 @@ static int check_size(const psd *p, uint64_t pixels_max, model_error *error)
     return pixels * p->channels * p->sample > (p->lengths ? MOST_PACKED : 1u) * (uint64_t)p->count ? cut(p, error) : 0;
 }
 
+/* Whether the first alpha is the transparency of all layers: their number is negative; a file of 16 bits, whose layers
+ * are elsewhere, says so by an entry without data. */
+static int has_transparency(const unsigned char *section, size_t count)
+{
+    return count > 10u &&
+           (big(section + 4, 4) > 1u ? section[8] >= 128 : count > 20u && memcmp(section + 12, "8BIMMt", 6) == 0);
+}
+
 static int read_header(psd *p, uint64_t pixels_max, model_error *error)
 {
     const size_t resources = behind(p, HEADER_BYTES), layers = behind(p, resources), at = behind(p, layers);
@@ -105,9 +113,11 @@ static int read_header(psd *p, uint64_t pixels_max, model_error *error)
             "it is a Photoshop file without its flattened picture: save it with 'Maximize Compatibility', "
             "or as PNG");
     }
-    if (big(p->bytes + at, 2) > 1u) return model_fail(error, "", "the image data is damaged");
-    /* a negative number of layers: the first alpha is the transparency of them all */
-    p->on_white = at - layers > 10u && big(p->bytes + layers + 4, 4) > 1u && p->bytes[layers + 8] >= 128;
+    if (big(p->bytes + at, 2) > 3u) return cut(p, error);
+    if (big(p->bytes + at, 2) > 1u) {
+        return model_fail(error, "", "it is a Photoshop file packed with ZIP, which is not read: save it as PNG");
+    }
+    p->on_white = has_transparency(p->bytes + layers, at - layers);
     p->at = p->bytes + at + 2u;
     if (big(p->bytes + at, 2) == 1u) {
         p->lengths = p->at;
@@ -182,36 +192,35 @@ static void take_from_white(unsigned char *rgba, size_t pixels)
     }
 }
 
-static int read_pixels(psd *p, unsigned char *rgba)
+/* row: one of the file's */
+static int read_pixels(psd *p, unsigned char *row, unsigned char *rgba)
 {
     const size_t pixels = (size_t)p->width * p->height;
     const uint32_t colours = p->grey ? 1u : 3u;
-    unsigned char *row = malloc((size_t)p->width * p->sample);
-    int failed = !row;
     memset(rgba, 255, pixels * 4u);
-    for (uint32_t c = 0; c < colours && !failed; c++) failed = read_channel(p, row, rgba, c, p->grey ? 2u : c);
-    if (!failed && p->channels > colours) failed = read_channel(p, row, rgba, 3, 3);
-    if (!failed && p->channels > colours && p->on_white && is_on_white(rgba, pixels)) {
-        take_from_white(rgba, pixels);
+    for (uint32_t c = 0; c < colours; c++) {
+        if (read_channel(p, row, rgba, c, p->grey ? 2u : c)) return 1;
     }
-    free(row);
-    return failed;
+    if (p->channels == colours) return 0;
+    if (read_channel(p, row, rgba, 3, 3)) return 1;
+    if (p->on_white && is_on_white(rgba, pixels)) take_from_white(rgba, pixels);
+    return 0;
 }
 
 int psd_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint32_t *width, uint32_t *height,
              uint32_t *channels, unsigned char **rgba, model_error *error)
 {
     psd p = { bytes, NULL, bytes, count, 0, 0, 0, 0, 0, 0 };
+    size_t rgba_bytes;
     if (read_header(&p, pixels_max, error)) return 1;
-    *rgba = malloc((size_t)p.width * p.height * 4u);
-    if (!*rgba) return model_fail(error, "", "there is not enough memory for the image");
-    if (read_pixels(&p, *rgba)) {
-        free(*rgba);
-        *rgba = NULL;
-        return cut(&p, error);
-    }
     *width = p.width;
     *height = p.height;
     *channels = p.grey ? (p.channels > 1u ? 2u : 1u) : p.channels > 3u ? 4u : 3u;
-    return 0;
+    rgba_bytes = (size_t)p.width * p.height * 4u;
+    *rgba = malloc(rgba_bytes + (size_t)p.width * p.sample);
+    if (!*rgba) return model_fail(error, "", "there is not enough memory for the image");
+    if (!read_pixels(&p, *rgba + rgba_bytes, *rgba)) return 0;
+    free(*rgba);
+    *rgba = NULL;
+    return cut(&p, error);
 }

@@ -15,7 +15,8 @@ extern "C" {
 int psd_begins(const unsigned char *bytes, size_t count);
 
 /* Returns 0, the size, the channels in the file (1 to 4) and [height][width][4], the top row first, to be freed with
- * free(); or 1 and *error: the data is damaged or of a kind that is not read, or has more than pixels_max pixels.
+ * free(); or 1 and *error: the data is damaged or of a kind that is not read, or has more than pixels_max pixels. Where
+ * pixels are damaged, the size is set as well.
  * source  Adobe Photoshop File Formats Specification */
 int psd_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint32_t *width, uint32_t *height,
              uint32_t *channels, unsigned char **rgba, model_error *error);

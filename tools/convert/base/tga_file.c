@@ -100,6 +100,9 @@ int tga_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint
 {
     tga t = { bytes, bytes, 0, 0, 0, 0, 0, 0, 0 };
     if (read_header(bytes, count, pixels_max, &t, error)) return 1;
+    *width = t.width;
+    *height = t.height;
+    *channels = t.has_alpha ? 4u : t.pixel_bytes > 1u ? 3u : 1u;
     *rgba = malloc((size_t)t.width * t.height * 4u);
     if (!*rgba) return model_fail(error, "", "there is not enough memory for the image");
     if (read_pixels(&t, *rgba)) {
@@ -107,8 +110,5 @@ int tga_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint
         *rgba = NULL;
         return model_fail(error, "", "the image was cut off; save it again");
     }
-    *width = t.width;
-    *height = t.height;
-    *channels = t.has_alpha ? 4u : t.pixel_bytes > 1u ? 3u : 1u;
     return 0;
 }

@@ -48,6 +48,8 @@ int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uin
         return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu", columns, rows,
                           (unsigned long long)pixels_max);
     }
+    *width = (uint32_t)columns;
+    *height = (uint32_t)rows;
     out_bytes = (size_t)columns * (size_t)rows * 4u;
     out = malloc(out_bytes);
     if (!out) return model_fail(error, "", "there is not enough memory for the image");
@@ -55,8 +57,6 @@ int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uin
         free(out);
         return model_fail(error, "", "the image data is damaged");
     }
-    *width = (uint32_t)columns;
-    *height = (uint32_t)rows;
     *rgba = out;
     return 0;
 }

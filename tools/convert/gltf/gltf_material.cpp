@@ -34,7 +34,7 @@ static bytes encoded_image(file &f, const image &source, const std::string &wher
     return read_uri(f, source.uri, where);
 }
 
-/* Charges the pixels of damaged images and of images that many textures have as well, before they take time. */
+/* Charges the pixels of damaged images as well, and an image once for each texture that has it. */
 static void decode_image(file &f, const image &source, model_texture &out, const std::string &where)
 {
     const bytes data = encoded_image(f, source, where);
