@@ -133,6 +133,20 @@ static void concave_polygons_are_cut(void **state)
     expect_cut((const double(*)[2])star, 40);
 }
 
+/* Corners in one line but one: no triangle has an area, but each step that looks for an ear counts. */
+static void search_for_ears_is_counted(void **state)
+{
+    enum { CORNERS = 1000 };
+    static float points[CORNERS][3];
+    static uint32_t triangles[CORNERS - 2][3];
+    uint64_t steps = OBJ_CUT_STEPS;
+    (void)state;
+    for (uint32_t i = 0; i < CORNERS; i++) points[i][0] = (float)(i * 7u % 11u);
+    points[0][1] = points[2][1] = 1.0f;
+    assert_int_equal(obj_polygon_cut(points[0], CORNERS, triangles[0], &steps), 0);
+    assert_true(OBJ_CUT_STEPS - steps > CORNERS * CORNERS / 2);
+}
+
 /* The time that a file's concave polygons may take is limited: more have a fan, and a file of such a face alone is
  * refused. */
 static void time_to_cut_polygons_is_limited(void **state)
@@ -151,7 +165,7 @@ static void time_to_cut_polygons_is_limited(void **state)
     for (int i = 0; i < CORNERS; i++) end += sprintf(end, "v %d %d 0\n", i, i % 7 * (i % 7) % 5);
     end += sprintf(end, "f");
     for (int i = 0; i < CORNERS; i++) end += sprintf(end, " %d", i + 1);
-    refused(text, "a concave face of 66000 corners takes too long to cut", "line 66001");
+    refused(text, "the concave faces up to this one, which has 66000 corners, take too long to cut", "line 66001");
     free(text);
 }
 
@@ -514,6 +528,7 @@ static void mutations_never_crash(void **state)
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(polygons_are_fans),
     cmocka_unit_test(concave_polygons_are_cut),
+    cmocka_unit_test(search_for_ears_is_counted),
     cmocka_unit_test(time_to_cut_polygons_is_limited),
     cmocka_unit_test(broken_polygons_are_cut_somehow),
     cmocka_unit_test(corners_become_vertices),

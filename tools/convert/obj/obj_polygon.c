@@ -80,7 +80,7 @@ static int is_ear(const polygon *p, uint32_t b)
 
 static uint32_t find_ear(const polygon *p, uint32_t from, uint32_t left)
 {
-    for (uint32_t i = 0; i < left; i++, from = p->next[from]) {
+    for (uint32_t i = 0; i < left && *p->steps; i++, from = p->next[from], --*p->steps) {
         if (p->ear[from]) return from;
     }
     return MODEL_NONE;
@@ -91,7 +91,7 @@ static uint32_t find_any(polygon *p, uint32_t from, uint32_t left)
 {
     uint32_t best = from;
     double least = 0.0;
-    for (uint32_t i = 0; i < left; i++, from = p->next[from]) {
+    for (uint32_t i = 0; i < left && *p->steps; i++, from = p->next[from], --*p->steps) {
         const double area = fabs(turn(p, p->before[from], from, p->next[from]));
         p->ear[from] = (uint8_t)is_ear(p, from);
         if (p->ear[from]) return from;

@@ -209,7 +209,9 @@ static int add_triangles(reader *r, uint32_t count, uint32_t line)
                              (uint32_t *)(void *)r->triangles.bytes, &r->steps);
     if (failed == 2) {
         return text_fail(&r->scan, line,
-                         "a concave face of %u corners takes too long to cut into triangles: triangulate it", count);
+                         "the concave faces up to this one, which has %u corners, take too long to cut into triangles: "
+                         "triangulate them",
+                         count);
     }
     if (!failed && !r->part && find_part(r)) return 1;
     place = (const uint32_t *)(const void *)r->triangles.bytes;
