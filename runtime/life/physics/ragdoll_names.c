@@ -51,15 +51,19 @@ static const struct word {
     const char *text;
     part means;
 } words[] = {
-    { "forearm", FOREARM },    { "lowerarm", FOREARM },  { "lowarm", FOREARM },  { "elbow", FOREARM },
-    { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },   { "shldr", UPPER_ARM }, { "thigh", THIGH },
-    { "upperleg", THIGH },     { "upleg", THIGH },       { "lowerleg", SHIN },   { "lowleg", SHIN },
-    { "shin", SHIN },          { "calf", SHIN },         { "knee", SHIN },       { "toe", NONE },
-    { "foot", FOOT },          { "ankle", FOOT },        { "finger", NONE },     { "thumb", NONE },
-    { "hand", HAND },          { "wrist", HAND },        { "headtop", NONE },    { "forehead", NONE },
-    { "head", HEAD },          { "neck", HEAD },         { "armature", NONE },   { "arm", UPPER_ARM },
-    { "leg", SHIN },           { "shoulder", SHOULDER }, { "hip", HIP },         { "femur", THIGH },
-    { "tibia", SHIN },         { "humerus", UPPER_ARM }, { "radius", FOREARM },
+    { "forearm", FOREARM }, { "lowerarm", FOREARM },   { "lowarm", FOREARM },
+    { "elbow", FOREARM },   { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },
+    { "shldr", UPPER_ARM }, { "thigh", THIGH },        { "upperleg", THIGH },
+    { "upleg", THIGH },     { "lowerleg", SHIN },      { "lowleg", SHIN },
+    { "hippart", NONE },    { "shoulderpart", NONE },  { "shin", SHIN },
+    { "calf", SHIN },       { "knee", SHIN },          { "toe", NONE },
+    { "foot", FOOT },       { "ankle", FOOT },         { "finger", NONE },
+    { "thumb", NONE },      { "hand", HAND },          { "wrist", HAND },
+    { "headtop", NONE },    { "forehead", NONE },      { "head", HEAD },
+    { "neck", HEAD },       { "armature", NONE },      { "arm", UPPER_ARM },
+    { "leg", SHIN },        { "shoulder", SHOULDER },  { "hip", HIP },
+    { "femur", THIGH },     { "tibia", SHIN },         { "humerus", UPPER_ARM },
+    { "radius", FOREARM },
 };
 
 /* MikuMikuDance's bones, without their sides, in UTF-8. */

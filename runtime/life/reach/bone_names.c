@@ -220,20 +220,35 @@ static int is_above(const uint16_t *parents, uint32_t above, uint32_t joint)
     return joint != NOH_JOINT_ROOT;
 }
 
-/* Bones without a name of their own are what the next one of their limb hangs from, unless the other side's does, too.
- * An arm below an upper arm is a forearm, and a leg above a knee a thigh. */
+/* Whether a joint is of one side's limb: the other side is known, and none of its bones hang from the joint. */
+static int is_own(const uint16_t *parents, uint16_t joint, const uint16_t other[3])
+{
+    int known = 0;
+    for (uint32_t i = 0; i < 3; i++) {
+        if (is_above(parents, joint, other[i])) return 0;
+        known |= other[i] != NOH_JOINT_ROOT;
+    }
+    return known && joint != NOH_JOINT_ROOT;
+}
+
+/* The middle bone without a name of its own is what the last one hangs from. The first one is as many joints above the
+ * middle one as that is above the last; where these are not the limb's, as of a leg above a knee, the middle one was the
+ * first. */
 static void find_limb(const uint16_t *parents, uint16_t limb[3], const uint16_t other[3])
 {
-    const uint16_t below = limb[2] == NOH_JOINT_ROOT ? NOH_JOINT_ROOT : parents[limb[2]];
-    if (limb[0] == NOH_JOINT_ROOT && below != NOH_JOINT_ROOT && below != limb[1] && is_above(parents, limb[1], below)) {
-        limb[0] = limb[1];
+    const uint16_t below = limb[2] == NOH_JOINT_ROOT ? limb[1] : parents[limb[2]];
+    if (limb[1] == NOH_JOINT_ROOT && below != NOH_JOINT_ROOT && below != limb[0] &&
+        (limb[0] == NOH_JOINT_ROOT ? is_own(parents, below, other) : is_above(parents, limb[0], below))) {
         limb[1] = below;
     }
-    for (uint32_t i = 2; i-- > 0;) {
-        if (limb[i] != NOH_JOINT_ROOT || limb[i + 1u] == NOH_JOINT_ROOT) continue;
-        const uint16_t at = parents[limb[i + 1u]];
-        if (at == NOH_JOINT_ROOT || at == limb[0] || is_above(parents, at, other[i + 1u])) continue;
-        if (!i || limb[0] == NOH_JOINT_ROOT || is_above(parents, limb[0], at)) limb[i] = at;
+    if (limb[0] != NOH_JOINT_ROOT || limb[1] == NOH_JOINT_ROOT || !is_above(parents, limb[1], below)) return;
+    uint16_t at = parents[limb[1]];
+    for (uint16_t joint = below; joint != limb[1] && at != NOH_JOINT_ROOT; joint = parents[joint]) at = parents[at];
+    if (is_own(parents, at, other)) {
+        limb[0] = at;
+    } else if (below != limb[1]) {
+        limb[0] = limb[1];
+        limb[1] = below;
     }
 }
 

@@ -96,6 +96,13 @@ static const rig rigs[] = {
     { "SMPL", "0 Pelvis P|1 L_Hip t|2 L_Knee k|3 L_Ankle f|4 L_Foot -|1 R_Hip T|2 R_Knee K|3 R_Ankle F|4 R_Foot -|"
               "1 Spine1 S|2 Spine2 -|3 Spine3 C|4 Neck N|5 Head -|4 L_Collar -|5 L_Shoulder u|6 L_Elbow e|7 L_Wrist w|"
               "8 L_Hand -|4 R_Collar -|5 R_Shoulder U|6 R_Elbow E|7 R_Wrist W" },
+    { "AdvancedSkeleton",
+      "0 Root_M P|1 Hip_R T|2 HipPart1_R -|3 HipPart2_R -|4 Knee_R K|5 KneePart1_R -|6 KneePart2_R -|7 Ankle_R F|"
+      "8 Toes_R -|1 RootPart1_M S|2 Spine1_M -|3 Chest_M C|4 Scapula_R -|5 Shoulder_R U|6 ShoulderPart1_R -|"
+      "7 ShoulderPart2_R -|8 Elbow_R E|9 ElbowPart1_R -|10 ElbowPart2_R -|11 Wrist_R W|4 Neck_M N|5 Head_M -|"
+      "4 Scapula_L -|5 Shoulder_L u|6 ShoulderPart1_L -|7 ShoulderPart2_L -|8 Elbow_L e|9 ElbowPart1_L -|"
+      "10 ElbowPart2_L -|11 Wrist_L w|1 Hip_L t|2 HipPart1_L -|3 HipPart2_L -|4 Knee_L k|5 KneePart1_L -|"
+      "6 KneePart2_L -|7 Ankle_L f|8 Toes_L -" },
     { "SMPL-X", "0 pelvis P|1 left_hip t|2 left_knee k|3 left_ankle f|4 left_foot -|1 right_hip T|2 right_knee K|"
                 "3 right_ankle F|1 spine1 S|2 spine2 -|3 spine3 C|4 neck N|5 head -|4 left_collar -|5 left_shoulder u|"
                 "6 left_elbow e|7 left_wrist w|8 left_index1 -|4 right_collar -|5 right_shoulder U|6 right_elbow E|"
@@ -247,6 +254,26 @@ static void rigs_of_many_programs(void **state)
     assert_int_equal(wrong, 0);
 }
 
+/* Hands that hang from a joint each, or on one side alone: the chest is no bone of an arm. */
+static void a_chest_is_no_arm(void **state)
+{
+    static const char *const hands[] = { "2 socket1 -|3 LeftHand -|2 socket2 -|3 RightHand -", "2 LeftHand -",
+                                         "2 RightHand -", "2 LeftHand -|2 RightHand -" };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(hands); i++) {
+        char joints[256];
+        noh_retarget_rig rig;
+        snprintf(joints, sizeof joints, "0 Hips -|1 Chest -|%s|1 LeftUpLeg -|1 RightUpLeg -", hands[i]);
+        named *n = named_of(joints);
+        assert_int_equal(noh_retarget_rig_make(&n->source, &rig, NULL), NOH_OK);
+        for (uint32_t side = 0; side <= NOH_BONE_RIGHT; side += NOH_BONE_RIGHT) {
+            assert_int_equal(rig.bones[NOH_BONE_UPPER_ARM + side], NOH_JOINT_ROOT);
+            assert_int_not_equal(rig.bones[NOH_BONE_UPPER_ARM + 1u + side], 1);
+        }
+        free(n);
+    }
+}
+
 /* A chain as long as a skeleton may be, each of whose joints may be a limb: the time is not a power of its length. */
 static void long_chains_take_no_time(void **state)
 {
@@ -273,6 +300,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(rigs_of_many_programs),
+        cmocka_unit_test(a_chest_is_no_arm),
         cmocka_unit_test(long_chains_take_no_time),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
