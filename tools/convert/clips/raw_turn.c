@@ -148,8 +148,9 @@ void raw_turn(raw_set *set, double degrees)
 
 /* ---- standing up ---- */
 
-/* Whether the head is above the feet along +z. */
-static int z_is_up(const raw_skeleton *skeleton, const raw_clip *clip, const uint16_t *bones, double *pose)
+/* Whether the head is above the feet along +z, `times` as far as it is away from them across. */
+static int z_is_up(const raw_skeleton *skeleton, const raw_clip *clip, const uint16_t *bones, double *pose,
+                   double times)
 {
     double up[3];
     raw_pose_object(skeleton, clip, 0, pose);
@@ -159,7 +160,7 @@ static int z_is_up(const raw_skeleton *skeleton, const raw_clip *clip, const uin
                 0.5 * (origins[12u * (size_t)bones[NOH_BONE_FOOT]] +
                        origins[12u * (size_t)bones[NOH_BONE_FOOT + NOH_BONE_RIGHT]]);
     }
-    return up[2] > 2.0 * hypot(up[0], up[1]);
+    return up[2] > times * hypot(up[0], up[1]);
 }
 
 int raw_stand_up(raw_set *set)
@@ -170,10 +171,10 @@ int raw_stand_up(raw_set *set)
     int is_up;
     bones_find(&set->skeleton, bones);
     is_up = pose && bones[NOH_BONE_HEAD] != NOH_JOINT_ROOT && bones[NOH_BONE_FOOT] != NOH_JOINT_ROOT &&
-            bones[NOH_BONE_FOOT + NOH_BONE_RIGHT] != NOH_JOINT_ROOT && z_is_up(&set->skeleton, NULL, bones, pose);
+            bones[NOH_BONE_FOOT + NOH_BONE_RIGHT] != NOH_JOINT_ROOT && z_is_up(&set->skeleton, NULL, bones, pose, 2.0);
     for (uint32_t c = 0; c < set->clip_count && is_up; c++) {
         if (set->clips[c].joint_count && set->clips[c].frame_count) {
-            is_up = z_is_up(&set->skeleton, &set->clips[c], bones, pose);
+            is_up = z_is_up(&set->skeleton, &set->clips[c], bones, pose, 1.0); /* may bend or sit */
         }
     }
     free(pose);
