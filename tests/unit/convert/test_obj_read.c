@@ -319,13 +319,19 @@ static void other_pictures_cut_or_are_told(void **state)
     (void)state;
     test_write_file(test_path("leaf.tga"), tga, sizeof tga);
     save("face.mtl", "newmtl a\nmap_Kd leaf.tga\nmap_d -imfchan m leaf.tga\nbump -bm 1 x.png\nmap_Ka leaf.tga\n"
-                     "newmtl b\nmap_Kd leaf.tga\nmap_d y.png\nbump x.png\n");
-    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+                     "newmtl b\nmap_Kd leaf.tga\nmap_d y.png\nbump x.png\n"
+                     "newmtl c\nmap_d leaf.tga\nmap_Kd leaf.tga\nnewmtl d\nd 0.5\nmap_d leaf.tga\nmap_Kd leaf.tga\n"
+                     "newmtl e\nmap_Kd lost.png\nmap_d lost.png\n");
+    model *m = load("mtllib face.mtl\n" SQUARE "usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n"
+                    "usemtl c\nf 1 2 3\nusemtl d\nf 1 2 3\nusemtl e\nf 1 2 3\n");
     assert_int_equal(m->materials[0].alpha, MODEL_ALPHA_MASK);
     assert_int_equal(m->materials[1].alpha, MODEL_ALPHA_OPAQUE);
-    assert_true(has_warning(m, "material 'a': its bump was left out, and of the materials behind it"));
+    assert_int_equal(m->materials[2].alpha, MODEL_ALPHA_MASK);
+    assert_int_equal(m->materials[3].alpha, MODEL_ALPHA_BLEND);
+    assert_true(has_warning(m, "material 'a': its bump was left out, and in all materials after it"));
     assert_true(has_warning(m, "material 'b': its picture of opacity (map_d) was left out: put it into the alpha"));
-    assert_int_equal(m->warning_count, 2);
+    assert_true(has_warning(m, "material 'e': the texture lost.png was left out: "));
+    assert_int_equal(m->warning_count, 3);
     model_free(m);
 }
 

@@ -15,9 +15,10 @@ typedef struct library {
     const char *obj_path;
     text_scan scan;
     model *m;
-    model_material *at;   /* the one that the lines are about; NULL: none that is used */
-    uint64_t pixels_left; /* of textures (image_read_next) */
-    uint32_t left_out;    /* bits of the pictures that have had their warning (leave_out_texture) */
+    model_material *at;    /* the one that the lines are about; NULL: none that is used */
+    uint64_t pixels_left;  /* of textures (image_read_next) */
+    char *color, *opacity; /* names of pictures in its map_Kd and map_d; NULL: none */
+    uint32_t left_out;     /* bits of the pictures that have had their warning (leave_out_texture) */
 } library;
 
 /* ---- materials by name ---- */
@@ -151,31 +152,30 @@ static int read_name(library *l, char **name)
 
 static int read_texture(library *l)
 {
-    char *name;
-    int failed = read_name(l, &name);
-    if (!name) return failed;
+    const char *name;
+    free(l->color);
+    if (read_name(l, &l->color)) return 1;
+    name = l->color;
+    if (!name) return 0;
     l->at->base_color_texture = find_texture(l->m, name);
-    failed = l->at->base_color_texture == MODEL_NONE && add_texture(l, name);
-    free(name);
-    return failed;
+    return l->at->base_color_texture == MODEL_NONE && add_texture(l, name);
 }
 
-/* Exporters name the colours' own picture: its alpha cuts. */
-static int read_opacity_texture(library *l)
+/* Exporters name the colours' own picture in map_d, in a line before or after it: its alpha cuts. */
+static int end_material(library *l)
 {
-    char *name;
-    const int failed = read_name(l, &name);
-    const uint32_t texture = name ? find_texture(l->m, name) : MODEL_NONE;
-    free(name);
-    if (failed || texture == MODEL_NONE || texture != l->at->base_color_texture) {
-        return failed || model_warn(l->m,
-                                    "material '%.60s': its picture of opacity (map_d) was left out: put it into the "
-                                    "alpha of its colours (map_Kd), and name this picture in map_d",
-                                    l->at->name);
+    const int lost = l->opacity && !(l->color && strcmp(l->color, l->opacity) == 0);
+    if (l->opacity && !lost && l->at->base_color_texture != MODEL_NONE && l->at->alpha == MODEL_ALPHA_OPAQUE) {
+        l->at->alpha = MODEL_ALPHA_MASK;
+        surface_kind_set(l->at, surface_kind_by_name(l->at->name, l->at->alpha));
     }
-    l->at->alpha = MODEL_ALPHA_MASK;
-    surface_kind_set(l->at, surface_kind_by_name(l->at->name, l->at->alpha));
-    return 0;
+    free(l->opacity);
+    free(l->color);
+    l->opacity = l->color = NULL;
+    return lost && model_warn(l->m,
+                              "material '%.60s': its picture of opacity (map_d) was left out: put it into the alpha of "
+                              "its colours (map_Kd), and name this picture in map_d",
+                              l->at->name);
 }
 
 static int leave_out_texture(library *l, text_word keyword)
@@ -186,8 +186,8 @@ static int leave_out_texture(library *l, text_word keyword)
         if (!text_is(keyword, maps[i]) || (l->left_out >> i & 1u)) continue;
         l->left_out |= 1u << i;
         return model_warn(l->m,
-                          "material '%.60s': its %s was left out, and of the materials behind it: of pictures in "
-                          "materials of an OBJ file, only map_Kd is read; glTF has the others",
+                          "material '%.60s': its %s was left out, and in all materials after it: of the pictures in an "
+                          "OBJ file's materials, only map_Kd is read; glTF has the others",
                           l->at->name, maps[i]);
     }
     return 0;
@@ -244,12 +244,16 @@ static int read_line(library *l)
 {
     const text_word keyword = text_next_on_line(&l->scan);
     if (text_is(keyword, "newmtl")) {
+        if (end_material(l)) return 1;
         l->at = material_of(l->m, text_rest_of_line(&l->scan));
         return 0;
     }
     if (!l->at) return 0;
     if (text_is(keyword, "map_Kd")) return read_texture(l);
-    if (text_is(keyword, "map_d")) return read_opacity_texture(l);
+    if (text_is(keyword, "map_d")) {
+        free(l->opacity);
+        return read_name(l, &l->opacity);
+    }
     if (text_is(keyword, "d")) return set_opacity(l, 0);
     if (text_is(keyword, "Tr")) return set_opacity(l, 1);
     if (text_is(keyword, "Kd")) set_color(l);
@@ -260,12 +264,13 @@ static int read_line(library *l)
 static int read_library(library *l, const char *text, size_t bytes)
 {
     model_error ignored;
+    int failed = 0;
     text_start(&l->scan, text, bytes, &ignored);
-    while (text_next_line(&l->scan)) {
-        if (read_line(l)) return 1;
+    while (!failed && text_next_line(&l->scan)) {
+        failed = read_line(l);
         (void)text_rest_of_line(&l->scan);
     }
-    return 0;
+    return end_material(l) || failed;
 }
 
 int obj_materials_read(const char *obj_path, const obj_text *o, model *m)
