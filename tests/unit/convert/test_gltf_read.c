@@ -2463,7 +2463,7 @@ static void bytes_behind_a_wrong_length_are_read(void **state)
                "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}");
     model *m = load_file();
     assert_true(m->meshes[0].vertex_count == 3 && m->meshes[0].position[3] == 1.0f);
-    assert_true(has_warning(m, "buffer 0: it has 36 bytes, but 'byteLength' says 12: what lies behind them is used"));
+    assert_true(has_warning(m, "buffer 0: 'byteLength' says 12, but it has 36 bytes, and later ones are needed"));
     model_free(m);
 }
 

@@ -148,8 +148,8 @@ span buffer_bytes(file &f, int index, uint64_t offset, uint64_t size, const std:
     const auto has = [&](uint64_t bytes) { return size <= bytes && offset <= bytes - size; };
     if (!has(b.byte_length) && has(b.data.size())) {
         leave_out(f, text("buffer %d", index),
-                  text(": it has %zu bytes, but 'byteLength' says %llu: what lies behind them is used, and was read",
-                       b.data.size(), static_cast<unsigned long long>(b.byte_length)));
+                  text(": 'byteLength' says %llu, but it has %zu bytes, and later ones are needed: all were read",
+                       static_cast<unsigned long long>(b.byte_length), b.data.size()));
         b.byte_length = b.data.size();
     }
     if (!has(b.byte_length))
