@@ -262,13 +262,13 @@ static void a_chest_is_no_arm(void **state)
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(hands); i++) {
         char joints[256];
-        noh_retarget_rig rig;
+        noh_retarget_rig made;
         snprintf(joints, sizeof joints, "0 Hips -|1 Chest -|%s|1 LeftUpLeg -|1 RightUpLeg -", hands[i]);
         named *n = named_of(joints);
-        assert_int_equal(noh_retarget_rig_make(&n->source, &rig, NULL), NOH_OK);
+        assert_int_equal(noh_retarget_rig_make(&n->source, &made, NULL), NOH_OK);
         for (uint32_t side = 0; side <= NOH_BONE_RIGHT; side += NOH_BONE_RIGHT) {
-            assert_int_equal(rig.bones[NOH_BONE_UPPER_ARM + side], NOH_JOINT_ROOT);
-            assert_int_not_equal(rig.bones[NOH_BONE_UPPER_ARM + 1u + side], 1);
+            assert_int_equal(made.bones[NOH_BONE_UPPER_ARM + side], NOH_JOINT_ROOT);
+            assert_int_not_equal(made.bones[NOH_BONE_UPPER_ARM + 1u + side], 1);
         }
         free(n);
     }
