@@ -3,6 +3,7 @@
 #define STBI_NO_STDIO
 #include <stb/stb_image.h>
 
+#include "convert/base/webp_file.h"
 #include "convert/fbx/fbx_read.h"
 #include "convert/model/model.h"
 
@@ -28,6 +29,24 @@ stbi_us *stbi_load_16_from_memory(stbi_uc const *bytes, int count, int *width, i
 {
     (void)bytes, (void)count, (void)width, (void)height, (void)channels, (void)wanted;
     return NULL;
+}
+
+const char *stbi_failure_reason(void)
+{
+    return "no decoder";
+}
+
+int webp_begins(const unsigned char *bytes, size_t count)
+{
+    (void)bytes, (void)count;
+    return 0;
+}
+
+int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint32_t *width, uint32_t *height,
+              unsigned char **rgba, model_error *error)
+{
+    (void)bytes, (void)count, (void)pixels_max, (void)width, (void)height, (void)rgba;
+    return model_fail(error, "", "WebP is not read here");
 }
 
 int model_read_gltf_with(const char *path, const extra_list *extras, model **out, model_error *error)

@@ -89,7 +89,7 @@ static int decode_without_end(const unsigned char *bytes, size_t count, image_fi
     int failed;
     if (!whole) return model_fail_memory(error);
     memcpy(whole, bytes, count);
-    memcpy(whole + count, IMAGE_END, 2);
+    for (size_t i = 0; i < 2u; i++) whole[count + i] = (unsigned char)IMAGE_END[i];
     failed = decode(whole, count + 2u, image, &reason);
     free(whole);
     image->has_no_end = !failed;
