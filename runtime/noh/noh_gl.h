@@ -63,7 +63,7 @@ typedef enum noh_tonemap {
 /* Lighting values. Plain data: change any field between draws. */
 typedef struct noh_lighting {
     noh_light rest;         /* world space, without the key light */
-    float key_direction[3]; /* unit, towards it, world; also that of toons' edges */
+    float key_direction[3]; /* unit, towards it, world; toons take it without a key, too */
     float key[3];           /* its light reflected by a white matte surface facing it; zeros: none */
     float key_gloss; /* its share of highlights: 0 if the reflection already contains it, 1 for a lamp of yours */
     float turn[9];   /* rows: world to the reflection's space */
