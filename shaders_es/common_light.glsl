@@ -244,7 +244,8 @@ float noh_key_glossed(float nh, float nl, float nv, float roughness)
 }
 
 #ifdef NOH_TOON
-/* Colours are the artist's: the light, the same for the whole figure, tints them by half of its hue, and darkens them
+/* noh_lighting[3..5].w: the mean light and the key.
+ * Colours are the artist's: the light, the same for the whole figure, tints them by half of its hue, and darkens them
  * where there is less than white; more does not bleach them, and no tone map changes them. */
 vec3 noh_light(noh_surface s)
 {

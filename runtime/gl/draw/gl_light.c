@@ -40,6 +40,10 @@ void noh_lighting_shadow(noh_lighting *lighting, const float view_projection[16]
     lighting->shadow_texel = 2.0f * radius / (float)shadow_px;
 }
 
+/* Of the spherical harmonics, as factors of the polynomials 1, y, z, x, xy, yz, 3z^2-1, zx, x^2-y^2. */
+static const float polynomial[9] = { 0.282094792f, 0.488602512f, 0.488602512f, 0.488602512f, 1.09254843f,
+                                     1.09254843f,  0.315391565f, 1.09254843f,  0.546274215f };
+
 /* A toon takes one colour, in the fourth column: the mean light and the key, also where no key was split off. */
 static void pack_toon(const noh_lighting *l, float rows[NOH_LIGHTING_ROWS][4])
 {
@@ -48,22 +52,19 @@ static void pack_toon(const noh_lighting *l, float rows[NOH_LIGHTING_ROWS][4])
     memcpy(key, l->key, sizeof key);
     if (rest.order >= 2u && key[0] + key[1] + key[2] <= 0.0f) noh_light_key(&l->rest, direction, key, &rest);
     for (uint32_t c = 0; c < 3u; c++) {
-        rows[3u + c][3] = rest.coefs[0][c] * 0.282094792f * noh_sh_cosine_lobe[0] + key[c];
+        rows[3u + c][3] = rest.coefs[0][c] * polynomial[0] * noh_sh_cosine_lobe[0] + key[c];
     }
 }
 
-/* Convert spherical harmonics to the light that a matte surface reflects, as factors of the polynomials 1, y, z, x, xy,
- * yz, 3z^2-1, zx, x^2-y^2. */
+/* Spherical harmonics become the light that a matte surface reflects. */
 void noh_lighting_pack(const noh_lighting *lighting, uint32_t shadow_px, float rows[NOH_LIGHTING_ROWS][4])
 {
-    static const float scale[9] = { 0.282094792f, 0.488602512f, 0.488602512f, 0.488602512f, 1.09254843f,
-                                    1.09254843f,  0.315391565f, 1.09254843f,  0.546274215f };
     const noh_lighting *l = lighting;
     NOH_ASSERT(l && rows);
     memset(rows, 0, NOH_LIGHTING_ROWS * sizeof *rows);
     for (uint32_t i = 0; i < 9u && i < NOH_SH_COUNT(l->rest.order); i++) {
         const uint32_t band = i > 3u ? 2u : i > 0u;
-        for (uint32_t c = 0; c < 3u; c++) rows[i][c] = l->rest.coefs[i][c] * scale[i] * noh_sh_cosine_lobe[band];
+        for (uint32_t c = 0; c < 3u; c++) rows[i][c] = l->rest.coefs[i][c] * polynomial[i] * noh_sh_cosine_lobe[band];
     }
     pack_toon(l, rows);
     rows[1][3] = l->has_floor ? NOH_SOFT_DEEPEST : 1.0f;
