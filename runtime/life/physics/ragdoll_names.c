@@ -171,7 +171,8 @@ static uint32_t nearest_above(const part_list *p, uint32_t joint, part a, part b
 }
 
 /* Joints named `weak` mean `means` if they are the nearest joint of both above one that means `below`. So 'Hips' and
- * collar bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee' is. */
+ * collar bones named shoulders, which have thighs and upper arms below them, are not limbs; 'L_Hip' over 'L_Knee'
+ * is. */
 static void decide(part_list *p, part weak, part means, part below)
 {
     for (uint32_t i = 0; i < p->joints->joint_count; i++) {

@@ -232,8 +232,8 @@ static int is_own(const uint16_t *parents, uint16_t joint, const uint16_t other[
 }
 
 /* The middle bone without a name of its own is what the last one hangs from. The first one is as many joints above the
- * middle one as that is above the last; where these are not the limb's, as of a leg above a knee, the middle one was the
- * first. */
+ * middle one as that is above the last; where these are not the limb's, as of a leg above a knee, the middle one was
+ * the first. */
 static void find_limb(const uint16_t *parents, uint16_t limb[3], const uint16_t other[3])
 {
     const uint16_t below = limb[2] == NOH_JOINT_ROOT ? limb[1] : parents[limb[2]];

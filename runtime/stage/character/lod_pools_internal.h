@@ -84,8 +84,8 @@ void noh_lod_pools_begin(noh_lod_pools *pools);
  * despawned actor is free from the next frame on, and what the actor leaves in the block is never drawn. With equal
  * priorities the nearer instance comes first, to a five-hundredth of its distance.
  * ranges  level: any; past the last pool's it counts as the last pool's. priority at least 0, higher first (NaN is
- *         0). distance at least 0, in any unit; afresh 1: its distance has changed since it got its slot, so holding the
- *         slot does not raise its priority */
+ *         0). distance at least 0, in any unit; afresh 1: its distance has changed since it got its slot, so holding
+ *         the slot does not raise its priority */
 void noh_lod_pools_ask_at(noh_lod_pools *pools, uint32_t instance, uint32_t level, float priority, float distance,
                           int afresh);
 

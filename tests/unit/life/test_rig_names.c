@@ -1,5 +1,5 @@
-/* Names of joints that many programs give: the bodies of a ragdoll (ragdoll_names.c), on which feet and arms depend, and
- * the bones of a person (bone_names.c). */
+/* Names of joints that many programs give: the bodies of a ragdoll (ragdoll_names.c), on which feet and arms depend,
+ * and the bones of a person (bone_names.c). */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -55,7 +55,8 @@ static noh_graph_pack *make(const noh_graph_pack_desc *desc)
     return made;
 }
 
-/* A state of a machine by the name of its child node, and the track that plays a clip node: NOH_NONE if there is none. */
+/* A state of a machine by the name of its child node, and the track that plays a clip node: NOH_NONE if there is
+ * none. */
 static uint32_t find_state(const noh_graph_pack *made, uint32_t machine, const char *name)
 {
     for (uint32_t i = 0; noh_graph_pack_state_name(made, machine, i)[0]; i++)

@@ -392,8 +392,8 @@ static void use_nothing(busy_stage *s)
 }
 
 /* What actors did leaves no byte in a state once they are despawned, in no module and in no pool of a module: both are
- * as in a stage whose actors did nothing, and an origin that moves finds no place in them. Slots of levels, which visible
- * actors hold, are not compared. */
+ * as in a stage whose actors did nothing, and an origin that moves finds no place in them. Slots of levels, which
+ * visible actors hold, are not compared. */
 static void despawned_actors_leave_nothing(void **state)
 {
     const float by[3] = { 4.0f, 0.0f, -8.0f };

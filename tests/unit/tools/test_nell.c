@@ -175,7 +175,8 @@ static int is_middle_of_mouth(const float *at)
     return fabsf(at[0]) < 0.006f && fabsf(at[1] + 0.0435f) < 0.005f && at[2] > 0.070f;
 }
 
-/* A slight smile is not a slit of grey teeth: the lower lip, which a smile lowers, still reaches up to the upper one. */
+/* A slight smile is not a slit of grey teeth: the lower lip, which a smile lowers, still reaches up to the upper
+ * one. */
 static void a_slight_smile_keeps_the_lips_shut(void **state)
 {
     const model_target *smile = target_named("smile");

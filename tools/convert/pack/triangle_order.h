@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/* Sort triangles for the vertex cache, then for little overdraw: outer triangles first. Where thousands meet in a vertex,
- * they stay as they are.
+/* Sort triangles for the vertex cache, then for little overdraw: outer triangles first. Where thousands meet in a
+ * vertex, they stay as they are.
  * shapes   indices[count], positions[vertex_count][3]
  * returns  1: out of memory; the order is then any */
 int triangle_order(uint32_t *indices, size_t count, const float *positions, size_t vertex_count);

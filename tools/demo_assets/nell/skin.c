@@ -319,8 +319,8 @@ static double lips_open(const Pose *pose)
            (1 - clamp(pose->mouth_close, 0, 1));
 }
 
-/* From the lip's edge inwards, curling up (or down) behind the lip. The lower lip is pressed into the upper one, so that
- * a slight smile parts them hardly at all. */
+/* From the lip's edge inwards, curling up (or down) behind the lip. The lower lip is pressed into the upper one, so
+ * that a slight smile parts them hardly at all. */
 V3 lip_place(const Seed *seed, const Pose *pose)
 {
     static const double back[] = { 0, 0.0012, 0.0024, 0.0033, 0.0038 };
