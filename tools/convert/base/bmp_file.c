@@ -2,20 +2,17 @@
 
 #include <stdint.h>
 
-static uint32_t little(const unsigned char *b)
-{
-    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
+#include "convert/base/byte_buffer.h"
 
 #define BMP_HEADER 54u /* of the file and of a picture of the second version */
 
 int bmp_begins(const unsigned char *bytes, size_t count)
 {
-    return count > BMP_HEADER && bytes[0] == 'B' && bytes[1] == 'M' && little(bytes + 14) <= 124u;
+    return count > BMP_HEADER && bytes[0] == 'B' && bytes[1] == 'M' && byte_word(bytes + 14) <= 124u;
 }
 
-/* Whether a pixel has a number behind the last colour of the palette, which stb_image takes from memory that is not set.
- * bits  1, 4 or 8 */
+/* Whether a pixel has a number behind the last colour of the palette, which stb_image takes from memory that is not
+ * set. bits: 1, 4 or 8 */
 static int leaves_palette(const unsigned char *rows, uint64_t row, uint64_t width, uint64_t height, unsigned bits,
                           uint64_t colours)
 {
@@ -32,11 +29,12 @@ static int leaves_palette(const unsigned char *rows, uint64_t row, uint64_t widt
 /* The first version has sides of 16 bits, and no packing. A negative height: the top row first. */
 int bmp_is_refused(const unsigned char *bytes, size_t count, model_error *error)
 {
-    const int first = little(bytes + 14) == 12u;
-    const uint32_t side = little(bytes + 18), tall = little(bytes + 22), packing = first ? 0 : little(bytes + 30);
+    const int first = byte_word(bytes + 14) == 12u;
+    const uint32_t side = byte_word(bytes + 18), tall = byte_word(bytes + 22),
+                   packing = first ? 0 : byte_word(bytes + 30);
     const uint64_t width = first ? side & 0xffffu : side, bits = first ? bytes[24] : bytes[28];
-    const uint64_t height = first ? side >> 16 : tall >> 31 ? 0u - tall : tall, begin = little(bytes + 10);
-    const uint64_t row = (width * bits + 31u) / 32u * 4u, header = 14u + little(bytes + 14);
+    const uint64_t height = first ? side >> 16 : tall >> 31 ? 0u - tall : tall, begin = byte_word(bytes + 10);
+    const uint64_t row = (width * bits + 31u) / 32u * 4u, header = 14u + byte_word(bytes + 14);
     if (packing != 0 && packing != 3u) {
         return model_fail(error, "", "it is a BMP picture with packed pixels, which is not read: save it as PNG");
     }

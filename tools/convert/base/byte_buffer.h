@@ -1,4 +1,4 @@
-/* byte_buffer.h: a growing block of bytes, and the string table of a pack. */
+/* byte_buffer.h: a growing block of bytes, the string table of a pack, and numbers in files. */
 #ifndef NOH_CONVERT_BASE_BYTE_BUFFER_H
 #define NOH_CONVERT_BASE_BYTE_BUFFER_H
 
@@ -22,6 +22,12 @@ __attribute__((format(printf, 2, 3)))
 void buffer_print(byte_buffer *b, const char *format, ...);
 void buffer_align(byte_buffer *b, size_t alignment);
 void buffer_free(byte_buffer *b);
+
+/* The number of four bytes, the lowest first. */
+static inline uint32_t byte_word(const uint8_t *b)
+{
+    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
 
 /* The names of a pack, one copy of each. */
 typedef struct string_table {

@@ -13,15 +13,11 @@
 #include "convert/base/tga_file.h"
 #include "convert/base/webp_file.h"
 
-/* Why stb_image must not have some bytes, if it decodes their format here: its other decoders are kept from files of
- * unknown origin. */
-typedef int refusal(const unsigned char *bytes, size_t count, model_error *error);
-
-static refusal *format_of(const unsigned char *bytes, size_t count)
+/* stb_image's other decoders are kept from files of unknown origin. */
+static int is_png_or_jpeg(const unsigned char *bytes, size_t count)
 {
     static const unsigned char png[4] = { 0x89, 'P', 'N', 'G' }, jpeg[3] = { 0xff, 0xd8, 0xff };
-    if (count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0)) return image_is_cut;
-    return bmp_begins(bytes, count) ? bmp_is_refused : NULL;
+    return count > 8 && (memcmp(bytes, png, 4) == 0 || memcmp(bytes, jpeg, 3) == 0);
 }
 
 static int fail_to_decode(model_error *error)
@@ -49,13 +45,12 @@ static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels
     return 0;
 }
 
-/* Of 16 bits, the nearest of 8. */
 static uint8_t *load_wide(const unsigned char *bytes, size_t count, int size[2], int *channels)
 {
     uint16_t *wide = stbi_load_16_from_memory(bytes, (int)count, &size[0], &size[1], channels, 4);
     uint8_t *narrow = (uint8_t *)wide;
     const size_t values = wide ? (size_t)size[0] * (size_t)size[1] * 4u : 0;
-    for (size_t i = 0; i < values; i++) narrow[i] = (uint8_t)((wide[i] * 255u + 32767u) / 65535u);
+    for (size_t i = 0; i < values; i++) narrow[i] = image_byte_of(wide[i]);
     return narrow;
 }
 
@@ -97,6 +92,23 @@ static int decode_without_end(const unsigned char *bytes, size_t count, image_fi
     return failed;
 }
 
+static int decode_png_or_jpeg(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
+                              model_error *error)
+{
+    int failed = check_size(bytes, count, pixels_left, error);
+    if (!failed) failed = image_is_cut(bytes, count, error);
+    if (failed == IMAGE_NO_END) return decode_without_end(bytes, count, image, error);
+    return failed ? 1 : decode(bytes, count, image, error);
+}
+
+/* What is refused says more than stb_image does. */
+static int decode_bmp(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
+                      model_error *error)
+{
+    return bmp_is_refused(bytes, count, error) || check_size(bytes, count, pixels_left, error) ||
+           decode(bytes, count, image, error);
+}
+
 static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
                         model_error *error)
 {
@@ -126,15 +138,10 @@ static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixe
 
 int image_decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image, model_error *error)
 {
-    refusal *refused = format_of(bytes, count);
-    int failed;
     memset(image, 0, sizeof *image);
-    if (!refused) return decode_other(bytes, count, pixels_left, image, error);
-    if (refused != image_is_cut && refused(bytes, count, error)) return 1; /* says more than stb_image */
-    if (check_size(bytes, count, pixels_left, error)) return 1;
-    failed = refused == image_is_cut ? image_is_cut(bytes, count, error) : 0;
-    if (failed == IMAGE_NO_END) return decode_without_end(bytes, count, image, error);
-    return failed ? 1 : decode(bytes, count, image, error);
+    return (is_png_or_jpeg(bytes, count) ? decode_png_or_jpeg
+            : bmp_begins(bytes, count)   ? decode_bmp
+                                         : decode_other)(bytes, count, pixels_left, image, error);
 }
 
 int image_read_next(const char *path, uint64_t *pixels_left, image_file *image, model_error *error)

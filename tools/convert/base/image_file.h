@@ -19,10 +19,17 @@ typedef struct image_file {
     uint8_t *rgba;     /* [height][width][4], the top row first; to be freed. Alpha is 255 where the file has none */
 } image_file;
 
+/* Of 16 bits, the nearest of 8. */
+static inline uint8_t image_byte_of(uint32_t wide)
+{
+    return (uint8_t)((wide * 255u + 32767u) / 65535u);
+}
+
 /* Read a file of at most 64 Mi pixels that has its end. Returns 0, or 1 and *error; then image->rgba is NULL. */
 int image_read(const char *path, image_file *image, model_error *error);
 
-/* The same of bytes in memory, also those without an end. *pixels_left shrinks by the pixels before they are decoded. */
+/* The same of bytes in memory, also those without an end. *pixels_left shrinks by the pixels before they are
+ * decoded. */
 int image_decode(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
                  model_error *error);
 

@@ -3,6 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/base/image_file.h"
+
 #define HEADER_BYTES 26u
 #define RESOURCE_BYTES 12u  /* of the smallest resource */
 #define VERSION_INFO 0x421u /* the resource that tells whether the flattened picture was stored */
@@ -158,14 +160,13 @@ static int next_row(psd *p, unsigned char *row)
     return 0;
 }
 
-/* Of 16 bits, the nearest of 8. */
 static int read_channel(psd *p, unsigned char *row, unsigned char *rgba, size_t first, size_t last)
 {
     for (uint32_t y = 0; y < p->height; y++) {
         if (next_row(p, row)) return 1;
         for (uint32_t x = 0; x < p->width; x++) {
-            const uint32_t wide = p->sample > 1u ? (big(row + x * 2u, 2) * 255u + 32767u) / 65535u : row[x];
-            for (size_t c = first; c <= last; c++) rgba[((size_t)y * p->width + x) * 4u + c] = (unsigned char)wide;
+            const unsigned char value = p->sample > 1u ? image_byte_of(big(row + x * 2u, 2)) : row[x];
+            for (size_t c = first; c <= last; c++) rgba[((size_t)y * p->width + x) * 4u + c] = value;
         }
     }
     return 0;

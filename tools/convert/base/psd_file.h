@@ -1,5 +1,5 @@
-/* psd_file.h: Photoshop files, which FBX and OBJ files of artists name: their flattened picture, grey or colours of 8 or
- * 16 bits. stb_image takes every alpha for a blend with white, which spoils textures with a channel of alpha. */
+/* psd_file.h: Photoshop files, which FBX and OBJ files of artists name: their flattened picture, grey or colours of 8
+ * or 16 bits. stb_image takes every alpha for a blend with white, which spoils textures with a channel of alpha. */
 #ifndef NOH_CONVERT_BASE_PSD_FILE_H
 #define NOH_CONVERT_BASE_PSD_FILE_H
 

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "noh/base.h"
+#include "convert/base/byte_buffer.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model_build.h"
 #include "raw_set.h"
@@ -47,7 +48,7 @@ static int take_u32(rcl_reader *r, uint32_t *out)
 {
     const uint8_t *b = take(r, 4);
     if (!b) return 1;
-    *out = (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    *out = byte_word(b);
     return 0;
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "convert/base/byte_buffer.h"
 #include "platform.h"
 
 /* ---- the part of libsndfile's interface that is used ---- */
@@ -158,11 +159,6 @@ static int read_file(const sndfile *s, const char *path, size_t only, sound *out
     return status;
 }
 
-static uint32_t word_at(const uint8_t *b)
-{
-    return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
-}
-
 /* A WAV whose header counts more bytes than there are was cut off: libsndfile takes what is there. Programs that do not
  * know a length beforehand write 0, almost 2^31 (eSpeak NG, SoX) or almost 2^32. */
 static void warn_if_cut(const char *path)
@@ -173,10 +169,10 @@ static void warn_if_cut(const char *path)
     if (file.bytes >= 12 && memcmp(b, "RIFF", 4) == 0 && memcmp(b + 8, "WAVE", 4) == 0) {
         size_t at = 12;
         while (file.bytes - at >= 8 && memcmp(b + at, "data", 4) != 0) {
-            const uint64_t next = at + 8u + (uint64_t)word_at(b + at + 4) + (word_at(b + at + 4) & 1u);
+            const uint64_t next = at + 8u + (uint64_t)byte_word(b + at + 4) + (byte_word(b + at + 4) & 1u);
             at = next < file.bytes ? (size_t)next : file.bytes;
         }
-        const uint32_t told = file.bytes - at >= 8 ? word_at(b + at + 4) : 0;
+        const uint32_t told = file.bytes - at >= 8 ? byte_word(b + at + 4) : 0;
         if (told > file.bytes - at - 8u && told < 0x7fff0000u) {
             fprintf(stderr,
                     "noh: %s: warning: its header at byte %zu counts %u bytes of sound, and %zu are there: it was cut "
