@@ -165,7 +165,8 @@ $(BUILD)/tools/convert/%.o: OPT := $(if $(NOH_LONG),$(OPT),-O1 -g1)
 endif
 
 cross-tests: $(if $(CROSS),$(patsubst tests/%.c,$(BUILD)/cross/%,$(shell sh tests/cross_tests.sh $(CROSS) $(CROSS_C))))
-	@printf '%s\n' $^ >$(BUILD)/cross/programs
+	@mkdir -p $(BUILD)/cross
+	@printf '%s\n' $^ | sed '/^$$/d' >$(BUILD)/cross/programs
 $(BUILD)/cross/libtests.a: $(CROSS_O) $(BUILD)/libnoh.a
 	@mkdir -p $(@D)
 	@rm -f $@

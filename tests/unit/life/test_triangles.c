@@ -1,4 +1,5 @@
-/* Tests of triangles.c and triangles_touch.c: rays and touches against all triangles in double; bodies on them. */
+/* Tests of triangles.c and triangles_touch.c: rays and touches against all triangles in double; bodies on them.
+ * cross: long, rays against all triangles in double */
 #include "life/physics/ragdoll_internal.h"
 #include "life/physics/world_ask_internal.h"
 #include "noh/base.h"
