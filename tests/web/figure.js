@@ -11,8 +11,9 @@ const shot = (page, name) => page.screenshot({ path: path.join(out, name) });
 // Until nothing moves by itself any more.
 const still = (page) => page.waitForFunction(() => !character.wanted && performance.now() > character.busy);
 
+// Small: a software rasteriser takes a second and more for each frame with all strips.
 async function hair(browser) {
-    const page = await open(browser, wide, 'clip=none&size=256&light=studio');
+    const page = await open(browser, wide, 'clip=none&size=48&light=studio');
     const has = await page.evaluate(() => Module._web_has_hair()) === 1;
     check('hair: offered where there is some', await page.isVisible('#hair') === has);
     if (has) await wig(page);
