@@ -395,10 +395,10 @@ typedef struct noh_node {
  *          mesh space: yzw its centre, at the foremost teeth; surface_more: half its width, half its height, 1 over the
  *          depth where no light arrives, and half the lips' gap at rest, in such depths, or 0
  *          for 0.24. Zeros: none
- *   eye    xyz the gaze in the bind pose and mesh space, with the iris radius as its length; w the sine of the angle at
- *          the eyeball's centre between the gaze and the rim of the iris. surface_more: the edges of the upper and
- *          lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away from the nose, the
- *          edge is at the height x + y a + z a^2. Zeros: unknown
+ *   eye    xyz the gaze in the bind pose and mesh space, with the iris radius as its length, after the joints' scales;
+ *          w the sine of the angle at the eyeball's centre between the gaze and the rim of the iris. surface_more: the
+ *          edges of the upper and lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away
+ *          from the nose, the edge is at the height x + y a + z a^2. Zeros: unknown
  *   teeth  nearness to the lips, 1 at the foremost teeth, 0 where no light arrives: dot(xyz, position in the bind pose)
  *          + w; zeros: unknown. surface_more: above 0 if known; 0; 0; half the lips' gap at rest, in depths of the
  *          mouth, or 0 for 0.24

@@ -90,6 +90,27 @@ static void blank_eyes_get_an_iris(void **state)
     model_free(m);
 }
 
+/* A mesh without texture coordinates gets them. */
+static void eyes_without_coordinates_get_an_iris(void **state)
+{
+    model *m = eyes_of(0.062f);
+    model_mesh *mesh = m->meshes;
+    model_error error;
+    (void)state;
+    free(mesh->uv);
+    mesh->uv = NULL;
+    assert_int_equal(eye_paint(m), 0);
+    assert_int_equal(m->texture_count, 1);
+    assert_non_null(mesh->uv);
+    for (uint32_t v = 0; v < 2u * BALL; v++) {
+        const uint8_t green = green_at(m, mesh->uv[2u * v] * 0.999f, mesh->uv[2u * v + 1u] * 0.999f);
+        assert_true(v % BALL / SIDES == 0 ? green < 40 : v % BALL / SIDES < 3 || green > 200);
+    }
+    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_true(fabsf(m->materials[0].surface_values[3] - 0.42f) < 0.03f);
+    model_free(m);
+}
+
 /* A half ball that is closed at its back by a fan is an eye, too. */
 static void half_balls_get_an_iris(void **state)
 {
@@ -212,6 +233,27 @@ static void skinned_meshes_stand_upright(void **state)
         assert_true(skinned ? gaze[2] > 0.9f * RADIUS * 0.4f : gaze[1] < -0.9f * RADIUS * 0.4f);
         model_free(m);
         model_free(upright);
+    }
+}
+
+/* After joints: the shader knows the world's stretch, not theirs. Files in centimetres have a joint of 0.01. */
+static void joints_shrink_an_iris(void **state)
+{
+    (void)state;
+    for (int skinned = 0; skinned < 2; skinned++) {
+        double length[2];
+        for (int is_shrunk = 0; is_shrunk < 2; is_shrunk++) {
+            model *m = turned_eyes(skinned);
+            const float *gaze = m->materials[0].surface_values;
+            model_error error;
+            for (int i = 0; i < 12; i++) m->nodes[0].world[i] *= is_shrunk ? 0.01 : 1.0;
+            assert_int_equal(eye_paint(m), 0);
+            assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+            length[is_shrunk] = fabs((double)gaze[1]);
+            assert_true(length[is_shrunk] > 0.0);
+            model_free(m);
+        }
+        assert_true(fabs(length[1] / length[0] - (skinned ? 0.01 : 1.0)) < 1e-5);
     }
 }
 
@@ -524,13 +566,21 @@ static void bodies_do_not_part_eyes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blank_eyes_get_an_iris),       cmocka_unit_test(other_eyes_stay),
-        cmocka_unit_test(turned_eyes_look_ahead),       cmocka_unit_test(nodes_pair_eyes),
-        cmocka_unit_test(eyes_with_an_iris_stay),       cmocka_unit_test(grey_faces_become_skin),
-        cmocka_unit_test(slabs_of_lashes_are_hidden),   cmocka_unit_test(half_balls_get_an_iris),
-        cmocka_unit_test(skinned_meshes_stand_upright), cmocka_unit_test(eyes_of_nodes_are_apart),
-        cmocka_unit_test(shadows_on_eyes_are_left_out), cmocka_unit_test(bodies_of_joined_meshes_stay),
+        cmocka_unit_test(blank_eyes_get_an_iris),
+        cmocka_unit_test(other_eyes_stay),
+        cmocka_unit_test(turned_eyes_look_ahead),
+        cmocka_unit_test(nodes_pair_eyes),
+        cmocka_unit_test(eyes_with_an_iris_stay),
+        cmocka_unit_test(grey_faces_become_skin),
+        cmocka_unit_test(slabs_of_lashes_are_hidden),
+        cmocka_unit_test(half_balls_get_an_iris),
+        cmocka_unit_test(skinned_meshes_stand_upright),
+        cmocka_unit_test(eyes_of_nodes_are_apart),
+        cmocka_unit_test(shadows_on_eyes_are_left_out),
+        cmocka_unit_test(bodies_of_joined_meshes_stay),
         cmocka_unit_test(bodies_do_not_part_eyes),
+        cmocka_unit_test(joints_shrink_an_iris),
+        cmocka_unit_test(eyes_without_coordinates_get_an_iris),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -78,7 +78,7 @@ static int is_plain_material(const model_material *m)
 /* Whether the part is of a plain eye's material, and its vertex colours are white. */
 static int is_plain(const model *m, const model_mesh *mesh, const model_submesh *part)
 {
-    return mesh->uv && part->material != MODEL_NONE && is_plain_material(&m->materials[part->material]) &&
+    return part->material != MODEL_NONE && is_plain_material(&m->materials[part->material]) &&
            surface_is_white(mesh, part);
 }
 
@@ -295,19 +295,22 @@ static void project(model *m, const ball *eye, balls *b)
     }
 }
 
-/* Of a material that was painted, what is no ball is white. */
-static void whiten(model *m, const balls *b)
+/* Of a material that was painted, what is no ball is white. 1: out of memory */
+static int whiten(model *m, const balls *b)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const model_mesh *mesh = &m->meshes[i];
+        model_mesh *mesh = &m->meshes[i];
         for (uint32_t s = 0; s < mesh->submesh_count; s++) {
             const model_submesh *part = &mesh->submeshes[s];
             if (!is_plain(m, mesh, part) || !is_painted(b, part->material)) continue;
+            if (!mesh->uv) mesh->uv = model_zeros((size_t)mesh->vertex_count * 2, sizeof *mesh->uv);
+            if (!mesh->uv) return 1;
             for (uint32_t k = 0; k < part->index_count; k++) {
                 memset(mesh->uv + 2 * (size_t)mesh->indices[part->first_index + k], 0, 2 * sizeof *mesh->uv);
             }
         }
     }
+    return 0;
 }
 
 static int finish(model *m, const balls *b)
@@ -374,6 +377,5 @@ int eye_paint(model *m)
     if (visit_balls(m, collect, &b)) return 1;
     keep_pairs(&b);
     if (b.count == 0) return 0;
-    whiten(m, &b);
-    return visit_balls(m, project, &b) || finish(m, &b) || (is_blank && make_skin(m));
+    return whiten(m, &b) || visit_balls(m, project, &b) || finish(m, &b) || (is_blank && make_skin(m));
 }

@@ -9,7 +9,7 @@
  * get a texture that is made here, and texture coordinates about the world's +z, where they look, by the first node that
  * draws them. Of balls in each other the outermost is seen; an iris, pupil or cornea of another opaque material that is
  * seen, too, leaves its eye as it is. Painted materials become white and wet, and add a warning. Meshes without texture
- * coordinates are left as they are. Surfaces of materials are known. If the model has no texture of its own, grey
+ * coordinates get zeros for all else, and no tangents. Surfaces of materials are known. If the model has no texture of its own, grey
  * materials of skin, or named as a face, head or neck, become skin and have its colour, each with a warning, unless
  * their surface is given or they have vertex colours: a living eye in plaster looks uncanny.
  * returns  1: out of memory */

@@ -28,6 +28,7 @@ typedef struct eye_ball {
     uint32_t material, first; /* its island */
     eye_sphere sphere;
     double ahead[3], above[3];     /* unit: the world's z and y */
+    double scale;                  /* by joints, whose stretches shaders do not know; 1 without joints */
     double gaze[3], out[3], up[3]; /* unit, at right angles; out: from the nose */
     double iris;                   /* sine of the angle from gaze to the rim */
     double lids[6];                /* as in noh_material; zeros: not found */
@@ -325,7 +326,7 @@ static void add_eye(const eye_ball *b, eye_mean *mean)
 {
     mean->count++;
     mean->iris += b->iris;
-    mean->radius += b->iris * b->sphere.radius;
+    mean->radius += b->iris * b->sphere.radius * b->scale;
     for (int c = 0; c < 3; c++) mean->gaze[c] += b->gaze[c];
     if (b->lids[0] == 0.0) return;
     mean->with_lids++;
@@ -341,6 +342,7 @@ static int find_ways(eye_ball *b)
         b->above[c] = places[0][4 * c + 1];
         b->ahead[c] = places[0][4 * c + 2];
     }
+    b->scale = b->mesh->joints ? sqrt(vec_dot(b->ahead, b->ahead)) : 1.0;
     return vec_normalize(b->above) && vec_normalize(b->ahead);
 }
 

@@ -111,7 +111,7 @@ static uint32_t maps_of(const model_material *of)
 /* NULL: the mesh can have colours */
 static const char *objection(const model *m, const model_mesh *mesh, uint32_t material)
 {
-    if (!mesh->uv) return "it has no texture coordinates";
+    if (!mesh->tangent) return "it has no texture coordinates"; /* painted eyes lack tangents */
     if (material == MODEL_NONE) return "it has no such material";
     if (m->materials[material].unlit) return "its material is unlit";
     return maps_of(&m->materials[material]) < NOH_MATERIAL_MAPS_MAX

@@ -95,8 +95,7 @@ static int choose_surface(const model *m, const model_mesh *mesh, int any, wrink
 static const char *objection(const model_mesh *mesh, const wrinkle_field *f)
 {
     if (!mesh->target_count) return "it has no morph targets";
-    if (!mesh->uv) return "it has no texture coordinates: unwrap it first";
-    if (!mesh->tangent) return "it has no tangents";
+    if (!mesh->tangent) return "it has no texture coordinates: unwrap it first"; /* painted eyes lack tangents */
     if (!f->triangle_count) return "no target compresses an opaque, lit material that is no eye, teeth or toon";
     return NULL;
 }
