@@ -400,6 +400,31 @@ static void grey_faces_become_skin(void **state)
     }
 }
 
+/* A face in one colour of people becomes skin, too, and keeps it; one in another colour stays. */
+static void faces_of_flesh_become_skin(void **state)
+{
+    static const float colors[][3] = {
+        { 0.8f, 0.6f, 0.5f }, { 0.15f, 0.07f, 0.04f }, { 0.8f, 0.4f, 0.05f }, { 0.3f, 0.6f, 0.4f }, { 0.9f, 0.6f, 0.6f }
+    };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(colors); i++) {
+        model *m = eyes_of(0.062f);
+        model_material *materials = test_zeros(2 * sizeof *materials), *face = &materials[1];
+        materials[0] = m->materials[0];
+        *face = model_material_default();
+        face->name = model_string("M_Face");
+        face->metallic = 0.0f;
+        memcpy(face->base_color, colors[i], sizeof colors[i]);
+        free(m->materials);
+        m->materials = materials;
+        m->material_count = 2;
+        assert_int_equal(eye_paint(m), 0);
+        assert_int_equal(face->surface, i < 2 ? NOH_SURFACE_SKIN : NOH_SURFACE_PLAIN);
+        assert_memory_equal(face->base_color, colors[i], sizeof colors[i]);
+        model_free(m);
+    }
+}
+
 /* The distance of eyes that two nodes put side by side counts, not their mesh's: the unit of a figure of 1.7 m fits. */
 static void eyes_of_nodes_are_apart(void **state)
 {
@@ -566,21 +591,14 @@ static void bodies_do_not_part_eyes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(blank_eyes_get_an_iris),
-        cmocka_unit_test(other_eyes_stay),
-        cmocka_unit_test(turned_eyes_look_ahead),
-        cmocka_unit_test(nodes_pair_eyes),
-        cmocka_unit_test(eyes_with_an_iris_stay),
-        cmocka_unit_test(grey_faces_become_skin),
-        cmocka_unit_test(slabs_of_lashes_are_hidden),
-        cmocka_unit_test(half_balls_get_an_iris),
-        cmocka_unit_test(skinned_meshes_stand_upright),
-        cmocka_unit_test(eyes_of_nodes_are_apart),
-        cmocka_unit_test(shadows_on_eyes_are_left_out),
-        cmocka_unit_test(bodies_of_joined_meshes_stay),
-        cmocka_unit_test(bodies_do_not_part_eyes),
-        cmocka_unit_test(joints_shrink_an_iris),
-        cmocka_unit_test(eyes_without_coordinates_get_an_iris),
+        cmocka_unit_test(blank_eyes_get_an_iris),       cmocka_unit_test(other_eyes_stay),
+        cmocka_unit_test(turned_eyes_look_ahead),       cmocka_unit_test(nodes_pair_eyes),
+        cmocka_unit_test(eyes_with_an_iris_stay),       cmocka_unit_test(grey_faces_become_skin),
+        cmocka_unit_test(faces_of_flesh_become_skin),   cmocka_unit_test(slabs_of_lashes_are_hidden),
+        cmocka_unit_test(half_balls_get_an_iris),       cmocka_unit_test(skinned_meshes_stand_upright),
+        cmocka_unit_test(eyes_of_nodes_are_apart),      cmocka_unit_test(shadows_on_eyes_are_left_out),
+        cmocka_unit_test(bodies_of_joined_meshes_stay), cmocka_unit_test(bodies_do_not_part_eyes),
+        cmocka_unit_test(joints_shrink_an_iris),        cmocka_unit_test(eyes_without_coordinates_get_an_iris),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "convert/model/model_build.h"
+#include "convert/model/surface_kind.h"
 #include "noh/format.h"
 #include "support/support.h"
 
@@ -90,6 +91,41 @@ static void other_mouths_stay(void **state)
         assert_int_equal(teeth_paint(m), 0);
         assert_memory_equal(before, color, sizeof before);
         m->materials[0].base_color_texture = MODEL_NONE;
+        model_free(m);
+    }
+}
+
+/* Next to teeth of another material a pale gum becomes red; what is known as other, or has a colour, stays. */
+static void pale_gums_become_red(void **state)
+{
+    static const float skin[3] = { 0.8f, 0.6f, 0.5f }, tongue[3] = { 0.8f, 0.4f, 0.4f };
+    static const struct {
+        const char *name;
+        const float *color;
+        int is_alone, is_given, has_picture, becomes_red;
+    } cases[] = { { "M_GumsTongue", skin, 0, 0, 0, 1 }, { "Mouth", skin, 0, 0, 0, 1 },   { "Zunge", skin, 0, 0, 0, 1 },
+                  { "TeethAndGums", skin, 0, 0, 0, 0 }, { "Mouth", skin, 1, 0, 0, 0 },   { "Gums", skin, 0, 1, 0, 0 },
+                  { "Gums", skin, 0, 0, 1, 0 },         { "Tongue", tongue, 0, 0, 0, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model *m = mouth_of(skin, 0.002f, 0.0f);
+        model_material *materials = test_zeros(2 * sizeof *materials), *gums = &materials[1];
+        materials[0] = m->materials[0];
+        if (cases[i].is_alone) materials[0].surface = NOH_SURFACE_PLAIN;
+        *gums = model_material_default();
+        gums->name = model_string(cases[i].name);
+        gums->surface = surface_kind_of_name(cases[i].name);
+        assert_int_equal(gums->surface, NOH_SURFACE_TEETH);
+        gums->surface_given = (uint8_t)cases[i].is_given;
+        if (cases[i].has_picture) gums->base_color_texture = 0;
+        memcpy(gums->base_color, cases[i].color, sizeof skin);
+        free(m->materials);
+        m->materials = materials;
+        m->material_count = 2;
+        assert_int_equal(teeth_paint(m), 0);
+        assert_int_equal(m->warning_count, cases[i].becomes_red);
+        assert_int_equal(gums->base_color[0] > 2.1f * gums->base_color[1], cases[i].becomes_red);
+        gums->base_color_texture = MODEL_NONE;
         model_free(m);
     }
 }
@@ -187,6 +223,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(plain_teeth_get_gums),        cmocka_unit_test(other_mouths_stay),
         cmocka_unit_test(parts_of_joined_meshes_stay), cmocka_unit_test(one_jaw_stays),
         cmocka_unit_test(an_overbite_is_painted),      cmocka_unit_test(a_deep_bite_is_painted),
+        cmocka_unit_test(pale_gums_become_red),
     };
     if (argc > 1) cmocka_set_test_filter(argv[1]);
     return cmocka_run_group_tests(tests, NULL, NULL);

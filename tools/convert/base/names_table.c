@@ -86,16 +86,17 @@ const char *const names_table[] = {
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
      * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through.
-     * eye-edge: beside-eye and tear-shell if another word says eye. bare: what is skin where it has only a grey;
-     * neutral: what else the name of such a part may say. */
+     * gums: teeth, too, though soft. eye-edge: beside-eye and tear-shell if another word says eye. bare: what is skin
+     * where it has only a grey; neutral: what else the name of such a part may say. */
     "material skin skin haut peau piel pelle pele huid skóra skora кожа *肌 *皮膚 *皮肤 *피부",
     "material eye eye eyes eyeocclusion eyeshell eyeball eyeballs iris irises pupil pupils sclera scleras",
     "material eye cornea corneas",
     "material eye auge augen augapfel œil oeil yeux ojo ojos olho olhos occhio occhi oog ogen oko oczy",
     "material eye глаз глаза *目 *瞳 *眼 *눈",
-    "material teeth tooth teeth gum gums tongue mouth zahn zähne zaehne zunge zahnfleisch dent dents gencive",
-    "material teeth gencives langue diente dientes encía encia lengua dente dentes gengiva língua lingua denti lingue",
-    "material teeth tand tanden tong zęby zeby język jezyk зуб зубы язык дёсны десны *歯 *舌 *牙 *齿 *이빨 *혀",
+    "material teeth tooth teeth zahn zähne zaehne dent dents diente dientes dente dentes denti tand tanden zęby zeby",
+    "material teeth зуб зубы *歯 *牙 *齿 *이빨",
+    "material gums gum gums tongue mouth zunge zahnfleisch gencive gencives langue encía encia lengua gengiva língua",
+    "material gums lingua lingue tong język jezyk язык дёсны десны *舌 *혀",
     "material toon toon mtoon celshade",
     "material hair hair hairs beard moustache mustache ponytail haar haare bart cheveux barbe pelo cabello barba cabelo",
     "material hair capelli haren baard włosy wlosy broda волосы борода *髪 *发 *髮 *머리카락",

@@ -22,6 +22,7 @@
 #define PUPIL 0.36f /* of the iris */
 #define WET 0.1f
 #define GREY_HUE 0.02f
+#define FLESH_MIN 0.2f /* of blue to red: less is orange */
 #define SKIN_ROUGHNESS 0.5f
 #define SAME_WAY 0.9   /* cosine of the angle between gazes of one mesh that several nodes draw */
 #define IRIS_REACH 1.3 /* an iris of its own is within this reach of the ball's centre, in radii */
@@ -333,12 +334,22 @@ static int finish(model *m, const balls *b)
 
 /* ---- skin around them ---- */
 
-static int is_grey(const model_material *m)
+static int is_bare(const model_material *m)
 {
-    const float *c = m->base_color, least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
-    const int is_bare = m->surface == NOH_SURFACE_SKIN || m->surface == NOH_SURFACE_PLAIN;
-    return is_bare && surface_is_bare(m->name) && !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE &&
-           m->metallic < 0.5f && most - least < GREY_HUE && least > PALE_MIN;
+    return (m->surface == NOH_SURFACE_SKIN || m->surface == NOH_SURFACE_PLAIN) && surface_is_bare(m->name) &&
+           !m->surface_given && !m->unlit && m->alpha == MODEL_ALPHA_OPAQUE && m->metallic < 0.5f;
+}
+
+static int is_grey(const float c[3])
+{
+    const float least = fminf(c[0], fminf(c[1], c[2])), most = fmaxf(c[0], fmaxf(c[1], c[2]));
+    return most - least < GREY_HUE && least > PALE_MIN;
+}
+
+/* Colours of people, from pale to dark. */
+static int is_flesh(const float c[3])
+{
+    return c[0] > 1.1f * c[1] && c[1] > 1.05f * c[2] && c[2] > FLESH_MIN * c[0];
 }
 
 static int has_white_parts(const model *m, uint32_t material)
@@ -358,14 +369,15 @@ static int make_skin(model *m)
     int failed = 0;
     for (uint32_t i = 0; i < m->material_count && !failed; i++) {
         model_material *bare = &m->materials[i];
-        if (!is_grey(bare) || !has_white_parts(m, i)) continue;
-        memcpy(bare->base_color, skin, sizeof skin);
+        const int grey = is_grey(bare->base_color);
+        if (!is_bare(bare) || !has_white_parts(m, i) || (!grey && !is_flesh(bare->base_color))) continue;
+        if (grey) memcpy(bare->base_color, skin, sizeof skin);
         surface_kind_set(bare, NOH_SURFACE_SKIN);
         bare->roughness = SKIN_ROUGHNESS;
         failed = model_warn(m,
-                            "material '%s': a grey face with living eyes looks like plaster, so it became skin "
+                            "material '%s': a %s face with living eyes looks like plaster, so it became skin "
                             "(--surface '%s=plain' keeps it)",
-                            bare->name, bare->name);
+                            bare->name, grey ? "grey" : "plain", bare->name);
     }
     return failed;
 }

@@ -92,7 +92,7 @@ uint32_t surface_kind_of_name(const char *name)
 {
     if (is_of(name, "plain")) return NOH_SURFACE_PLAIN;
     if (!is_of(name, "beside-eye") && !is_eye_edge(name) && is_of(name, "eye")) return NOH_SURFACE_EYE;
-    if (is_of(name, "teeth")) return NOH_SURFACE_TEETH;
+    if (is_of(name, "teeth") || is_of(name, "gums")) return NOH_SURFACE_TEETH;
     if (is_of(name, "skin")) return NOH_SURFACE_SKIN;
     if (!is_of(name, "beside-eye") && is_of(name, "hair")) return NOH_SURFACE_HAIR;
     return is_of(name, "toon") ? NOH_SURFACE_TOON : NOH_SURFACE_PLAIN;
@@ -118,6 +118,11 @@ int surface_is_white(const model_mesh *mesh, const model_submesh *part)
 int surface_is_lashes(const char *name)
 {
     return is_of(name, "lashes");
+}
+
+int surface_is_gums(const char *name)
+{
+    return is_of(name, "gums") && !is_of(name, "teeth");
 }
 
 /* A word, or all of one that languages without spaces have as a part. */

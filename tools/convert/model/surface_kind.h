@@ -22,9 +22,10 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 /* Whether a part has no vertex colours, or white ones. */
 int surface_is_white(const model_mesh *mesh, const model_submesh *part);
 
-/* Whether a material's name means lashes, or, with all of its words, a part of the body that is skin unless it has a
- * colour, or skin: "M_Face_L", and not "head_scarf" or "Zombie_Skin". */
+/* Whether a material's name means lashes, what is soft in a mouth, and no teeth, or, with all of its words, a part of
+ * the body that is skin unless it has a colour, or skin: "M_Face_L", and not "head_scarf" or "Zombie_Skin". */
 int surface_is_lashes(const char *name);
+int surface_is_gums(const char *name);
 int surface_is_bare(const char *name);
 
 /* 1 for the materials of VRoid Studio ("N00_000_00_Face_00_SKIN"), whose characters are drawn as toons, also where an

@@ -2,9 +2,11 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
+#include "convert/model/surface_kind.h"
 #include "noh/format.h"
 
 #define CROWN 0.16f  /* the height of a crown, in widths of the jaw */
@@ -16,6 +18,7 @@
 #define DEEP_BITE 0.4f /* of jaws that targets part */
 #define PARTED 0.05f   /* in widths of the jaw: by at least as much a target parts jaws */
 #define PALE_MIN 0.4f  /* of blue to red: less is a tongue or a gum */
+#define FLESH_MAX 0.6f /* of green and blue to red: a tongue or gum of more has no colour of its own */
 
 static const float gum[3] = { 0.42f, 0.15f, 0.13f }, neck[3] = { 1.0f, 0.87f, 0.76f };
 
@@ -166,9 +169,31 @@ static int paint_part(model_mesh *mesh, const uint8_t *used, const float *factor
     return 0;
 }
 
+/* Gums and tongues that are as pale as teeth, or skin, look like plaster. A mouth of one material may be teeth. */
+static int paint_gums(model *m)
+{
+    uint32_t mouths = 0;
+    int failed = 0;
+    for (uint32_t i = 0; i < m->material_count; i++) mouths += m->materials[i].surface == NOH_SURFACE_TEETH;
+    for (uint32_t i = 0; i < m->material_count && mouths > 1u && !failed; i++) {
+        model_material *by = &m->materials[i];
+        float *c = by->base_color;
+        if (by->surface != NOH_SURFACE_TEETH || by->surface_given || by->base_color_texture != MODEL_NONE ||
+            !surface_is_gums(by->name) || fminf(c[1], c[2]) < FLESH_MAX * c[0]) {
+            continue;
+        }
+        memcpy(c, gum, sizeof gum);
+        failed = model_warn(m,
+                            "material '%s': gums and tongues as pale as skin look like plaster, so they became red "
+                            "(--surface '%s=plain' keeps them)",
+                            by->name, by->name);
+    }
+    return failed;
+}
+
 int teeth_paint(model *m)
 {
-    int failed = 0;
+    int failed = paint_gums(m);
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
         model_mesh *mesh = &m->meshes[i];
         uint32_t *island = NULL, *room = NULL;
