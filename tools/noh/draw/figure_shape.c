@@ -151,7 +151,8 @@ static void grow(bounds *b, const double p[3])
     }
 }
 
-static void grow_mesh(bounds *b, const noh_mesh *mesh, const noh_vertex *vertices, const float world[12], int face)
+static void grow_mesh(bounds *b, const noh_mesh *mesh, const noh_vertex *vertices, const float world[12], int face,
+                      double above)
 {
     for (uint32_t v = 0; v < mesh->header->vertex_count; v++) {
         const float *p = vertices[v].position;
@@ -163,12 +164,12 @@ static void grow_mesh(bounds *b, const noh_mesh *mesh, const noh_vertex *vertice
             const float *row = world + 4 * r;
             placed[r] = (double)row[0] * p[0] + (double)row[1] * p[1] + (double)row[2] * p[2] + (double)row[3];
         }
-        grow(b, placed);
+        if (placed[1] >= above) grow(b, placed);
     }
 }
 
-/* face: only what targets move; low above high where nothing is */
-static bounds measure(const figure *f, int face)
+/* face: only what targets move; above: only what is as high; low above high where nothing is */
+static bounds measure(const figure *f, int face, double above)
 {
     bounds b = { { INFINITY, INFINITY, INFINITY }, { -INFINITY, -INFINITY, -INFINITY } };
     for (uint32_t k = 0; k < f->stage_desc.kind_count; k++) {
@@ -176,7 +177,7 @@ static bounds measure(const figure *f, int face)
             noh_mesh mesh;
             noh_actor_mesh shown;
             noh_vertex *vertices = figure_deform(f, k, i, NOH_LOD_LEVELS_MAX, &mesh, &shown);
-            if (vertices) grow_mesh(&b, &mesh, vertices, shown.world, face);
+            if (vertices) grow_mesh(&b, &mesh, vertices, shown.world, face, above);
             free(vertices);
         }
     }
@@ -220,18 +221,23 @@ static int head_by_joint(const figure *f, const bounds *all, bounds *head)
     0.3               /* of the figure's height: a face as high is a head alone or a bust; of a body it is a seventh */
 #define HAIR_OVER 0.1 /* of the figure's height: hair may reach over its meshes by as much */
 
-/* The face with its hair and ears, within the figure. room: of its height, below, above and at the sides */
+/* The face with its hair and ears, within the figure: the room around it, of its height, and as much as what is over the
+ * chin reaches, tails and hats, not arms. */
 static bounds around_face(const figure *f, const bounds *all, bounds face)
 {
     const double high = face.high[1] - face.low[1];
     const double hair = f->hair.is_there ? HAIR_OVER * (all->high[1] - all->low[1]) : 0.0;
+    const bounds head = bounds_turned(measure(f, 0, face.low[1]), -f->facing);
     /* a drawn head is half hair, over the face and behind it */
-    const double below[3] = { 0.35, 0.12, 1.3 }, above[3] = { 0.35, 0.9, 0.35 };
+    const double below[3] = { 0.35, 0.12, 1.3 }, above[3] = { 0.35, 0.9, 0.35 }, most[3] = { 1.2, 0.9, 2.6 };
+    bounds b;
     for (int c = 0; c < 3; c++) {
-        face.low[c] = fmax(face.low[c] - below[c] * high, all->low[c] - (c != 1 ? hair : 0.0));
-        face.high[c] = fmin(face.high[c] + above[c] * high, all->high[c] + (c < 2 ? hair : 0.0));
+        b.low[c] = fmax(face.low[c] - below[c] * high, all->low[c] - (c != 1 ? hair : 0.0));
+        b.high[c] = fmin(face.high[c] + above[c] * high, all->high[c] + (c < 2 ? hair : 0.0));
+        if (c != 1) b.low[c] = fmin(b.low[c], fmax(head.low[c], face.low[c] - most[c] * high));
+        if (c != 2) b.high[c] = fmax(b.high[c], fmin(head.high[c], face.high[c] + most[c] * high));
     }
-    return face;
+    return b;
 }
 
 /* A head with its neck and hair. */
@@ -260,17 +266,17 @@ static int is_head(const bounds *all, const bounds *face)
 
 int figure_is_head(const figure *f)
 {
-    const bounds all = measure(f, 0), face = measure(f, 1);
+    const bounds all = measure(f, 0, -INFINITY), face = measure(f, 1, -INFINITY);
     return face.low[0] <= face.high[0] && is_head(&all, &face);
 }
 
 bounds figure_bounds(const figure *f, view_frame frame)
 {
-    const bounds all = measure(f, 0), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
+    const bounds all = measure(f, 0, -INFINITY), none = { { 0.0, 0.0, 0.0 }, { 0.0, 0.0, 0.0 } };
     if (all.low[0] > all.high[0]) return none;
     if (frame == FRAME_FULL) return all;
     const bounds own = bounds_turned(all, -f->facing);
-    bounds face = measure(f, 1);
+    bounds face = measure(f, 1, -INFINITY);
     if (face.low[0] <= face.high[0] && (frame == FRAME_FACE || is_head(&all, &face))) {
         return bounds_turned(around_face(f, &own, bounds_turned(face, -f->facing)), f->facing);
     }
