@@ -519,7 +519,7 @@ typedef struct noh_reach_arm {
 } noh_reach_arm;
 
 typedef struct noh_reach_rig {
-    noh_reach_arm arms[NOH_REACH_ARMS_MAX]; /* the left one first: greater x in the bind pose */
+    noh_reach_arm arms[NOH_REACH_ARMS_MAX]; /* the left one first, as seen from the body */
     uint32_t arm_count;                     /* 1..NOH_REACH_ARMS_MAX */
     uint32_t last;                          /* the highest index of all joints above */
 } noh_reach_rig;

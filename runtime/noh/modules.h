@@ -205,7 +205,7 @@ typedef struct noh_kind_stand {
     noh_reach_rig arms; /* arm_count 0: none */
     noh_feet_rig legs;  /* leg_count 0: none */
     noh_gaze_rig trunk; /* joint_count 0: none */
-    uint32_t front;     /* where the body faces: quarter turns from +z towards +x, 0..3 */
+    uint32_t front;     /* where its soles point in the bind pose: quarter turns from +z towards +x, 0..3 */
 } noh_kind_stand;
 
 /* Make the rig of a kind, from its mesh and skeleton.
@@ -504,6 +504,7 @@ noh_module noh_face_module(const noh_kind_face *face);
 
 /* Find the eyes of a kind at rest, for noh_kind_face.face.eyes: at the eye joints, or without eye joints behind the
  * vertices that its targets for blinking or gaze move, on each side. Depth behind these: 0.19 of the eyes' distance.
+ * Without eye joints, the face must look along +z, or with a head joint along -z.
  * kind     mesh, skeleton, nodes and face (NULL: zeros) as for a stage
  * scratch  [scratch_bytes] at least noh_kind_find_eyes_size, aligned to NOH_MEMORY_ALIGN; not kept
  * shapes   eyes: centres of the left and the right eye, model space

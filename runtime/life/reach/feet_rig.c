@@ -1,6 +1,8 @@
 /* feet_rig.c: legs by joint names, soles by the skin of feet. */
 #include "core/base/assert_internal.h"
+#include "core/base/quarter_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
@@ -177,6 +179,22 @@ static float measure(const noh_ragdoll_source *s, noh_feet_leg *leg)
     return noh_apart3(hip, knee) + noh_apart3(knee, ankle);
 }
 
+uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig)
+{
+    float ahead[3] = { 0.0f, 0.0f, 0.0f }, hips[2][3] = { { 0.0f } };
+    for (uint32_t i = 0; i < rig->leg_count; i++) {
+        float knee[3], rotation[4];
+        noh_ragdoll_bind(joints, rig->legs[i].thigh, hips[i % 2u], rotation);
+        noh_quat_rotate(rotation, rig->legs[i].knee, knee);
+        noh_madd3(ahead, 1.0f, knee, ahead);
+    }
+    const uint32_t front = noh_quarter_of(ahead[0], ahead[2]);
+    if (rig->leg_count != 2u) return front;
+    noh_sub3(hips[0], hips[1], hips[0]);
+    const int along = noh_quarter_of(hips[0][0], hips[0][2]) % 2u == front % 2u;
+    return along || noh_dot3(ahead, ahead) < 2.0f ? 0u : front;
+}
+
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
@@ -207,4 +225,10 @@ noh_result noh_feet_rig_make(const noh_ragdoll_source *source, noh_feet_rig *rig
     rig->top = rows[0].joint;
     while (source->joints.parents[rig->top] != NOH_JOINT_ROOT) rig->top = source->joints.parents[rig->top];
     return NOH_OK;
+}
+
+uint32_t noh_front_of(const noh_ragdoll_source *source)
+{
+    noh_feet_rig legs;
+    return noh_feet_rig_make(source, &legs, NULL) ? 0u : noh_feet_front(&source->joints, &legs);
 }

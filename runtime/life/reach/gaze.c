@@ -1,6 +1,8 @@
 /* gaze.c: turns the head, with spine and neck, and eyes ahead of them. */
+#include "core/base/quarter_internal.h"
 #include "core/base/trig_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/feet_internal.h"
 #include "life/reach/gaze_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -147,17 +149,18 @@ static void find_middle(const noh_ragdoll_source *s, const noh_gaze_rig *rig, ui
     for (int i = 0; i < 3; i++) middle[i] = 0.5f * (a[i] + b[i]);
 }
 
-/* Model space's +z, in a joint's space at rest. */
-static void ahead_of(const noh_ragdoll_source *s, uint32_t joint, float ahead[3])
+/* The front, in a joint's space at rest. */
+static void ahead_of(const noh_ragdoll_source *s, uint32_t front, uint32_t joint, float ahead[3])
 {
     static const float z[3] = { 0.0f, 0.0f, 1.0f };
-    float unused[3], rotation[4];
+    float way[3], unused[3], rotation[4];
+    noh_quarter_turn(front, z, way);
     noh_ragdoll_bind(&s->joints, joint, unused, rotation);
     noh_quat_conjugate(rotation, rotation);
-    noh_quat_rotate(rotation, z, ahead);
+    noh_quat_rotate(rotation, way, ahead);
 }
 
-static void measure(const noh_ragdoll_source *s, noh_gaze_rig *rig)
+static void measure(const noh_ragdoll_source *s, uint32_t front, noh_gaze_rig *rig)
 {
     const uint32_t head = rig->joints[rig->joint_count - 1u];
     float middle[3], at[3], first[3], rotation[4], unused[4];
@@ -167,37 +170,37 @@ static void measure(const noh_ragdoll_source *s, noh_gaze_rig *rig)
     noh_sub3(middle, at, rig->middle);
     noh_quat_conjugate(rotation, rotation);
     noh_quat_rotate(rotation, rig->middle, rig->middle);
-    ahead_of(s, head, rig->ahead);
+    ahead_of(s, front, head, rig->ahead);
     noh_sub3(middle, first, first);
     rig->size = noh_length3(first);
     rig->size = rig->size > 1e-6f ? rig->size : 1e-6f;
     rig->last = head;
     for (int e = 0; e < 2 && rig->eyes[0] != NOH_NONE; e++) {
-        ahead_of(s, rig->eyes[e], rig->eyes_ahead[e]);
+        ahead_of(s, front, rig->eyes[e], rig->eyes_ahead[e]);
         rig->last = rig->eyes[e] > rig->last ? rig->eyes[e] : rig->last;
     }
 }
 
-noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error)
+noh_result noh_gaze_rig_find(const noh_ragdoll_source *source, uint32_t front, noh_gaze_rig *rig, noh_error *error)
 {
-    noh_ragdoll_source s;
-    noh_result result;
-    uint32_t head;
-    NOH_ASSERT(pack && rig);
-    memset(&s, 0, sizeof s);
-    s.pack = pack;
-    s.skeleton = skeleton;
-    result = noh_pack_skeleton_at(pack, skeleton, &s.joints, NULL, error);
-    if (result != NOH_OK) return result;
-    head = find_head(&s);
+    const uint32_t head = find_head(source);
     if (head == NOH_NONE) {
         return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name contains 'head': fill in the gaze rig by hand", 0, 0);
     }
     memset(rig, 0, sizeof *rig);
-    find_chain(&s, head, rig);
-    find_eyes(&s, head, rig->eyes);
-    measure(&s, rig);
+    find_chain(source, head, rig);
+    find_eyes(source, head, rig->eyes);
+    measure(source, front, rig);
     return NOH_OK;
+}
+
+noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error)
+{
+    NOH_ASSERT(pack && rig);
+    noh_ragdoll_source source = { .pack = pack, .skeleton = skeleton };
+    const noh_result result = noh_pack_skeleton_at(pack, skeleton, &source.joints, NULL, error);
+    if (result != NOH_OK) return result;
+    return noh_gaze_rig_find(&source, noh_front_of(&source), rig, error);
 }
 
 /* ---- states ---- */

@@ -9,6 +9,10 @@
 extern "C" {
 #endif
 
+/* noh_gaze_rig_make for a body whose front is known.
+ * front    noh_feet_front */
+noh_result noh_gaze_rig_find(const noh_ragdoll_source *source, uint32_t front, noh_gaze_rig *rig, noh_error *error);
+
 /* Make a look ahead.
  * shapes  ahead[3], unit: direction of the head at rest */
 void noh_ik_look_init(noh_ik_look *look, const float ahead[3]);

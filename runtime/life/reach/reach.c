@@ -1,6 +1,8 @@
 /* reach.c: arms by joint names, and their bends. */
+#include "core/base/quarter_internal.h"
 #include "core/base/trig_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/feet_internal.h"
 #include "life/reach/reach_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -35,10 +37,10 @@ static int arm_of(const noh_ragdoll_source *s, const noh_ragdoll_row *rows, uint
 }
 
 /* The elbow's direction from its bend in the bind pose; for a straight arm backwards and a little down. */
-static void find_elbow(const noh_ragdoll_source *s, noh_reach_arm *arm)
+static void find_elbow(const noh_ragdoll_source *s, uint32_t front, noh_reach_arm *arm)
 {
-    static const float back[3] = { 0.0f, -0.4f, -1.0f };
-    float from[3], elbow[3], wrist[3], rotation[4], unused[4], along[3], side[3];
+    float from[3], elbow[3], wrist[3], rotation[4], unused[4], along[3], side[3], back[3] = { 0.0f, -0.4f, -1.0f };
+    noh_quarter_turn(front, back, back);
     noh_ragdoll_bind(&s->joints, arm->upper, from, rotation);
     noh_ragdoll_bind(&s->joints, arm->fore, elbow, unused);
     noh_ragdoll_bind(&s->joints, arm->hand, wrist, unused);
@@ -47,31 +49,33 @@ static void find_elbow(const noh_ragdoll_source *s, noh_reach_arm *arm)
     noh_normalize3(along, back);
     noh_sub3(elbow, from, side);
     noh_reject3(side, along, side);
-    if (noh_length3(side) < STRAIGHT * length || side[2] > 0.0f) memcpy(side, back, sizeof side);
+    if (noh_length3(side) < STRAIGHT * length || side[0] * back[0] + side[2] * back[2] < 0.0f)
+        memcpy(side, back, sizeof side);
     noh_perpendicular3(along, side, side);
     noh_quat_conjugate(rotation, rotation);
     noh_quat_rotate(rotation, side, arm->elbow);
 }
 
-static float side_of(const noh_ragdoll_source *s, const noh_reach_arm *arm)
+/* How far to the left an arm begins. */
+static float side_of(const noh_ragdoll_source *s, uint32_t front, const noh_reach_arm *arm)
 {
     float at[3], unused[4];
     noh_ragdoll_bind(&s->joints, arm->upper, at, unused);
+    noh_quarter_turn(4u - front, at, at);
     return at[0];
 }
 
-noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *rig, noh_error *error)
+noh_result noh_reach_rig_find(const noh_ragdoll_source *source, uint32_t front, noh_reach_rig *rig, noh_error *error)
 {
     noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
     uint32_t count;
-    NOH_ASSERT(source && source->pack && rig);
     const noh_result result = noh_ragdoll_find_rows(source, rows, &count, error);
     if (result != NOH_OK) return result;
     memset(rig, 0, sizeof *rig);
     for (uint32_t i = 0; i < count && rig->arm_count < NOH_REACH_ARMS_MAX; i++) {
         noh_reach_arm *arm = &rig->arms[rig->arm_count];
         if (!arm_of(source, rows, count, i, arm)) continue;
-        find_elbow(source, arm);
+        find_elbow(source, front, arm);
         rig->last = arm->hand > rig->last ? arm->hand : rig->last;
         rig->arm_count++;
     }
@@ -79,12 +83,18 @@ noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *r
         return noh_fail(error, NOH_ERR_NOT_FOUND,
                         "no upper arm of this skeleton has a forearm and a hand: it cannot reach", 0, 0);
     }
-    if (rig->arm_count == 2u && side_of(source, &rig->arms[0]) < side_of(source, &rig->arms[1])) {
+    if (rig->arm_count == 2u && side_of(source, front, &rig->arms[0]) < side_of(source, front, &rig->arms[1])) {
         const noh_reach_arm right = rig->arms[0];
         rig->arms[0] = rig->arms[1];
         rig->arms[1] = right;
     }
     return NOH_OK;
+}
+
+noh_result noh_reach_rig_make(const noh_ragdoll_source *source, noh_reach_rig *rig, noh_error *error)
+{
+    NOH_ASSERT(source && source->pack && rig);
+    return noh_reach_rig_find(source, noh_front_of(source), rig, error);
 }
 
 /* ---- states ---- */

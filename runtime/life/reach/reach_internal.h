@@ -9,6 +9,10 @@
 extern "C" {
 #endif
 
+/* noh_reach_rig_make for a body whose front is known.
+ * front    noh_feet_front */
+noh_result noh_reach_rig_find(const noh_ragdoll_source *source, uint32_t front, noh_reach_rig *rig, noh_error *error);
+
 /* Advance time, and bend a pose's arms.
  * local    [joint_count]; changes the rotations of upper arms and forearms
  * points   [NOH_REACH_ARMS_MAX][3] in model space, finite; used for hands that reach or return

@@ -5,8 +5,10 @@
 #include <string.h>
 
 #include "core/base/math_internal.h"
+#include "core/base/quarter_internal.h"
 #include "life/physics/ragdoll_internal.h"
 #include "core/base/vector_internal.h"
+#include "life/reach/feet_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
 #include "noh/low_core.h"
@@ -70,6 +72,7 @@ void noh_stage_find_parts(noh_stage_ragdoll_kind *shared, const noh_ragdoll_sour
     p->spine = p->chest = p->head = NOH_NONE;
     if (noh_feet_rig_make(source, &shared->legs, NULL) != NOH_OK) return;
     find_legs(shared);
+    p->front = (uint16_t)noh_feet_front(&source->joints, &shared->legs);
     for (uint32_t i = 1; i < rig->body_count && p->has_legs; i++) {
         const uint32_t upper = rig->bodies[i].parent;
         if (!(rig->joints[i].flags & NOH_RAGDOLL_HINGE) || i == p->shins[0] || i == p->shins[1]) continue;
@@ -228,9 +231,11 @@ static void brace_arms(const bracing *b, const noh_stage_parts *parts, const flo
 
 static void brace_legs(const bracing *b, const noh_stage_parts *parts, const float toward[2])
 {
-    static const float across[3] = { -0.7f, 0.0f, 0.0f }, ahead[3] = { 0.0f, 0.0f, 1.0f };
     static const float down[3] = { 0.0f, -1.0f, 0.0f }, as_it_is[4] = { 0.0f, 0.0f, 0.0f, 1.0f };
+    float across[3] = { -0.7f, 0.0f, 0.0f }, ahead[3] = { 0.0f, 0.0f, 1.0f };
     float turned[4], front[3], turn[3], q[4];
+    noh_quarter_turn(parts->front, across, across);
+    noh_quarter_turn(parts->front, ahead, ahead);
     noh_quat_conjugate(b->rig->bodies[0].rotation, turned);
     noh_quat_mul(b->goals[0].rotation, turned, turned);
     noh_quat_rotate(turned, ahead, front);

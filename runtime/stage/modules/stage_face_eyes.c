@@ -32,6 +32,7 @@ typedef struct search {
     uint32_t item_count;
     noh_stage_item items[NOH_STAGE_MESHES_MAX];
     lid lids[2];
+    float head; /* z of its joint at rest */
 } search;
 
 static void begin(search *s, const noh_kind_desc *kind)
@@ -149,7 +150,7 @@ static void add_links(search *s, uint32_t count, int (*wanted)(const noh_face_li
     }
 }
 
-/* 0: nothing moves on one of the sides. */
+/* 0: nothing moves on one of the sides. The eyes of a face that is well behind the joint of its head look along -z. */
 static int place(const search *s, float eyes[2][3])
 {
     float found[2][3], apart;
@@ -159,8 +160,11 @@ static int place(const search *s, float eyes[2][3])
     }
     apart = found[0][0] - found[1][0];
     if (!(apart > APART_MIN)) return 0;
-    for (int e = 0; e < 2; e++) found[e][2] -= BEHIND_LIDS * apart;
-    memcpy(eyes, found, sizeof found);
+    const int turned = found[0][2] + found[1][2] + apart < 2.0f * s->head;
+    for (int e = 0; e < 2; e++) {
+        found[e][2] -= turned ? -BEHIND_LIDS * apart : BEHIND_LIDS * apart;
+        memcpy(eyes[turned ? 1 - e : e], found[e], sizeof found[e]);
+    }
     return 1;
 }
 
@@ -180,11 +184,13 @@ noh_result noh_kind_find_eyes(const noh_kind_desc *kind, void *scratch, size_t s
     noh_result result;
     uint32_t links;
     search s;
+    float head = -1e30f; /* none */
     NOH_ASSERT(kind && kind->mesh && eyes);
-    if (noh_stage_face_eye_joints(kind, eyes)) return NOH_OK;
+    if (noh_stage_face_eye_joints(kind, eyes, &head)) return NOH_OK;
     result = noh_arena_open(&arena, scratch, scratch_bytes, noh_kind_find_eyes_size(kind), error);
     if (result != NOH_OK) return result;
     begin(&s, kind);
+    s.head = head;
     links = noh_stage_face_bind(kind, find_target, &s, NULL, 0);
     (void)carve(&s, &arena, links);
     if (s.skeleton.joint_count) {

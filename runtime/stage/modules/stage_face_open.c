@@ -2,6 +2,8 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "core/base/quarter_internal.h"
+#include "core/base/vector_internal.h"
 #include "life/face/recipe_internal.h"
 #include "motion/pose/skeleton_internal.h"
 #include "noh/base.h"
@@ -125,6 +127,29 @@ static void drop_strays(const noh_skeleton *skeleton, noh_stage_face_kind *f)
 
 /* ---- the desc ---- */
 
+/* Where a face's front is, as in noh_feet_front, but by its eyes, whose sides are known, because it may have no legs:
+ * across their line, if they are there as seen from the head's joint. */
+static uint32_t front_of(const noh_stage_face_kind *f)
+{
+    const float(*eyes)[3] = f->desc.eyes;
+    const uint32_t front = noh_quarter_of(eyes[1][2] - eyes[0][2], eyes[0][0] - eyes[1][0]);
+    float ahead[3];
+    noh_sub3(f->middle, f->head.at, ahead);
+    noh_quarter_turn(4u - front, ahead, ahead);
+    return f->head.joint != NOH_NONE && ahead[2] > 0.0f ? front : 0u;
+}
+
+/* From the axes of the model to a neck's. */
+static void turn_face(noh_stage_face_kind *f, uint32_t front)
+{
+    const float rotation[3] = { 0.0f, 0.5f * NOH_PI * (float)front, 0.0f };
+    float turn[4];
+    noh_quat_from_rotation(rotation, turn);
+    noh_stage_face_joint *joints[] = { &f->head, &f->neck, &f->chest, &f->eyes[0], &f->eyes[1] };
+    for (uint32_t i = 0; i < 5u; i++) noh_quat_mul(joints[i]->axes, turn, joints[i]->axes);
+    for (int e = 0; e < 2; e++) noh_quarter_turn(4u - front, f->desc.eyes[e], f->desc.eyes[e]);
+}
+
 /* Place the eyes relative to the joint where the head turns. Without a head, that point is below and behind the eyes by
  * human proportions, from the distance of the eyes. */
 static void place_eyes(noh_stage_face_kind *f)
@@ -139,11 +164,13 @@ static void place_eyes(noh_stage_face_kind *f)
     from[1] -= 1.4f * noh_sqrt(apart);
     from[2] -= 1.25f * noh_sqrt(apart);
     if (f->head.joint != NOH_NONE) memcpy(from, f->head.at, sizeof from);
+    const uint32_t front = front_of(f);
     for (int i = 0; i < 3; i++) {
         f->desc.eyes[0][i] -= from[i];
         f->desc.eyes[1][i] -= from[i];
     }
     memcpy(f->head.at, from, sizeof from);
+    if (front) turn_face(f, front);
 }
 
 static const char *bad_rules(const noh_face_rules *r)
@@ -174,7 +201,7 @@ static int open_joints(const noh_kind_desc *d, const noh_skeleton *skeleton, noh
            open_joint(d, skeleton, from ? from->eyes[1] : NULL, right_eyes, &f->eyes[1]);
 }
 
-int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3])
+int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3], float *head)
 {
     noh_skeleton skeleton;
     noh_stage_face_kind f;
@@ -182,6 +209,7 @@ int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3])
         !open_joints(kind, &skeleton, &f))
         return 0;
     drop_strays(&skeleton, &f);
+    if (f.head.joint != NOH_NONE) *head = f.head.at[2];
     for (int e = 0; e < 2 && f.eyes[0].joint != NOH_NONE; e++) memcpy(eyes[e], f.eyes[e].at, sizeof f.eyes[e].at);
     return f.eyes[0].joint != NOH_NONE;
 }

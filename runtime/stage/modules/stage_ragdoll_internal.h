@@ -55,7 +55,8 @@ NOH_STATIC_ASSERT(sizeof(noh_stage_body) == NOH_ACTOR_RAGDOLL_BYTES, stage_body)
 
 /* Bodies of a rig; NOH_NONE: it has none. */
 typedef struct noh_stage_parts {
-    uint32_t has_legs; /* 1: thighs, shins and feet of both, in the order of noh_stage_ragdoll_kind.legs */
+    uint16_t has_legs; /* 1: thighs, shins and feet of both, in the order of noh_stage_ragdoll_kind.legs */
+    uint16_t front;    /* noh_feet_front */
     uint32_t thighs[NOH_FEET_LEGS_MAX], shins[NOH_FEET_LEGS_MAX], feet[NOH_FEET_LEGS_MAX];
     uint32_t spine, chest, head;
     uint32_t arm_count, upper_arms[2], forearms[2];

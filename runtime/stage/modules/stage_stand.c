@@ -5,9 +5,13 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "core/base/quarter_internal.h"
 #include "life/face/face_internal.h"
 #include "core/base/vector_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
+#include "life/reach/feet_internal.h"
+#include "life/reach/gaze_internal.h"
+#include "life/reach/reach_internal.h"
 #include "life/reach/rig_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -57,30 +61,11 @@ static float held(const noh_modifier_work *w, uint32_t stream, float period, flo
     return from + (to - from) * s * s * s * (10.0f - s * (15.0f - 6.0f * s));
 }
 
-/* ---- front ---- */
-
-/* noh_kind_stand.front, by where the knees point in the bind pose. */
-static uint32_t front_of(const noh_skeleton *joints, const noh_feet_rig *rig)
-{
-    float ahead[3] = { 0.0f, 0.0f, 0.0f };
-    for (uint32_t i = 0; i < rig->leg_count; i++) {
-        float knee[3], rotation[4], unused[3];
-        noh_ragdoll_bind(joints, rig->legs[i].thigh, unused, rotation);
-        noh_quat_rotate(rotation, rig->legs[i].knee, knee);
-        noh_madd3(ahead, 1.0f, knee, ahead);
-    }
-    if (ahead[0] * ahead[0] > ahead[2] * ahead[2]) return ahead[0] > 0.0f ? 1u : 3u;
-    return ahead[2] < 0.0f ? 2u : 0u;
-}
-
 /* A vector of the body, to its left, up and ahead, in the model. */
 static void vector_of(const noh_kind_stand *s, float left, float up, float ahead, float out[3])
 {
-    static const float quarters[4][2] = { { 0.0f, 1.0f }, { 1.0f, 0.0f }, { 0.0f, -1.0f }, { -1.0f, 0.0f } };
-    const float *way = quarters[s->front & 3u];
-    out[0] = way[1] * left + way[0] * ahead;
-    out[1] = up;
-    out[2] = way[1] * ahead - way[0] * left;
+    const float own[3] = { left, up, ahead };
+    noh_quarter_turn(s->front, own, out);
 }
 
 /* ---- arms ---- */
@@ -188,10 +173,10 @@ noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand,
     const noh_result result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
     if (result != NOH_OK) return result;
     source.metres = header->unit_cm / 100.0f;
-    if (noh_reach_rig_make(&source, &stand->arms, NULL)) stand->arms.arm_count = 0;
     if (noh_feet_rig_make(&source, &stand->legs, NULL)) stand->legs.leg_count = 0;
-    stand->front = front_of(&source.joints, &stand->legs);
-    if (noh_gaze_rig_make(source.pack, source.skeleton, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
+    stand->front = noh_feet_front(&source.joints, &stand->legs);
+    if (noh_reach_rig_find(&source, stand->front, &stand->arms, NULL)) stand->arms.arm_count = 0;
+    if (noh_gaze_rig_find(&source, stand->front, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
     if (stand->arms.arm_count || stand->legs.leg_count || stand->trunk.joint_count) return NOH_OK;
     return noh_fail(error, NOH_ERR_NOT_FOUND,
                     "stand: no joints have the names of arms, legs or a head: fill in "

@@ -5,8 +5,7 @@
 
 #include "noh/pack.h"
 
-/* Degrees from +z towards +x, in steps of 90, by left and right limbs in the bind pose, if both feet point the same
- * way. 0: it faces +z, or this is not known. */
+/* Degrees from +z towards +x, in steps of 90, by its feet (noh_feet_front). 0: it faces +z, or this is not known. */
 double pack_facing(const noh_pack *pack);
 
 #endif
