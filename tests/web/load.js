@@ -130,15 +130,14 @@ async function slow(browser) {
     wire.quality = 11;
     const page = await newPage(browser, wide), client = await page.context().newCDPSession(page);
     let bytes = 0, rest = 0; // rest: of them, what is asked for after the first picture
-    const later = new Set(), idle = new Set(); // idle: the sentences, which come a second after all else, if nobody looks before
+    const later = new Set();
     await unprepared(page);
     await client.send('Network.enable');
     client.on('Network.requestWillBeSent', ({ requestId, request }) => {
-        if (/^bytes=[1-9]/.test(request.headers.Range)) later.add(requestId);
-        if (request.url.endsWith('.txt')) idle.add(requestId);
+        // The sentences are asked for a second after the pack is there.
+        if (/^bytes=[1-9]/.test(request.headers.Range) || request.url.endsWith('.txt')) later.add(requestId);
     });
     client.on('Network.dataReceived', ({ requestId, encodedDataLength }) => {
-        if (idle.has(requestId)) return;
         bytes += encodedDataLength;
         if (later.has(requestId)) rest += encodedDataLength;
     });
