@@ -38,8 +38,10 @@ cp "$build/demo/arm.glb" "$project"
 [ ! -f "$build/demo/puppet_levels.noh" ] || cp "$build/demo/puppet_levels.noh" "$project/walker.noh"
 [ ! -f "$build/demo/puppet.glb" ] || "$build/noh" build "$build/demo/puppet.glb" -o "$project/standing.noh" --plain --only mesh --quiet || not_ok 'noh build fails'
 if [ -f "$project/standing.noh" ]; then
-    node tests/web/turned_model.js "$build/demo/puppet.glb" >"$project/turned.glb"
-    "$build/noh" build "$project/turned.glb" -o "$project/turned.noh" --plain --only mesh --quiet || not_ok 'noh build fails'
+    for turned in turned:180 aside:90; do
+        node tests/web/turned_model.js "$build/demo/puppet.glb" "${turned#*:}" >"$project/turned.glb"
+        "$build/noh" build "$project/turned.glb" -o "$project/${turned%:*}.noh" --plain --only mesh --quiet || not_ok 'noh build fails'
+    done
 fi
 head -c 5000 "$build/demo/arm.glb" >"$project/cut.glb"
 printf 'HIERARCHY\nROOT bent_0\n{\nOFFSET 0 0 0\nCHANNELS 1 Zrotation\nJOINT bent_1\n{\nOFFSET 0 50 0\nCHANNELS 1 Zrotation\nEnd Site\n{\nOFFSET 0 50 0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 0.03\n0 0\n10 20\n' >"$project/turn.bvh"

@@ -77,7 +77,7 @@ void web_cast_add_stand(web_cast *cast, const noh_pack *pack);
 noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error);
 void web_cast_add_fall(web_cast *cast);
 
-/* Where the front of the pack's figures is: pack_facing, or 0 in body.wasm and face.wasm. */
+/* Where the front of the pack's figures is: pack_facing, or 0 in face.wasm. */
 float web_cast_facing(const noh_pack *pack);
 
 #endif

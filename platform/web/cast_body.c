@@ -1,5 +1,6 @@
 /* cast_body.c: the parts of a stage that bodies and hair need. face.wasm has face_only.c instead. */
 #include "cast.h"
+#include "draw/facing.h"
 #include "noh/clip.h"
 #include "noh/low_life.h"
 
@@ -45,6 +46,11 @@ void web_cast_add_stand(web_cast *cast, const noh_pack *pack)
         (void)add_modifier(cast, k, (noh_modifier){ .name = "stand", .modify = stand, .user = s });
         cast->stand_count++;
     }
+}
+
+float web_cast_facing(const noh_pack *pack)
+{
+    return (float)pack_facing(pack);
 }
 
 noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)

@@ -1,7 +1,5 @@
-/* cast_fall.c: the part of a stage that falls need, and where a body's front is. face.wasm and body.wasm have
- * without_falls.c instead. */
+/* cast_fall.c: the part of a stage that falls need. face.wasm and body.wasm have without_falls.c instead. */
 #include "cast.h"
-#include "draw/facing.h"
 
 void web_cast_add_fall(web_cast *cast)
 {
@@ -11,9 +9,4 @@ void web_cast_add_fall(web_cast *cast)
     static noh_ragdoll_rig rig;
     (void)noh_kind_can_fall(&cast->kinds[0], &rig, &cast->cannot_fall);
     if (!cast->cannot_fall.result) cast->kinds[0].ragdoll = noh_ragdoll_module(&ragdoll);
-}
-
-float web_cast_facing(const noh_pack *pack)
-{
-    return (float)pack_facing(pack);
 }

@@ -1,5 +1,5 @@
 /* face_only.c: replaces cast_body.c, hair.c, check_hair.c and check_springs.c in face.wasm: bodies keep the bind
- * pose, and hair and springs of a pack are not read. */
+ * pose and face +z, and hair and springs of a pack are not read. */
 #include <emscripten.h>
 
 #include "core/pack/check_internal.h"
@@ -26,6 +26,12 @@ void web_cast_add_stand(web_cast *cast, const noh_pack *pack)
 {
     (void)cast;
     (void)pack;
+}
+
+float web_cast_facing(const noh_pack *pack)
+{
+    (void)pack;
+    return 0.0f;
 }
 
 noh_result web_cast_add_hair(web_cast *cast, const noh_pack *pack, noh_error *error)

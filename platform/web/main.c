@@ -6,6 +6,7 @@
 
 #include "bounds.h"
 #include "web.h"
+#include "core/base/quarter_internal.h"
 #include "deform/pick/bounds_internal.h"
 #include "gl/device/gl_api_internal.h"
 #include "noh/low_core.h"
@@ -83,7 +84,7 @@ noh_result web_open_stage(const web_wants *wants)
     return NOH_OK;
 }
 
-/* The first character stands in the middle, the others alternate to its right and left. */
+/* The first character stands in the middle, the others alternate to its left and right, across where they face. */
 static void go_home(void)
 {
     for (uint32_t i = 0; i < web.figure_count; i++) {
@@ -91,6 +92,7 @@ static void go_home(void)
         noh_place place;
         memset(&place, 0, sizeof place);
         place.position[0] = web.spacing * (float)((n + 1u) / 2u) * (n % 2u ? 1.0f : -1.0f);
+        noh_quarter_turn((uint32_t)((int32_t)web.facing / 90), place.position, place.position);
         (void)noh_actor_set_place(web.stage, web.figures[i].actor, &place, NULL);
     }
 }

@@ -1,5 +1,5 @@
 /* without_falls.c: replaces cast_fall.c, push.c and vertices.c in face.wasm and body.wasm, which are smaller than
- * noh.wasm: figures do not fall, no other renderer draws them, and all face +z, as in glTF. */
+ * noh.wasm: figures do not fall, and no other renderer draws them. */
 #include <emscripten.h>
 
 #include "web.h"
@@ -7,12 +7,6 @@
 void web_cast_add_fall(web_cast *cast)
 {
     (void)noh_fail(&cast->cannot_fall, NOH_ERR_UNSUPPORTED, "this program has no falls: use noh.wasm", 0, 0);
-}
-
-float web_cast_facing(const noh_pack *pack)
-{
-    (void)pack;
-    return 0.0f;
 }
 
 /* ---- push.c ---- */

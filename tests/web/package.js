@@ -327,24 +327,24 @@ async function stands(browser) {
     await close(page, 'stands');
 }
 
-// A body that faces -z is framed and lit from its own front.
+// A body that faces -z or +x is framed and lit from its own front, and stands next to others across it.
 async function turned(browser) {
     if (!fs.existsSync(path.join(project, 'turned.noh'))) return;
-    const page = await show(browser, ['standing', 'turned'].map((name) => `<noh-character id="${name}" src="${name}.noh" light="studio" shadow="off" view="upper" style="width: 64px; height: 80px"></noh-character>`).join(''));
-    await whole(page, 'standing', 'turned');
+    const page = await show(browser, ['standing', 'turned', 'aside'].map((name) => `<noh-character id="${name}" src="${name}.noh" characters="2" program="${name === 'aside' ? 'body' : 'all'}" light="studio" shadow="off" style="width: 96px; height: 80px"></noh-character>`).join(''));
+    await whole(page, 'standing', 'turned', 'aside');
     const told = await page.evaluate(async () => {
-        const all = ['standing', 'turned'].map((id) => document.getElementById(id).character), pixels = ({ gl, canvas }) => {
+        const all = ['standing', 'turned', 'aside'].map((id) => document.getElementById(id).character), pixels = ({ gl, canvas }) => {
             const out = new Uint8Array(4 * canvas.width * canvas.height);
             gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, out);
             return out;
         };
         const look = (character) => { character.stopped = true; character.advance(1); character.advance(0); return pixels(character); };
-        const [ahead, round] = all.map(look), apart = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
+        const [ahead, round, aside] = all.map(look), apart = (a, b) => a.reduce((sum, value, i) => sum + Math.abs(value - b[i]), 0) / a.length;
         all[1].turn(Math.PI, 0);
-        return { facing: all.map(({ program }) => program._web_facing()).join(), front: apart(ahead, round), back: apart(ahead, look(all[1])) };
+        return { facing: all.map(({ program }) => program._web_facing()).join(), front: apart(ahead, round), aside: apart(ahead, aside), back: apart(ahead, look(all[1])) };
     });
-    check('turned: where it faces is known', told.facing === '0,180', told.facing);
-    check('turned: its front is shown, in the same light', told.front < told.back / 4, JSON.stringify(told));
+    check('turned: where it faces is known', told.facing === '0,180,90', told.facing);
+    check('turned: its front is shown, in the same light', Math.max(told.front, told.aside) < told.back / 4, JSON.stringify(told));
     await page.evaluate(() => document.getElementById('turned').character.home());
     await frames(page, 'turned', 1);
     await page.screenshot({ path: path.join(out, 'turned.png') });

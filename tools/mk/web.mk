@@ -104,8 +104,8 @@ $(WEB)/%: platform/web/%
 # context.c brings functions of WebGL in place of gl_api_load.c.
 WEB_C := $(filter-out %/plan.c %/face_only.c %/without_falls.c %/unread.c %/unclothed.c %/unmoved.c %/device/gl_api_load.c,$(wildcard platform/web/*.c) $(RUNTIME_C)) tools/noh/draw/facing.c
 WEB_O := $(WEB_C:%.c=$(WEB_OBJECTS)/%.o) $(WEB_OBJECTS)/shaders.gen.o
-WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o %/draw/facing.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
-WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
+WEB_BODY_O := $(filter-out %/web/cast_fall.o %/web/push.o %/web/vertices.o,$(WEB_O)) $(WEB_OBJECTS)/platform/web/without_falls.o
+WEB_FACE_O := $(filter-out %/web/cast_body.o %/web/hair.o %/draw/facing.o,$(WEB_BODY_O)) $(WEB_OBJECTS)/platform/web/face_only.o
 WEB_PLAN_O := $(addprefix $(WEB_OBJECTS)/platform/web/,plan.o cast.o cast_body.o cast_fall.o) $(WEB_OBJECTS)/platform/file.o $(filter-out $(WEB_OBJECTS)/platform/%,$(WEB_O))
 WEB_CC := NODE_PATH="$$NODE_PATH:/usr/share/nodejs" emcc # links; Debian's emscripten uses Debian's node modules
 $(BUILD)/web-cc: tools/web_cc.sh

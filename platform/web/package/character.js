@@ -195,8 +195,8 @@ export class Character extends EventTarget {
         this.targets = Array.from({ length: p._web_target_count() }, (_, i) => p.text(p._web_target_name(i)));
         this.clips = Array.from({ length: p._web_clip_count() }, (_, index) => ({ index, name: p.text(p._web_clip_name(index)), seconds: p._web_clip_seconds(index) }))
             .filter((clip) => clip.seconds >= 0);
-        const box = p.floats(p._web_measure(), 6);
-        p._web_set_spacing((box[3] - box[0]) * 1.1);
+        const box = p.floats(p._web_measure(), 6), across = p._web_facing() % 180 ? 2 : 0;
+        p._web_set_spacing((box[across + 3] - box[across]) * 1.1);
         this.level = c.level;
         if (!c.transfer && p._web_has_transfer()) p.check(p._web_set_transfer(0));
         p._web_set_hair(c.hair ? 1 : 0, c.wind);
