@@ -197,7 +197,7 @@ static void a_push_fells_it_whatever_its_front(void **state)
     }
 }
 
-/* Eyes that are given, or are found behind lids: those of a face that looks along x are found at joints alone. */
+/* Eyes that are given at any front, and eyes that are found behind lids, which works along z alone. */
 static void a_face_is_of_its_own_front(void **state)
 {
     static const float own[2][3] = { { 0.035f, 1.55f, 0.11f }, { -0.035f, 1.55f, 0.11f } },
