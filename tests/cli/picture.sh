@@ -141,14 +141,16 @@ noh render deep.noh -o deep.png --size 64x64 --camera face,90,0 --json
 expect 0 'a face in front of deep hair, from the side'
 depth=$(sed -n '/"eye"/{n;n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between -0.15 and 0.01 or 0
 check 'its frame has all of the hair, too' awk "BEGIN { exit !($depth > -0.076 && $depth < -0.069) }"
-sed 's/ -\.15$/ -.4/' deep.obj >tail.obj
-sed 's/ -\.15$/ -.4/' shapes/smile.obj >smile.obj
+sed 's/ -\.15$/ -.4/; s/1\.86/2/' deep.obj >tail.obj
+sed 's/ -\.15$/ -.4/; s/1\.86/2/' shapes/smile.obj >smile.obj
 mv smile.obj shapes/
 noh build tail.obj --targets shapes -o tail.noh
 noh render tail.noh -o tail.png --size 64x64 --camera face,90,0 --json
 expect 0 'a face in front of a tail of hair, from the side'
 depth=$(sed -n '/"eye"/{n;n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between -0.4 and 0.01 or 0
+height=$(sed -n '/"eye"/{n;n;s/[ ,]//g;p;}' "$work/out") # of the middle between 1.476 and 2
 check 'its frame has all of the tail' awk "BEGIN { exit !($depth > -0.201 && $depth < -0.194) }"
+check 'and of the hat' awk "BEGIN { exit !($height > 1.737 && $height < 1.739) }"
 if command -v node >/dev/null 2>&1; then
     # shellcheck disable=SC2016
     check 'and so has the page' node -e '

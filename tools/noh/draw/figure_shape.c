@@ -229,7 +229,7 @@ static bounds around_face(const figure *f, const bounds *all, bounds face)
     const double hair = f->hair.is_there ? HAIR_OVER * (all->high[1] - all->low[1]) : 0.0;
     const bounds head = bounds_turned(measure(f, 0, face.low[1]), -f->facing);
     /* a drawn head is half hair, over the face and behind it */
-    const double below[3] = { 0.35, 0.12, 1.3 }, above[3] = { 0.35, 0.9, 0.35 }, most[3] = { 1.2, 0.9, 2.6 };
+    const double below[3] = { 0.35, 0.12, 1.3 }, above[3] = { 0.35, 0.9, 0.35 }, most[3] = { 1.2, 1.8, 2.6 };
     bounds b;
     for (int c = 0; c < 3; c++) {
         b.low[c] = fmax(face.low[c] - below[c] * high, all->low[c] - (c != 1 ? hair : 0.0));
