@@ -1,6 +1,7 @@
 /* Teeth of one colour get gums; what has them, or is no tooth, stays as it is. */
 #include "convert/model/teeth_paint.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -103,13 +104,24 @@ static void pale_gums_become_red(void **state)
         const char *name;
         const float *color;
         int is_alone, is_given, has_picture, becomes_red;
-    } cases[] = { { "M_GumsTongue", skin, 0, 0, 0, 1 }, { "Mouth", skin, 0, 0, 0, 1 },   { "Zunge", skin, 0, 0, 0, 1 },
-                  { "TeethAndGums", skin, 0, 0, 0, 0 }, { "Mouth", skin, 1, 0, 0, 0 },   { "Gums", skin, 0, 1, 0, 0 },
-                  { "Gums", skin, 0, 0, 1, 0 },         { "Tongue", tongue, 0, 0, 0, 0 } };
+        float grey; /* of a vertex colour; below 0: red */
+    } cases[] = { { "M_GumsTongue", skin, 0, 0, 0, 1, 0 }, { "Mouth", skin, 0, 0, 0, 1, 0 },
+                  { "Zunge", skin, 0, 0, 0, 1, 0.3f },     { "TeethAndGums", skin, 0, 0, 0, 0, 0 },
+                  { "Mouth", skin, 1, 0, 0, 0, 0 },        { "Gums", skin, 0, 1, 0, 0, 0 },
+                  { "Gums", skin, 0, 0, 1, 0, 0 },         { "Tongue", tongue, 0, 0, 0, 0, 0 },
+                  { "Tongue", skin, 0, 0, 0, 0, -1.0f } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
-        model *m = mouth_of(skin, 0.002f, 0.0f);
+        model *m = mouth_of(skin, 0.002f, fabsf(cases[i].grey));
         model_material *materials = test_zeros(2 * sizeof *materials), *gums = &materials[1];
+        model_submesh *parts = test_zeros(2 * sizeof *parts);
+        parts[0] = parts[1] = m->meshes[0].submeshes[0];
+        parts[0].index_count = parts[1].first_index = parts[1].index_count /= 2u;
+        parts[1].material = 1;
+        free(m->meshes[0].submeshes);
+        m->meshes[0].submeshes = parts;
+        m->meshes[0].submesh_count = 2;
+        if (cases[i].grey < 0.0f) m->meshes[0].color[8u * STRIP - 3u] = 0.4f; /* green, of the last vertex */
         materials[0] = m->materials[0];
         if (cases[i].is_alone) materials[0].surface = NOH_SURFACE_PLAIN;
         *gums = model_material_default();

@@ -169,6 +169,24 @@ static int paint_part(model_mesh *mesh, const uint8_t *used, const float *factor
     return 0;
 }
 
+/* Whether no vertex of the material has a colour of flesh. */
+static int is_pale(const model *m, uint32_t material)
+{
+    const float *factor = m->materials[material].base_color;
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+            const model_submesh *part = &mesh->submeshes[s];
+            for (uint32_t k = 0; part->material == material && k < part->index_count; k++) {
+                const jaws j = { .mesh = mesh, .factor = factor };
+                const uint32_t v = mesh->indices[part->first_index + k];
+                if (fminf(channel(&j, v, 1), channel(&j, v, 2)) < FLESH_MAX * channel(&j, v, 0)) return 0;
+            }
+        }
+    }
+    return 1;
+}
+
 /* Gums and tongues that are as pale as teeth, or skin, look like plaster. A mouth of one material may be teeth. */
 static int paint_gums(model *m)
 {
@@ -177,12 +195,11 @@ static int paint_gums(model *m)
     for (uint32_t i = 0; i < m->material_count; i++) mouths += m->materials[i].surface == NOH_SURFACE_TEETH;
     for (uint32_t i = 0; i < m->material_count && mouths > 1u && !failed; i++) {
         model_material *by = &m->materials[i];
-        float *c = by->base_color;
         if (by->surface != NOH_SURFACE_TEETH || by->surface_given || by->base_color_texture != MODEL_NONE ||
-            !surface_is_gums(by->name) || fminf(c[1], c[2]) < FLESH_MAX * c[0]) {
+            !surface_is_gums(by->name) || !is_pale(m, i)) {
             continue;
         }
-        memcpy(c, gum, sizeof gum);
+        memcpy(by->base_color, gum, sizeof gum);
         failed = model_warn(m,
                             "material '%s': gums and tongues as pale as skin look like plaster, so they became red "
                             "(--surface '%s=plain' keeps them)",
