@@ -333,7 +333,8 @@ void noh_gl_caps_nominal(noh_gl_caps *out);
  * Recovery after a lost context.
  *
  * All GL objects of a lost context are gone; packs, weights and poses in your memory stay valid. Make a new context,
- * fill the same noh_gl_api with noh_gl_api_load (objects point to this table), and restore each object:
+ * fill the same noh_gl_api with noh_gl_api_load (objects point to this table), and restore each object before you draw
+ * (drivers may crash on the old names):
  *
  *   noh_gl_mesh_restore, noh_gl_picture_restore, noh_gl_renderer_restore  low_gl.h
  *   noh_gl_morph_restore                                                  low_gl.h

@@ -380,8 +380,8 @@ struct noh_gl_caps;
  * near_count or middle_count reserve them; the finest level; cached segments, down to two per bank. Then 32-bit
  * accumulators and cached segments are restored if they fit.
  *
- * caps    noh_gl_caps (gl_device.h); NULL with desc->gpu NULL
- * errors  ARG a field of the desc is invalid (where: the kind); NOT_FOUND no pack of a kind has a graph that its
+ * caps    noh_gl_caps (gl_device.h), as noh_gl_open fills it in; NULL with desc->gpu NULL
+ * errors  ARG a field of the desc is invalid (where: the kind), or caps are NULL or zeros; NOT_FOUND no pack of a kind has a graph that its
  *         `graphs` names; MEMORY no plan keeps the bounds (need: bytes of the smallest plan); LIMIT; DATA a clip is
  *         damaged. *plan is then undefined */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
@@ -410,9 +410,10 @@ typedef struct noh_stage noh_stage;
  * device  a noh_gl_device (gl_device.h) with all fields set but the log; its table, caps and ledger must outlive the
  *         stage. NULL with desc->gpu NULL
  * errors  as noh_stage_plan_make; NOT_FOUND a joint or float of a layer does not exist (where: the kind, plus 2^32
- *         times the layer; need: the byte of its name in the layer's list); ARG memory is NULL or misaligned; MEMORY
- *         memory is too small (need: the bytes), or the driver is out of memory; GL, DATA the driver refused an object
- *         or a shader. All GL objects made so far are then deleted */
+ *         times the layer; need: the byte of its name in the layer's list); ARG memory is NULL or misaligned, the
+ *         plan is of another desc, or the device is NULL or lacks a field; MEMORY memory is too small (need: the
+ *         bytes), or the driver is out of memory; GL, DATA the driver refused an object or a shader. All GL objects
+ *         made so far are then deleted */
 noh_result noh_stage_init(void *memory, size_t bytes, const void *device, const noh_stage_desc *desc,
                           const noh_stage_plan *plan, noh_stage **stage, noh_error *error);
 

@@ -378,7 +378,7 @@ typedef struct noh_gl_drawable {
  * shader  NULL: the library's
  * state   the table in gl_device.h: depth function, front face and blending are yours
  * errors  ARG the stage is lit and no lighting was set; the last frame had no such view, or a frame has begun and not
- *         ended; or noh_stage_desc.without_shader or without_depth excludes this draw */
+ *         ended; noh_stage_desc has no `gpu`; or its without_shader or without_depth excludes this draw */
 noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_stage_shader *shader, noh_error *error);
 
 /* Set the lighting for all later draws. It is borrowed, and read at each draw. A stage with noh_stage_desc.light draws

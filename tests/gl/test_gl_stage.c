@@ -612,6 +612,40 @@ static void random_casts_use_what_is_planned(void **state)
     cast_close(&c);
 }
 
+/* Where noh_gl_open was forgotten, plan and stage say so; and a draw, where the stage has no gpu. */
+static void a_device_that_was_not_opened_is_refused(void **state)
+{
+    const float middle[3] = { 0.0f, 1.0f, 0.0f };
+    static noh_gl none;
+    noh_stage_view view;
+    static gpu g;
+    noh_stage *stage;
+    noh_error error;
+    cast c;
+    (void)state;
+    memset(&g, 0, sizeof g);
+    open_null(&g);
+    cast_open(&c);
+    c.desc.gpu = &noh_stage_on_gl;
+    assert_int_equal(noh_stage_plan_make(&c.desc, &none.caps, &c.plan, &error), NOH_ERR_ARG);
+    assert_non_null(strstr(error.what, "noh_gl_open"));
+    assert_int_equal(noh_stage_plan_make(&c.desc, &g.caps, &c.plan, NULL), NOH_OK);
+    c.memory = test_aligned(NULL, (size_t)c.plan.cpu_bytes);
+    assert_int_equal(noh_stage_init(c.memory, (size_t)c.plan.cpu_bytes, &none.device, &c.desc, &c.plan, &stage, &error),
+                     NOH_ERR_ARG);
+    assert_non_null(strstr(error.what, "noh_gl_open"));
+    free(c.memory);
+    c.desc.gpu = NULL;
+    cast_make(&c, NULL);
+    noh_view_orbit(&view, middle, 0.0f, 0.0f, 5.0f, 64, 64);
+    assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
+    assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, NULL, &error), NOH_ERR_ARG);
+    assert_non_null(strstr(error.what, "noh_stage_on_gl"));
+    assert_int_equal(noh_stage_draw_shadow(c.stage, 0, &error), NOH_ERR_ARG);
+    cast_close(&c);
+    gpu_close(&g);
+}
+
 /* Whatever call a driver refuses while a stage is made: it is not made, nothing is left, and then it is made. */
 static void a_refusing_driver_leaves_nothing(void **state)
 {
@@ -697,6 +731,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(frames_make_nothing),
         cmocka_unit_test(few_of_a_crowd_are_drawn),
         cmocka_unit_test(random_casts_use_what_is_planned),
+        cmocka_unit_test(a_device_that_was_not_opened_is_refused),
         cmocka_unit_test(a_refusing_driver_leaves_nothing),
         cmocka_unit_test(vertices_are_given_up_first),
     };

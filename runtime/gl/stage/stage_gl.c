@@ -444,6 +444,10 @@ static noh_result measure_stage(const noh_stage_desc *desc, const struct noh_gl_
                                 uint64_t *cpu_bytes, uint64_t *gpu_bytes, noh_error *error)
 {
     measure m = { desc, desc, plan, caps, noh_arena_measure(), NULL, NULL, 0, 0, 0, 0, 0 };
+    if (!NOH_PAGE && !caps->version) {
+        return noh_fail(error, NOH_ERR_ARG, "the capabilities of the GPU are empty: call noh_gl_open before the plan",
+                        0, 0);
+    }
     const noh_result result = visit(&m, error);
     *cpu_bytes = m.arena.used;
     *gpu_bytes = m.gpu_bytes;
@@ -567,7 +571,9 @@ static noh_result init(void *memory, size_t bytes, const void *device, const noh
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
-    NOH_ASSERT(first.device.api && first.device.caps && first.device.ledger);
+    if (!NOH_PAGE && !(first.device.api && first.device.caps && first.device.ledger)) {
+        return noh_fail(error, NOH_ERR_ARG, "the device of a stage is empty: call noh_gl_open first", 0, 0);
+    }
     m.caps = first.device.caps;
     m.gl = &first;
     result = visit(&m, error);

@@ -153,6 +153,10 @@ static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colou
         return noh_fail(error, NOH_ERR_ARG, "the last frame has no such view, or noh_stage_frame_end was not called",
                         view, stage->view_count);
     }
+    if (!NOH_PAGE && !stage->gpu) {
+        return noh_fail(error, NOH_ERR_ARG, "the stage draws nothing: set noh_stage_desc.gpu to &noh_stage_on_gl", 0,
+                        0);
+    }
     if (stage->desc.light && is_colour && !((const noh_stage_gl *)stage->gpu)->lighting) {
         return noh_fail(error, NOH_ERR_ARG, "the stage has a light: call noh_stage_set_lighting before drawing", 0, 0);
     }
@@ -192,7 +196,7 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
 {
     drawing d;
     noh_result result;
-    NOH_ASSERT(stage && stage->gpu);
+    NOH_ASSERT(stage && (uint32_t)pass <= NOH_PASS_DEPTH);
     if ((stage->desc.without_shader && !shader) || (stage->desc.without_depth && pass == NOH_PASS_DEPTH)) {
         return noh_fail(error, NOH_ERR_ARG,
                         "this draw needs shaders that noh_stage_desc excludes: without_shader or without_depth",
@@ -276,8 +280,7 @@ noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *err
 {
     const noh_stage_gl *gl = stage->gpu;
     noh_result result;
-    NOH_ASSERT(gl);
-    if (!gl->light || !gl->light->framebuffer) {
+    if ((!NOH_PAGE && !gl) || !gl->light || !gl->light->framebuffer) {
         return noh_fail(error, NOH_ERR_ARG, "the stage has no shadow map: set noh_gl_light_desc.shadow_px", 0, 0);
     }
     noh_gl_light_begin_shadow(gl->light);

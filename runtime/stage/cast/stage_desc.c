@@ -207,6 +207,7 @@ static const char *bad_kind(const noh_stage_desc *desc, const noh_kind_desc *d)
 {
     noh_kind_desc filled;
     if (!d->mesh) return "mesh of a kind is NULL";
+    if (!NOH_PAGE && !d->mesh->bytes) return "mesh of a kind is no open pack: call noh_pack_open before the plan";
     if (d->actor_count == 0 || d->actor_count > NOH_STAGE_ACTORS_MAX)
         return "actor_count of a kind is not in 1..NOH_STAGE_ACTORS_MAX";
     if (d->visible_max > d->actor_count) return "visible_max of a kind is above its actor_count";

@@ -589,8 +589,8 @@ static noh_result find_fit(const planner *p, noh_error *error)
     if (result == NOH_OK && fits(p->desc, p->plan)) result = give_back(p, error);
     if (result == NOH_OK && !fits(p->desc, p->plan)) {
         return noh_fail(error, NOH_ERR_MEMORY,
-                        "no choice of levels, slots and cached segments keeps the bounds of a stage: raise them, or "
-                        "lower actor_count or visible_max of its kinds",
+                        "no choice of levels, slots and cached segments keeps the bounds of a stage: raise them, "
+                        "lower actor_count or visible_max of its kinds, or build their packs with --lod",
                         0, p->plan->cpu_bytes + p->plan->gpu_bytes);
     }
     return result;

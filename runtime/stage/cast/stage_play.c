@@ -445,8 +445,10 @@ noh_result noh_actor_play(noh_stage *stage, noh_actor actor, uint32_t layer, con
     }
     index = noh_stage_find(stage, (uint32_t)(p.k - stage->kinds), NOH_NAME_CLIP, clip);
     if (index == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no clip of that name", (uint64_t)(p.k - stage->kinds),
-                        noh_stage_clip_count(p.k));
+        return noh_fail(
+            error, NOH_ERR_NOT_FOUND,
+            "the kind has no clip of that name: noh info lists a pack's clips; clips of other skeletons are left out",
+            (uint64_t)(p.k - stage->kinds), noh_stage_clip_count(p.k));
     }
     what = bad_play(&p, how);
     if (what) return noh_fail(error, NOH_ERR_ARG, what, how->flags, 0);

@@ -75,7 +75,7 @@ noh_result noh_kind_can_fall(const noh_kind_desc *kind, noh_ragdoll_rig *rig, no
     uint32_t count;
     noh_result result;
     if (source.skeleton == NOH_NONE || !source.pack->runs[NOH_CHUNK_SKELETON].count) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "it has no skeleton", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "the kind has no skeleton: use the pack of a skinned model", 0, 0);
     }
     result = noh_pack_skeleton_at(source.pack, source.skeleton, &source.joints, &header, error);
     if (result != NOH_OK) return result;

@@ -141,6 +141,7 @@ static void desc_fields_broken_in_turn(void **state)
     c.desc.lod.pixels = -1.0f, bad_plan(&c, NOH_ERR_ARG, "pixels"), c.desc.lod.pixels = 0.0f;
     c.kinds[1].mesh = NULL, bad_plan(&c, NOH_ERR_ARG, "mesh"), c.kinds[1] = fine[1];
     assert_int_equal(said.where, 1);
+    c.kinds[1].mesh = &(noh_pack){ 0 }, bad_plan(&c, NOH_ERR_ARG, "noh_pack_open"), c.kinds[1] = fine[1];
     c.kinds[2].actor_count = 0, bad_plan(&c, NOH_ERR_ARG, "actor_count"), c.kinds[2] = fine[2];
     c.kinds[0].actor_count = 65535, bad_plan(&c, NOH_ERR_LIMIT, "actors"), c.kinds[0] = fine[0];
     c.kinds[0].skeleton = 7, bad_plan(&c, NOH_ERR_ARG, "skeleton"), c.kinds[0] = fine[0];
@@ -1179,7 +1180,8 @@ static void a_kind_may_have_no_clips(void **state)
     c.kinds[PUPPETS].clip_packs = &c.kinds[PUPPETS].mesh;
     actor = one_puppet(&c, 0);
     assert_true(c.plan.cpu_bytes < bytes && c.plan.kinds[PUPPETS].segment_count == 0);
-    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, NULL), NOH_ERR_NOT_FOUND);
+    assert_int_equal(noh_actor_play(c.stage, actor, 0, "walk", NULL, &said), NOH_ERR_NOT_FOUND);
+    assert_non_null(strstr(said.what, "other skeletons"));
     assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, NULL, NULL, NULL, NULL), NOH_OK);
     cast_close(&c);
 }
