@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 /* Where a body's front is, in quarter turns from +z towards +x, 0..3: where the soles of its legs point in the bind pose.
- * Names of left and right are not needed. 0 if there are no legs, if they point apart, or along the line of the hips.
+ * Names of left and right are not needed. 0 if there are no legs, or they point along the line of the hips.
  * All that needs a front asks here, except faces, which may have no legs (stage_face_open.c). */
 uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig);
 /* The same with the rig made for it. */

@@ -191,8 +191,7 @@ uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig)
     const uint32_t front = noh_quarter_of(ahead[0], ahead[2]);
     if (rig->leg_count != 2u) return front;
     noh_sub3(hips[0], hips[1], hips[0]);
-    const int along = noh_quarter_of(hips[0][0], hips[0][2]) % 2u == front % 2u;
-    return along || noh_dot3(ahead, ahead) < 2.0f ? 0u : front;
+    return noh_quarter_of(hips[0][0], hips[0][2]) % 2u == front % 2u ? 0u : front; /* along the hips: not known */
 }
 
 static uint32_t larger(uint32_t a, uint32_t b)
