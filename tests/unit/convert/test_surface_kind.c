@@ -482,6 +482,36 @@ static void shells_of_eyes_do_not_hide_them(void **state)
     }
 }
 
+/* A material of eyes alone is theirs; what others have, too, and what is seen through, stays. */
+static void objects_name_eyes(void **state)
+{
+    static const struct {
+        const char *nodes[2], *mesh;
+        model_alpha alpha;
+        uint32_t given, kind;
+    } cases[] = { { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE },
+                  { { "Object", "Object.001" }, "eyeball", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE },
+                  { { "Eye.L", "Button" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_BLEND, 0, NOH_SURFACE_PLAIN },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 1, NOH_SURFACE_PLAIN },
+                  { { "Eyelid.L", "Eyelid.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        model_material material = model_material_default();
+        model_submesh part = { .material = 0 };
+        model_mesh mesh = { .name = (char *)(uintptr_t)cases[i].mesh, .submesh_count = 1, .submeshes = &part };
+        model_node nodes[2] = { { .mesh = 0 }, { .mesh = 0 } };
+        model m = { .material_count = 1, .materials = &material, .mesh_count = 1, .meshes = &mesh, .node_count = 2 };
+        m.nodes = nodes;
+        for (int n = 0; n < 2; n++) nodes[n].name = (char *)(uintptr_t)cases[i].nodes[n];
+        material.name = (char *)(uintptr_t) "Material.003";
+        material.alpha = cases[i].alpha;
+        material.surface_given = (uint8_t)cases[i].given;
+        surface_kinds_of_objects(&m);
+        assert_int_equal(material.surface, cases[i].kind);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -500,6 +530,7 @@ int main(void)
         cmocka_unit_test(irises_are_found_where_eyes_look),
         cmocka_unit_test(a_ball_without_an_iris_has_none),
         cmocka_unit_test(shells_of_eyes_do_not_hide_them),
+        cmocka_unit_test(objects_name_eyes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -239,6 +239,40 @@ int surface_shells_set(model *m)
     return failed;
 }
 
+static int has_material(const model_mesh *mesh, uint32_t material)
+{
+    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+        if (mesh->submeshes[s].material == material) return 1;
+    }
+    return 0;
+}
+
+static int is_worn_by_eyes(const model *m, uint32_t material)
+{
+    int found = 0;
+    for (uint32_t i = 0; i < m->node_count; i++) {
+        const model_node *node = &m->nodes[i];
+        if (node->mesh == MODEL_NONE || !has_material(&m->meshes[node->mesh], material)) continue;
+        found = 1;
+        if (surface_kind_of_name(node->name ? node->name : "") != NOH_SURFACE_EYE &&
+            surface_kind_of_name(m->meshes[node->mesh].name) != NOH_SURFACE_EYE) {
+            return 0;
+        }
+    }
+    return found;
+}
+
+void surface_kinds_of_objects(model *m)
+{
+    for (uint32_t i = 0; i < m->material_count; i++) {
+        model_material *material = &m->materials[i];
+        if (material->surface == NOH_SURFACE_PLAIN && !material->surface_given &&
+            material->alpha == MODEL_ALPHA_OPAQUE && is_worn_by_eyes(m, i)) {
+            surface_kind_set(material, NOH_SURFACE_EYE);
+        }
+    }
+}
+
 int surface_kind_assign(model *m, const char *assignment, model_error *error)
 {
     const char *equals = strrchr(assignment, '=');

@@ -36,6 +36,10 @@ int surface_is_of_vroid(const char *name);
  * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
 
+/* Opaque materials whose names say nothing are eyes where all objects that have them are, by the names of nodes or
+ * meshes: "Eye.L" of "Material.003". */
+void surface_kinds_of_objects(model *m);
+
 /* Make a material one that draws nothing. */
 void surface_hide(model_material *m);
 
