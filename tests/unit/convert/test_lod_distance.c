@@ -119,10 +119,38 @@ static void near_enough_is_enough(void **state)
     lod_tree_free(&tree);
 }
 
+/* Of a fan of slivers nearly each box about a quarter of a turn holds each point of that quarter: searches end early,
+ * at a triangle whose distance is right. */
+static void slivers_end_a_search(void **state)
+{
+    (void)state;
+    enum { slivers = 4096, queries = 65536 };
+    static float position[slivers + 2u][3];
+    static uint32_t indices[slivers][3];
+    lod_tree tree = { 0 };
+    uint32_t nearest = 0;
+    for (uint32_t i = 0; i <= slivers; i++) {
+        const float angle = 6.2831853f * (float)i / (float)slivers;
+        position[i + 1u][0] = cosf(angle);
+        position[i + 1u][1] = sinf(angle);
+        if (i < slivers) memcpy(indices[i], (const uint32_t[3]){ 0, i + 1u, i + 2u }, sizeof indices[i]);
+    }
+    assert_int_equal(lod_tree_make(indices[0], slivers, position[0], &tree), 0);
+    for (uint32_t i = 0; i < queries; i++) {
+        const float angle = 2.399963f * (float)i, point[3] = { 0.5f * cosf(angle), 0.5f * sinf(angle), 1e-3f };
+        const float squared = lod_tree_nearest(&tree, point, 0.0f, &nearest);
+        assert_float_equal(squared, lod_tree_distance(&tree, point, nearest), 0.0f);
+        if (i == 0) assert_float_equal(squared, 1e-6f, 1e-9f);
+    }
+    assert_int_equal(tree.spare_leaves, 0);
+    lod_tree_free(&tree);
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(eight_at_once_are_the_same_bits),
     cmocka_unit_test(the_tree_finds_the_nearest_in_each_pose),
     cmocka_unit_test(near_enough_is_enough),
+    cmocka_unit_test(slivers_end_a_search),
 };
 
 TEST_MAIN(tests, NULL, NULL)

@@ -92,7 +92,7 @@ static int sample_moves(const fitter *f, const fit_part *p, uint32_t i)
 
 /* Whether a sample is nearer than what is listed, by the place that was nearest to it before; else *place is the
  * nearest one, or one as near as what is not listed. */
-static int is_near(const fitter *f, const lod_tree *to, const float *from, fit_match *m, float *place)
+static int is_near(const fitter *f, lod_tree *to, const float *from, fit_match *m, float *place)
 {
     m->bound = sqrtf(lod_distance_from(to->triangles + 9u * (size_t)m->triangle, m->place, from[0], from[1], from[2]));
     if (m->bound < f->least) {

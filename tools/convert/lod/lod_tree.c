@@ -7,6 +7,12 @@
 
 #include "lod_internal.h"
 
+/* Leaves that a search may measure, on average, and those in hand for searches that take more. Ordinary surfaces take
+ * two to three. Where thousands of slivers lie across the axes, such as a fan's, the boxes of most of them hold each
+ * point, and without an end the time would grow by the square of the triangles. */
+#define MEAN_LEAVES 8u
+#define SPARE_LEAVES (1u << 20)
+
 static void pose_triangles(lod_tree *t, const float *position)
 {
     for (uint32_t i = 0; i < t->boxes.triangle_count * 3u; i++) {
@@ -57,6 +63,7 @@ int lod_tree_make(const uint32_t *indices, uint32_t triangle_count, const float 
         return 1;
     }
     prepare_leaves(t);
+    t->spare_leaves = SPARE_LEAVES;
     return 0;
 }
 
@@ -115,13 +122,14 @@ float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle
     return lod_distance_point(t->triangles + (size_t)triangle * 9u, point);
 }
 
-float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint32_t *nearest)
+float lod_tree_nearest(lod_tree *t, const float *point, float enough, uint32_t *nearest)
 {
     float best = lod_tree_distance(t, point, *nearest);
+    uint64_t leaves = t->spare_leaves + MEAN_LEAVES;
     box_stack s;
     s.count = 0;
     push(&s, t, 0, point);
-    while (s.count && best > enough) {
+    while (s.count && best > enough && leaves) {
         const uint32_t node = s.node[--s.count];
         const triangle_node *n = &t->boxes.nodes[node];
         if (s.squared[s.count] >= best) {
@@ -129,6 +137,7 @@ float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint
         }
         if (n->count) {
             float squared[LOD_LANES];
+            leaves--;
             lod_block_distances(&t->blocks[t->block_of[node]], point, squared);
             for (uint32_t k = 0; k < n->count; k++) {
                 if (squared[k] < best) {
@@ -142,5 +151,6 @@ float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint
             swap_last(&s); /* the nearer one is visited first */
         }
     }
+    t->spare_leaves = leaves;
     return best;
 }

@@ -11,6 +11,7 @@ typedef struct lod_tree {
     uint32_t *block_of;       /* [nodes] of each leaf */
     struct lod_block *blocks; /* one a leaf, likewise */
     uint32_t block_count;
+    uint64_t spare_leaves; /* that searches have left to measure */
 } lod_tree;
 
 /* Build the tree over triangles in one pose, position [vertices][3]. Returns 1 when out of memory. */
@@ -24,7 +25,8 @@ void lod_tree_pose(lod_tree *t, const float *position);
 float lod_tree_distance(const lod_tree *t, const float *point, uint32_t triangle);
 
 /* The squared distance to the surface. *nearest: a guess on entry (any triangle), the nearest on return. Once a
- * triangle is no farther than `enough` (squared), that one is as good as the nearest. */
-float lod_tree_nearest(const lod_tree *t, const float *point, float enough, uint32_t *nearest);
+ * triangle is no farther than `enough` (squared), that one is as good as the nearest. Where boxes cannot tell triangles
+ * apart, the search ends early: the distance is then the least of those measured, never too small. */
+float lod_tree_nearest(lod_tree *t, const float *point, float enough, uint32_t *nearest);
 
 #endif
