@@ -21,20 +21,9 @@ static inline int noh_name_begins(const char *name, const char *start)
     return !*start;
 }
 
-/* Does a name, as letters alone in any case, have a word of lower case? 'upper_arm.L' has "upperarm". */
-static inline int noh_name_has(const char *name, const char *word)
-{
-    for (; *name; name++) {
-        const char *at = name, *rest = word;
-        for (; *at && *rest; at++) {
-            const char c = *at >= 'A' && *at <= 'Z' ? (char)(*at + 32) : *at;
-            if (c < 'a' || c > 'z') continue;
-            if (c != *rest) break;
-            rest++;
-        }
-        if (!*rest) return 1;
-    }
-    return 0;
-}
+/* Whether a name has a word of small letters, in any case and over separators: 'upper_arm.L' has "upperarm" and "arm",
+ * 'handbag' has not "hand". Words end at separators, digits and capitals; sides, upper, lower and a plural's s may be
+ * joined to a word. */
+int noh_name_has(const char *name, const char *word);
 
 #endif

@@ -508,15 +508,23 @@ static void begin_variant(const draw_job *j, const noh_gl_variant *v, uint32_t l
 #define TINT_NO_COLOR 2
 #define COMPLEXION_SHIFT 2
 
-/* Which part of a complexion a material shows (common_complexion.glsl): by its surface, hair also by its name. */
+/* Which part of a complexion a material shows (common_complexion.glsl): by its surface, else by the first word that its
+ * name has. */
 static GLint complexion_part(const noh_mesh *mesh, const noh_material *m)
 {
+    static const struct {
+        char word[11];
+        uint8_t part;
+    } words[] = { { "lash", 0 }, { "lashes", 0 },  { "eyelash", 0 }, { "eyelashes", 0 },
+                  { "brow", 4 }, { "eyebrow", 4 }, { "hair", 3 } };
     const char *name = noh_pack_string(mesh->pack, m->name);
     if (m->surface == NOH_SURFACE_SKIN) return 1;
     if (m->surface == NOH_SURFACE_EYE) return 2;
-    if (m->surface == NOH_SURFACE_TEETH || noh_name_has(name, "lash")) return 0;
-    if (noh_name_has(name, "brow")) return 4;
-    return m->surface == NOH_SURFACE_HAIR || (noh_name_has(name, "hair") && !noh_name_has(name, "chair")) ? 3 : 0;
+    if (m->surface == NOH_SURFACE_TEETH) return 0;
+    for (size_t i = 0; i < sizeof words / sizeof words[0]; i++) {
+        if (noh_name_has(name, words[i].word)) return words[i].part;
+    }
+    return m->surface == NOH_SURFACE_HAIR ? 3 : 0;
 }
 
 static void draw_material(const draw_job *j, const noh_gl_variant *v, const noh_submesh *s, size_t first,

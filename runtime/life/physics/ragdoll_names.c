@@ -46,24 +46,21 @@ static const struct abilities {
     [CHEST] = { 0, NOH_RAGDOLL_FORWARD, DEGREES(-15.0f), DEGREES(25.0f), DEGREES(15.0f), DEGREES(15.0f), 5.0f },
 };
 
-/* The first word that a name contains, as letters alone: 'upper_arm.L' contains "upperarm". */
+/* The first word that a name has (noh_name_has); first what is worn or carried. */
 static const struct word {
     const char *text;
     part means;
 } words[] = {
-    { "forearm", FOREARM }, { "lowerarm", FOREARM },   { "lowarm", FOREARM },
-    { "elbow", FOREARM },   { "upperarm", UPPER_ARM }, { "uparm", UPPER_ARM },
-    { "shldr", UPPER_ARM }, { "thigh", THIGH },        { "upperleg", THIGH },
-    { "upleg", THIGH },     { "lowerleg", SHIN },      { "lowleg", SHIN },
-    { "hippart", NONE },    { "shoulderpart", NONE },  { "shin", SHIN },
-    { "calf", SHIN },       { "knee", SHIN },          { "toe", NONE },
-    { "foot", FOOT },       { "ankle", FOOT },         { "finger", NONE },
-    { "thumb", NONE },      { "hand", HAND },          { "wrist", HAND },
-    { "headtop", NONE },    { "forehead", NONE },      { "head", HEAD },
-    { "neck", HEAD },       { "armature", NONE },      { "arm", UPPER_ARM },
-    { "leg", SHIN },        { "shoulder", SHOULDER },  { "hip", HIP },
-    { "femur", THIGH },     { "tibia", SHIN },         { "humerus", UPPER_ARM },
-    { "radius", FOREARM },
+    { "bag", NONE },          { "pad", NONE },        { "armor", NONE },        { "forearm", FOREARM },
+    { "lowerarm", FOREARM },  { "lowarm", FOREARM },  { "elbow", FOREARM },     { "upperarm", UPPER_ARM },
+    { "uparm", UPPER_ARM },   { "shldr", UPPER_ARM }, { "thigh", THIGH },       { "upperleg", THIGH },
+    { "upleg", THIGH },       { "lowerleg", SHIN },   { "lowleg", SHIN },       { "hippart", NONE },
+    { "shoulderpart", NONE }, { "shin", SHIN },       { "calf", SHIN },         { "knee", SHIN },
+    { "toe", NONE },          { "foot", FOOT },       { "ankle", FOOT },        { "finger", NONE },
+    { "thumb", NONE },        { "hand", HAND },       { "wrist", HAND },        { "headtop", NONE },
+    { "forehead", NONE },     { "head", HEAD },       { "neck", HEAD },         { "arm", UPPER_ARM },
+    { "radius", FOREARM },    { "leg", SHIN },        { "shoulder", SHOULDER }, { "hip", HIP },
+    { "femur", THIGH },       { "tibia", SHIN },      { "humerus", UPPER_ARM },
 };
 
 /* MikuMikuDance's bones, without their sides, in UTF-8. */
@@ -110,37 +107,11 @@ const char *noh_name_english(const char *name)
     return name;
 }
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
-static int is_letter(char c)
-{
-    return lower(c) >= 'a' && lower(c) <= 'z';
-}
-
-/* Whether `name`, from here on and ignoring all but letters, begins with the word. */
-static int begins_with(const char *name, const char *word)
-{
-    while (*word && *name) {
-        if (is_letter(*name)) {
-            if (lower(*name) != *word) return 0;
-            word++;
-        }
-        name++;
-    }
-    return !*word;
-}
-
 static part part_of(const char *name)
 {
-    for (size_t w = 0; w < sizeof words / sizeof words[0]; w++) {
-        for (const char *at = name; *at; at++) {
-            if (is_letter(*at) && begins_with(at, words[w].text)) return words[w].means;
-        }
-    }
-    return NONE;
+    size_t w = 0;
+    while (w < sizeof words / sizeof words[0] && !noh_name_has(name, words[w].text)) w++;
+    return w < sizeof words / sizeof words[0] ? words[w].means : NONE;
 }
 
 /* The parts of all joints, two of them in a byte. */

@@ -95,13 +95,13 @@ static void find_chain(const noh_ragdoll_source *s, uint32_t head, noh_gaze_rig 
 /* The first two eye joints below the head; neither is a descendant of the other. */
 static void find_eyes(const noh_ragdoll_source *s, uint32_t head, uint32_t eyes[2])
 {
-    static const char *const no_eye[] = {
-        "lid", "brow", "lash", "socket", "corner", "target", "end", "nub", "bag", NULL
-    };
+    static const char *const eye[] = { "eye", "eyeball", NULL };
+    static const char *const no_eye[] = { "lid",    "brow", "lash", "lashes", "socket", "corner",
+                                          "target", "end",  "nub",  "bag",    NULL };
     uint32_t count = 0;
     for (uint32_t i = head + 1u; i < s->joints.joint_count && count < 2u; i++) {
         const char *name = name_of(s, i);
-        if (!noh_name_has(name, "eye") || has_any(name, no_eye) || !noh_joint_is_below(&s->joints, i, head)) continue;
+        if (!has_any(name, eye) || has_any(name, no_eye) || !noh_joint_is_below(&s->joints, i, head)) continue;
         if (count && noh_joint_is_below(&s->joints, i, eyes[0])) continue;
         eyes[count++] = i;
     }

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/base/name_internal.h"
 #include "noh/body.h"
 #include "noh/low_motion.h"
 #include "noh/format.h"
@@ -135,6 +136,15 @@ static const rig rigs[] = {
                "5 J_Bip_R_Shoulder -|6 J_Bip_R_UpperArm U|7 J_Bip_R_LowerArm E|8 J_Bip_R_Hand W|2 J_Bip_L_UpperLeg t|"
                "3 J_Bip_L_LowerLeg k|4 J_Bip_L_Foot f|5 J_Bip_L_ToeBase -|2 J_Bip_R_UpperLeg T|"
                "3 J_Bip_R_LowerLeg K|4 J_Bip_R_Foot F" },
+    { "a figure that wears and carries things",
+      "0 Hips P|1 handbag -|1 Hand_Bag -|1 LegArmor -|1 handle_l -|1 legging -|1 LeftUpLeg t|2 LeftLeg k|3 LeftFoot f|"
+      "4 toenail -|1 RightUpLeg T|2 RightLeg K|3 RightFoot F|1 Spine S|2 Spine1 C|3 armor -|3 necklace -|3 headphones -|"
+      "3 alarm -|3 Neck N|4 Head -|5 earring_l -|3 LeftShoulder -|4 LeftArm u|5 LeftForeArm e|6 LeftHand w|"
+      "3 RightShoulder -|4 shoulderpad_r -|4 RightArm U|5 RightForeArm E|6 RightHand W" },
+    { "small letters alone",
+      "0 hips P|1 leftupperleg t|2 leftlowerleg k|3 leftfoot f|1 rightupperleg T|2 rightlowerleg K|3 rightfoot F|"
+      "1 spine S|2 chest C|3 neck N|4 head -|3 leftshoulder -|4 leftupperarm u|5 leftforearm e|6 lefthand w|"
+      "3 rightshoulder -|4 rightupperarm U|5 rightforearm E|6 righthand W" },
 };
 
 /* A pack of a skeleton alone, whose left limbs begin on the left. */
@@ -296,9 +306,56 @@ static void long_chains_take_no_time(void **state)
     }
 }
 
+static void words_are_whole(void **state)
+{
+    static const struct {
+        const char *name, *word;
+        int has;
+    } rows[] = {
+        { "upper_arm.L", "upperarm", 1 },
+        { "upper_arm.L", "arm", 1 },
+        { "mixamorig:LeftHand", "hand", 1 },
+        { "LEFTHAND", "hand", 1 },
+        { "lHand01", "hand", 1 },
+        { "rhand", "hand", 1 },
+        { "handr", "hand", 1 },
+        { "hands", "hand", 1 },
+        { "handbag", "hand", 0 },
+        { "HANDBAG", "hand", 0 },
+        { "handle", "hand", 0 },
+        { "armor", "arm", 0 },
+        { "alarm", "arm", 0 },
+        { "Armature", "arm", 0 },
+        { "legging", "leg", 0 },
+        { "headphones", "head", 0 },
+        { "forehead", "head", 0 },
+        { "necklace", "neck", 0 },
+        { "earring", "ear", 0 },
+        { "LeftEar", "ear", 1 },
+        { "rear", "ear", 1 }, /* as rarm is an arm */
+        { "eyebrow", "eye", 0 },
+        { "J_Adj_L_FaceEye", "eye", 1 },
+        { "toenail", "toe", 0 },
+        { "shoulderpad", "shoulder", 0 },
+        { "lowerback", "back", 1 },
+        { "chestUpper", "chest", 1 },
+        { "brown_shoe", "brow", 0 },
+        { "Brows", "brow", 1 },
+        { "armchair", "hair", 0 },
+        { "HairBack", "hair", 1 },
+        { "", "hand", 0 },
+        { "han", "hand", 0 },
+    };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(rows); i++) {
+        if (noh_name_has(rows[i].name, rows[i].word) != rows[i].has) fail_msg("%s: %s", rows[i].name, rows[i].word);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(words_are_whole),
         cmocka_unit_test(rigs_of_many_programs),
         cmocka_unit_test(a_chest_is_no_arm),
         cmocka_unit_test(long_chains_take_no_time),
