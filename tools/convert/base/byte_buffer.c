@@ -69,17 +69,52 @@ void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX])
     cut[length] = 0;
 }
 
+/* The slot of a name, or a free one. */
+static uint32_t *slot_of(const string_table *s, const char *name)
+{
+    uint32_t slot = noh_hash_name(name) & (s->slot_count - 1u);
+    while (s->slots[slot] && strcmp((char *)s->bytes.bytes + s->slots[slot] - 1u, name) != 0) {
+        slot = (slot + 1u) & (s->slot_count - 1u);
+    }
+    return &s->slots[slot];
+}
+
+/* At least half of the slots are free. */
+static int grow_slots(string_table *s)
+{
+    uint32_t *slots, count = s->slot_count ? 2u * s->slot_count : 64u;
+    if (2u * (s->name_count + 1u) <= s->slot_count) return 0;
+    slots = calloc(count, sizeof *slots);
+    if (!slots) return 1;
+    free(s->slots);
+    s->slots = slots;
+    s->slot_count = count;
+    for (size_t at = 0; at < s->bytes.count; at += strlen((char *)s->bytes.bytes + at) + 1u) {
+        *slot_of(s, (char *)s->bytes.bytes + at) = (uint32_t)at + 1u;
+    }
+    return 0;
+}
+
 uint32_t string_offset(string_table *strings, const char *name)
 {
     char cut[NOH_NAME_BYTES_MAX];
+    uint32_t *slot;
     string_cut(name, cut);
-    for (size_t at = 0; at < strings->bytes.count; at += strlen((char *)strings->bytes.bytes + at) + 1) {
-        if (strcmp((char *)strings->bytes.bytes + at, cut) == 0) {
-            return (uint32_t)at;
-        }
+    strings->bytes.failed |= grow_slots(strings);
+    if (strings->bytes.failed) return 0;
+    slot = slot_of(strings, cut);
+    if (!*slot && buffer_append(&strings->bytes, cut, strlen(cut) + 1u)) {
+        strings->name_count++;
+        *slot = (uint32_t)(strings->bytes.count - strlen(cut));
     }
-    buffer_append(&strings->bytes, cut, strlen(cut) + 1);
-    return (uint32_t)(strings->bytes.count - strlen(cut) - 1);
+    return *slot ? *slot - 1u : 0u;
+}
+
+void string_table_free(string_table *strings)
+{
+    buffer_free(&strings->bytes);
+    free(strings->slots);
+    memset(strings, 0, sizeof *strings);
 }
 
 uint32_t string_hash(const char *name)

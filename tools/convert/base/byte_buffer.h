@@ -32,7 +32,11 @@ static inline uint32_t byte_word(const uint8_t *b)
 /* The names of a pack, one copy of each. */
 typedef struct string_table {
     byte_buffer bytes;
+    uint32_t *slots; /* [slot_count], a power of two: 1 + the offset of a name, by its hash; 0: free */
+    uint32_t slot_count, name_count;
 } string_table;
+
+void string_table_free(string_table *strings);
 
 /* A name as a pack keeps it: cut to the format's limit (its final zero included), never inside a character. */
 void string_cut(const char *name, char cut[NOH_NAME_BYTES_MAX]);

@@ -489,7 +489,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
         buffer_free(out);
     }
     buffer_free(&w.out);
-    buffer_free(&w.strings.bytes);
+    string_table_free(&w.strings);
     free(w.chunks);
     free(w.skin_chunks);
     for (uint32_t i = 0; w.extras && i < m->mesh_count; i++) buffer_free(&w.extras[i].influences);

@@ -6,20 +6,33 @@
 #include "convert/model/model_build.h"
 
 /* A scale of 0 counts as positive: the sign then comes from the other axes, as in the pose once the scale grows. */
-static int node_side(const model *m, uint32_t node)
+static int own_side(const model_node *node)
 {
     int side = 1;
-    for (uint32_t n = node; n != MODEL_NONE; n = m->nodes[n].parent) {
-        for (int i = 0; i < 3; i++) side = m->nodes[n].scale[i] < 0.0f ? -side : side;
-    }
+    for (int i = 0; i < 3; i++) side = node->scale[i] < 0.0f ? -side : side;
     return side;
 }
 
-static int joint_side(const model *m, const model_skin *skin, uint32_t joint)
+/* With its parents; sides [nodes] is filled from this node up to one that is known, 0: not yet. */
+static int node_side(const model *m, uint32_t node, signed char *sides)
 {
+    int side = 1;
+    uint32_t n = node;
+    for (; n != MODEL_NONE && !sides[n]; n = m->nodes[n].parent) side *= own_side(&m->nodes[n]);
+    side *= n != MODEL_NONE ? sides[n] : 1;
+    for (n = node; n != MODEL_NONE && !sides[n]; n = m->nodes[n].parent) {
+        sides[n] = (signed char)side;
+        side *= own_side(&m->nodes[n]);
+    }
+    return sides[node];
+}
+
+static int joint_side(const model *m, const model_skin *skin, uint32_t joint, signed char *node_sides)
+{
+    const int side = node_side(m, skin->joints[joint], node_sides);
     double bind[16];
     affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
-    return affine_determinant(bind) < 0.0 ? -node_side(m, skin->joints[joint]) : node_side(m, skin->joints[joint]);
+    return affine_determinant(bind) < 0.0 ? -side : side;
 }
 
 /* ---- all of it ---- */
@@ -101,14 +114,15 @@ static int wind_meshes(model *m, uint32_t index, const signed char *sides)
 
 int skins_mirror(model *m)
 {
-    int failed = 0;
+    signed char *node_sides = model_zeros(m->node_count, 1);
+    int failed = !node_sides;
     for (uint32_t s = 0; !failed && s < m->skin_count; s++) {
         const model_skin *skin = &m->skins[s];
         signed char *sides = model_zeros(skin->joint_count, 1);
         uint32_t mirrored = 0;
-        if (!sides) return 1;
-        for (uint32_t j = 0; j < skin->joint_count; j++) {
-            sides[j] = (signed char)joint_side(m, skin, j);
+        failed = !sides;
+        for (uint32_t j = 0; j < skin->joint_count && sides; j++) {
+            sides[j] = (signed char)joint_side(m, skin, j, node_sides);
             mirrored += sides[j] < 0;
         }
         if (mirrored && mirrored == skin->joint_count) {
@@ -118,6 +132,7 @@ int skins_mirror(model *m)
         }
         free(sides);
     }
+    free(node_sides);
     return failed;
 }
 
