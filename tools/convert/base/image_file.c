@@ -109,6 +109,16 @@ static int decode_bmp(const unsigned char *bytes, size_t count, uint64_t *pixels
            decode(bytes, count, image, error);
 }
 
+/* Formats that are read: a file of one that no reader takes was cut off. */
+static int is_cut_picture(const file_kind *kind)
+{
+    static const char *const endings[] = { ".png", ".jpg", ".psd" };
+    for (size_t i = 0; kind && i < sizeof endings / sizeof endings[0]; i++) {
+        if (kind->ending && strcmp(kind->ending, endings[i]) == 0) return 1;
+    }
+    return 0;
+}
+
 static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixels_left, image_file *image,
                         model_error *error)
 {
@@ -123,7 +133,7 @@ static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixe
     } else if (is_psd || (!kind && tga_begins(bytes, count))) {
         failed = (is_psd ? psd_read : tga_read)(bytes, count, most, &image->width, &image->height, &image->channels,
                                                 &image->rgba, error);
-    } else if (kind && strstr(".png .jpg .psd", kind->ending)) {
+    } else if (is_cut_picture(kind)) {
         return model_fail(error, "", "it is %s of %zu bytes, which was cut off: save or copy it again", kind->what,
                           count);
     } else {
