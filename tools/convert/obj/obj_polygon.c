@@ -151,7 +151,6 @@ int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles, ui
         p.before = model_zeros(count, sizeof *p.before);
         p.ear = model_zeros(count, 1);
         failed = !p.next || !p.before || !p.ear ? 1 : (uint64_t)count * count > *steps ? 2 : clip_ears(&p, triangles);
-        if (failed == 2) make_fan(count, triangles);
     }
     free(p.at);
     free(p.next);

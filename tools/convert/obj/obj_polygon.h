@@ -19,7 +19,7 @@ extern "C" {
  * points     [count][3], count at least 3; need not lie in one plane
  * triangles  [count - 2][3] places among the points
  * steps      OBJ_CUT_STEPS before a file's first polygon
- * Returns 0; 1 when out of memory; 2 where too few steps are left: triangles then has a fan. */
+ * Returns 0; 1 when out of memory; 2 where too few steps are left. */
 int obj_polygon_cut(const float *points, uint32_t count, uint32_t *triangles, uint64_t *steps);
 
 #ifdef __cplusplus
