@@ -2,6 +2,7 @@
 #include "clips_internal.h"
 
 #include <algorithm>
+#include <cfloat>
 #include <cmath>
 #include <cstring>
 #include <memory>
@@ -227,7 +228,9 @@ static void sample_track(const set_job &job, const track &t, const timing &when,
                                     where.c_str(), time_s));
         if (c.path == MODEL_PATH_ROTATION) quat_align(value.data(), before.data());
         for (size_t i = 0; i < c.width; ++i)
-            out[frame * stride + i] = to_float(value[i], where + text(" at %g s", time_s));
+            out[frame * stride + i] = std::fabs(value[i]) <= static_cast<double>(FLT_MAX)
+                                          ? static_cast<float>(value[i]) /* the place is text: made if it is needed */
+                                          : to_float(value[i], where + text(" at %g s", time_s));
         before = value;
     }
 }

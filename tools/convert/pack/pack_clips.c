@@ -255,6 +255,35 @@ static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s,
     return failed;
 }
 
+/* Frames of a joint that all clips may have: of mocap with the usual effort, 70 s of a processor. */
+#define WORK_USUAL (UINT64_C(1) << 20)
+#define WORK_QUICK (3u * WORK_USUAL)
+
+static int check_work(raw_set **sets, uint32_t set_count, uint32_t effort, model_error *error)
+{
+    const uint64_t limit = effort == 1 ? WORK_QUICK : WORK_USUAL;
+    const raw_clip *longest = NULL;
+    uint64_t sum = 0, most = 0;
+    for (uint32_t i = 0; i < set_count; i++) {
+        for (uint32_t c = 0; c < sets[i]->clip_count; c++) {
+            const raw_clip *clip = &sets[i]->clips[c];
+            const uint64_t work = (uint64_t)clip->frame_count * clip->joint_count;
+            sum += work;
+            longest = work > most ? clip : longest;
+            most = work > most ? work : most;
+        }
+    }
+    if (sum <= limit || !longest) return 0;
+    (void)model_fail(
+        error, "",
+        "all clips have %llu frames of a joint, this one %u of %u joints: too many to encode, the limit is "
+        "%llu: lower --rate, cut them, build some as another pack (--only anim)%s",
+        (unsigned long long)sum, longest->frame_count, longest->joint_count, (unsigned long long)limit,
+        effort == 1 ? "" : ", or use --effort 1 (3 times as many)");
+    snprintf(error->where, sizeof error->where, "clip '%.100s'", longest->name);
+    return 1;
+}
+
 int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *s, encoded_clips *out, model_error *error)
 {
     uint32_t total = 0;
@@ -270,7 +299,8 @@ int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *s, en
         snprintf(error->what, sizeof error->what, "out of memory");
         return 1;
     }
-    failed = named_errors_check(&s->clip_errors, &s->joint_errors, sets, set_count, error);
+    failed = named_errors_check(&s->clip_errors, &s->joint_errors, sets, set_count, error) ||
+             (!s->skeletons_only && check_work(sets, set_count, s->clip.effort, error));
     for (uint32_t i = 0; i < set_count && !s->skeletons_only && !failed; i++) {
         failed = encode_set(out, i, s, error);
     }
