@@ -367,6 +367,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
         if (priority_assign(s->m, options->priorities[i], error)) return 1;
     }
     if (options->only == CONVERT_CLIPS) return 0;
+    if (pack_check_model(s->m, error)) return 1; /* before work that grows with a power of what is counted */
     if (surface_shells_set(s->m) || size_guess(s->m, options->report)) return model_fail_memory(error);
     if (teeth_paint(s->m)) return model_fail_memory(error);
     if (!options->keep_looks && (eye_paint(s->m) || eye_shade_clear(s->m) || lash_strips_hide(s->m)))

@@ -44,7 +44,7 @@ static char *copy_of(const char *text)
 int recipe_add_row(recipe_text *recipe, const char *target, const char *channel, float weight, uint32_t line)
 {
     recipe_row *rows, *row;
-    if (recipe->count == NOH_FACE_ROWS_MAX) return 1;
+    if (recipe->count == NOH_FACE_ROWS_MAX) return recipe->is_full = 1;
     rows = realloc(recipe->rows, (recipe->count + 1u) * sizeof *rows);
     if (!rows) return 1;
     recipe->rows = rows;
@@ -58,17 +58,25 @@ int recipe_add_row(recipe_text *recipe, const char *target, const char *channel,
 
 int recipe_add_wrinkle(recipe_text *recipe, const char *target, uint32_t region, float weight, uint32_t line)
 {
-    wrinkle_row *rows = NULL;
+    wrinkle_row *rows;
     char *name;
-    if (recipe->wrinkle_count < NOH_FACE_ROWS_MAX) {
-        rows = realloc(recipe->wrinkles, (recipe->wrinkle_count + 1u) * sizeof *rows);
-    }
+    if (recipe->wrinkle_count == NOH_FACE_ROWS_MAX) return recipe->is_full = 1;
+    rows = realloc(recipe->wrinkles, (recipe->wrinkle_count + 1u) * sizeof *rows);
     if (!rows) return 1;
     recipe->wrinkles = rows;
     name = copy_of(target);
     if (!name) return 1;
     rows[recipe->wrinkle_count++] = (wrinkle_row){ name, region, line, weight };
     return 0;
+}
+
+int recipe_fail(const recipe_text *recipe, model_error *error)
+{
+    if (!recipe || !recipe->is_full) return model_fail_memory(error);
+    return model_fail(error, "",
+                      "the face's recipe has more than %u rows, with those that names of targets and extras add: use "
+                      "--no-correctives, or fewer targets whose names join others (a_b) or end in hundredths (a50)",
+                      NOH_FACE_ROWS_MAX);
 }
 
 static int add_row(text_scan *s, recipe_text *recipe, uint32_t line, const char *channel, text_word word, float weight)

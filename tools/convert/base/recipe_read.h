@@ -30,6 +30,7 @@ typedef struct recipe_text {
     recipe_row *rows;
     wrinkle_row *wrinkles; /* for wrinkles_make; packs have the resulting table */
     uint32_t count, wrinkle_count;
+    int is_full;       /* a row found no room */
     uint32_t tints[4]; /* colour of each region of colour: 0x1RRGGBB, sRGB; 0: none */
 } recipe_text;
 
@@ -41,10 +42,13 @@ recipe_text *recipe_new(void); /* NULL: out of memory */
 /* Add the lines of a text. 0, or 1 with *line and *error; what was read before stays. */
 int recipe_add_text(recipe_text *recipe, const char *text, size_t size, uint32_t *line, model_error *error);
 
-/* Add one row. 0, or 1 when there are too many or memory is out. */
+/* Add one row. 0, or 1 when there are too many or memory is out, as recipe_fail says. */
 int recipe_add_row(recipe_text *recipe, const char *target, const char *channel, float weight, uint32_t line);
 
 int recipe_add_wrinkle(recipe_text *recipe, const char *target, uint32_t region, float weight, uint32_t line);
+
+/* Why rows could not be added; NULL: out of memory. Returns 1. */
+int recipe_fail(const recipe_text *recipe, model_error *error);
 
 /* 0, or 1 with *line and *error; free in both cases. */
 int recipe_read(const char *path, recipe_text **out, uint32_t *line, model_error *error);

@@ -82,9 +82,7 @@ static int read_recipe(const convert_options *options, const source *s, void **m
         recipe_add_known(recipe, s->m, &known) || recipe_split_whole(recipe, s->m) ||
         (s->m->mesh_count && add_joints(recipe, s)) ||
         (!options->no_correctives && recipe_add_named(recipe, s->m, &named))) {
-        (void)snprintf(failure->error.what, sizeof failure->error.what,
-                       "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
-        return 1;
+        return recipe_fail(recipe, &failure->error);
     }
     if (named && options->report) {
         fprintf(options->report, "%u correctives by target names (--no-correctives turns them off)\n", named);

@@ -75,15 +75,17 @@ static int draws_another(const noh_pack *pack, uint32_t index, const noh_node *s
     return self && node != self && node->mesh != NOH_NONE && !noh_pack_mesh_at(pack, node->mesh, mesh, NULL);
 }
 
-static int place_others(light_surface *s, const noh_pack *pack, const noh_node *self)
+static int place_others(light_surface *s, const noh_pack *pack, const noh_node *self, model_error *error)
 {
     float *out = s->triangles + 9u * (size_t)s->own_count;
     uint32_t *corners = malloc((3u * (size_t)s->other_count + 1u) * sizeof *corners);
     double world[16], to_mesh[16], m[16];
-    int failed = !corners;
-    if (self) {
+    int failed = !corners && model_fail(error, s->mesh.name, "out of memory");
+    if (self && !failed) {
         world_of(self, world);
-        failed |= affine_invert(world, to_mesh);
+        failed = affine_invert(world, to_mesh) &&
+                 model_fail(error, s->mesh.name,
+                            "the matrix of its node has no inverse: give the node a scale other than 0");
     }
     for (uint32_t i = 0; i < pack->node_count && !failed; i++) {
         noh_mesh mesh;
@@ -185,9 +187,7 @@ int light_surface_open(const noh_pack *pack, uint32_t mesh, light_surface *out, 
     }
     (void)shading_triangles(&out->mesh, out->corners);
     out->least = mean_edge(out) / 12.0f;
-    if (place_others(out, pack, self)) {
-        return model_fail(error, out->mesh.name, "out of memory, or a node's matrix has no inverse");
-    }
+    if (place_others(out, pack, self, error)) return 1;
     return light_surface_pose(out, NULL, error);
 }
 

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "convert/pack/pack_write.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_core.h"
@@ -128,6 +129,7 @@ int pack_transfer(const noh_pack *pack, const transfer_settings *settings, byte_
     const uint32_t count = pack->chunk_count + pack->runs[NOH_CHUNK_MESH].count;
     copier c;
     int failed, refused = 0;
+    size_t bytes;
     if (count > NOH_PACK_CHUNKS_MAX) {
         return model_fail(error, "", "more than %u chunks with a transfer for each mesh: build several packs",
                           NOH_PACK_CHUNKS_MAX);
@@ -142,12 +144,12 @@ int pack_transfer(const noh_pack *pack, const transfer_settings *settings, byte_
     if (!failed) {
         refused = copy(&c);
     }
-    failed |= !refused && (out->failed || out->count > NOH_PACK_BYTES_MAX);
+    bytes = out->count;
+    failed |= !refused && (out->failed || bytes > NOH_PACK_BYTES_MAX);
     light_rays_free(&c.rays);
     free(c.chunks);
     if (failed || refused) {
         buffer_free(out);
     }
-    return failed ? model_fail(error, "", "out of memory, or the pack would be over %u bytes", NOH_PACK_BYTES_MAX)
-                  : refused;
+    return failed ? pack_fail_size(bytes, error) : refused;
 }

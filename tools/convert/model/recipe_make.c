@@ -95,6 +95,7 @@ int recipe_add_extras(recipe_text *recipe, model *m)
     for (uint32_t c = 0; !failed && c < 4; c++) {
         if (!recipe->tints[c]) recipe->tints[c] = extras->tints[c];
     }
+    recipe->is_full |= extras && extras->is_full;
     recipe_free(extras);
     return failed;
 }
@@ -252,72 +253,131 @@ typedef struct parts {
     uint32_t count;
 } parts;
 
-/* A target's name followed by two digits, 10 to 90, is the target at that many hundredths. */
-static int read_part(const model_mesh *mesh, const char *from, size_t size, part *out)
+/* Parts of one name, from the start or behind a joint, up to a joint or the end: each is looked up once, and not for
+ * each cut. */
+typedef struct part_finder {
+    const char **names; /* [count] the mesh's targets, sorted */
+    uint32_t count;
+    uint8_t tried[JOINTS_MAX + 1][JOINTS_MAX + 2], is_part[JOINTS_MAX + 1][JOINTS_MAX + 2];
+    part parts[JOINTS_MAX + 1][JOINTS_MAX + 2];
+} part_finder;
+
+static int by_name(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+static int part_finder_make(part_finder *f, const model_mesh *mesh)
+{
+    memset(f, 0, sizeof *f);
+    f->names = malloc(((size_t)mesh->target_count + 1u) * sizeof *f->names);
+    if (!f->names) return 1;
+    for (; f->count < mesh->target_count; f->count++) f->names[f->count] = mesh->targets[f->count].name;
+    qsort(f->names, f->count, sizeof *f->names, by_name);
+    return 0;
+}
+
+static int is_target(const part_finder *f, const char *name)
+{
+    return bsearch(&name, f->names, f->count, sizeof *f->names, by_name) != NULL;
+}
+
+static int is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* A target's name followed by two digits, 10 to 90, is the target at that many hundredths; target_110 is the 110th of a
+ * row. */
+static int read_part(const part_finder *f, const char *from, size_t size, part *out)
 {
     if (size == 0 || size >= sizeof out->name - 1u) return 0;
     memcpy(out->name, from, size);
     out->name[size] = '\0';
     out->peak = 1.0f;
-    if (size > 2 && from[size - 1] >= '0' && from[size - 1] <= '9' && from[size - 2] >= '1' && from[size - 2] <= '9') {
+    if (size > 2 && is_digit(from[size - 1]) && is_digit(from[size - 2]) && from[size - 2] != '0' &&
+        !is_digit(from[size - 3])) {
         out->name[size - 2] = '\0';
-        if (model_find_target(mesh, out->name) != MODEL_NONE) {
+        if (is_target(f, out->name)) {
             out->peak = (float)(10 * (from[size - 2] - '0') + (from[size - 1] - '0')) / 100.0f;
             return 1;
         }
         out->name[size - 2] = from[size - 2];
     }
-    return model_find_target(mesh, out->name) != MODEL_NONE;
+    return is_target(f, out->name);
+}
+
+static const part *find_part(part_finder *f, uint32_t first, uint32_t last, const char *from, size_t size)
+{
+    if (!f->tried[first][last]) {
+        f->tried[first][last] = 1;
+        f->is_part[first][last] = (uint8_t)read_part(f, from, size, &f->parts[first][last]);
+    }
+    return f->is_part[first][last] ? &f->parts[first][last] : NULL;
 }
 
 /* Cut a name at those underscores whose bits are set. 0: not all parts are targets, or one is there twice. */
-static int cut(const model_mesh *mesh, const char *name, uint32_t bits, parts *out)
+static int cut(part_finder *f, const char *name, uint32_t bits, parts *out)
 {
     const char *from = name;
-    uint32_t joint = 0;
+    uint32_t joint = 0, first = 0;
     out->count = 0;
     for (const char *at = name;; at++) {
         if (*at && (*at != '_' || joint >= JOINTS_MAX || !(bits >> joint++ & 1u))) continue;
-        if (out->count == PARTS_MAX || !read_part(mesh, from, (size_t)(at - from), &out->all[out->count])) return 0;
+        const part *found = out->count < PARTS_MAX
+                                ? find_part(f, first, *at ? joint : JOINTS_MAX + 1, from, (size_t)(at - from))
+                                : NULL;
+        if (!found) return 0;
         for (uint32_t i = 0; i < out->count; i++) {
-            if (strcmp(out->all[i].name, out->all[out->count].name) == 0) return 0;
+            if (strcmp(out->all[i].name, found->name) == 0) return 0;
         }
-        out->count++;
+        out->all[out->count++] = *found;
         from = at + 1;
+        first = joint;
         if (!*at) break;
     }
     return out->count > 1 || out->all[0].peak < 1.0f;
 }
 
 /* The cut into the most parts, so that jawOpen_smile_frown is of three targets and not of jawOpen_smile and frown. */
-static int split_name(const model_mesh *mesh, const char *name, parts *best)
+static int split_name(part_finder *f, const char *name, parts *best)
 {
     uint32_t joints = 0;
+    memset(f->tried, 0, sizeof f->tried);
     best->count = 0;
     for (const char *at = name; *at; at++) joints += *at == '_';
     joints = joints < JOINTS_MAX ? joints : JOINTS_MAX;
     for (uint32_t bits = 0; bits < 1u << joints; bits++) {
         parts now;
-        if (cut(mesh, name, bits, &now) && now.count > best->count) *best = now;
+        if (cut(f, name, bits, &now) && now.count > best->count) *best = now;
     }
     return best->count > 0;
 }
 
-int recipe_add_named(recipe_text *recipe, const model *m, uint32_t *count)
+static int add_named_of(recipe_text *recipe, part_finder *f, const model_mesh *mesh, uint32_t *count)
 {
-    *count = 0;
-    for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t t = 0; t < m->meshes[i].target_count; t++) {
-            recipe_row row = { m->meshes[i].targets[t].name, "+", 1.0f, 0 };
-            parts found;
-            if (!split_name(&m->meshes[i], row.target, &found) || has_row(recipe, recipe->count, &row)) continue;
-            for (uint32_t p = 0; p < found.count; p++) {
-                char channel[NOH_NAME_BYTES_MAX + 1u];
-                (void)snprintf(channel, sizeof channel, "+%s", found.all[p].name);
-                if (recipe_add_row(recipe, row.target, channel, found.all[p].peak, 0)) return 1;
-            }
-            ++*count;
+    for (uint32_t t = 0; t < mesh->target_count; t++) {
+        recipe_row row = { mesh->targets[t].name, "+", 1.0f, 0 };
+        parts found;
+        if (!split_name(f, row.target, &found) || has_row(recipe, recipe->count, &row)) continue;
+        for (uint32_t p = 0; p < found.count; p++) {
+            char channel[NOH_NAME_BYTES_MAX + 1u];
+            (void)snprintf(channel, sizeof channel, "+%s", found.all[p].name);
+            if (recipe_add_row(recipe, row.target, channel, found.all[p].peak, 0)) return 1;
         }
+        ++*count;
     }
     return 0;
+}
+
+int recipe_add_named(recipe_text *recipe, const model *m, uint32_t *count)
+{
+    int failed = 0;
+    *count = 0;
+    for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
+        part_finder finder;
+        failed = part_finder_make(&finder, &m->meshes[i]) || add_named_of(recipe, &finder, &m->meshes[i], count);
+        free(finder.names);
+    }
+    return failed;
 }

@@ -457,6 +457,16 @@ static void write_chunks(pack_writer *w)
     }
 }
 
+int pack_fail_size(size_t bytes, model_error *error)
+{
+    if (bytes <= NOH_PACK_BYTES_MAX) return model_fail_memory(error);
+    return model_fail(
+        error, "",
+        "the pack would be %zu bytes, and the limit is %u: build parts of it as packs of their own (--only), "
+        "or use --texture-max",
+        bytes, NOH_PACK_BYTES_MAX);
+}
+
 int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const *encodings, const encoded_clips *made,
                byte_buffer *out, model_error *error)
 {
@@ -483,9 +493,7 @@ int pack_write(const model *m, const mesh_levels *levels, morph_encoding *const 
     failed = w.refused || !w.chunks || !w.skin_chunks || !w.extras || w.out.failed || w.strings.bytes.failed ||
              assemble(&w, out);
     if (failed && !w.refused) {
-        snprintf(error->what, sizeof error->what, "out of memory, or the pack would be over %u bytes",
-                 NOH_PACK_BYTES_MAX);
-        error->where[0] = 0;
+        (void)pack_fail_size(w.out.count > out->count ? w.out.count : out->count, error);
         buffer_free(out);
     }
     buffer_free(&w.out);

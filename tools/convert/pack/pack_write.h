@@ -10,6 +10,9 @@
 int pack_check_model(const model *m, model_error *error);
 int pack_check_encoding(const model_mesh *m, const morph_encoding *e, model_error *error);
 
+/* Why a pack could not be made when it had this size: the limit, or memory. Returns 1. */
+int pack_fail_size(size_t bytes, model_error *error);
+
 struct encoded_clips;
 
 /* Build a pack. levels[mesh_count], or NULL: no mesh has coarser ones; encodings[mesh_count], none of them NULL; made

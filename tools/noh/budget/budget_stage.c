@@ -72,6 +72,15 @@ static void apply_options(const budget_args *a, noh_stage_desc *desc)
     desc->morph_path = (uint32_t)a->figure.path;
 }
 
+/* Why a crowd has no size. */
+static int fail_crowd(const char *subject, const noh_crowd_desc *desc)
+{
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_crowd *crowd;
+    (void)noh_crowd_init(NULL, 0, desc, &crowd, &error);
+    return tool_fail_error(subject, &error);
+}
+
 /* The parts of a place in addition to its stage: agents, flow fields, smart objects and walkers. */
 static int add_place(stage_budget *b, const place_file *place, const place_people *people)
 {
@@ -82,7 +91,7 @@ static int add_place(stage_budget *b, const place_file *place, const place_peopl
     const size_t whole = noh_crowd_size(&crowd);
     crowd.field_count = 0;
     const size_t agents = noh_crowd_size(&crowd);
-    if (!whole) return tool_fail(b->subject, "the place is too large for a crowd, or has too many obstacles");
+    if (!whole) return fail_crowd(b->subject, &crowd);
     int status = stage_budget_add(b, "crowd", agents, 0);
     if (!status && whole != agents) status = stage_budget_add(b, "flow fields", whole - agents, 0);
     if (!status && smart.object_count) status = stage_budget_add(b, "smart objects", noh_smart_size(&smart), 0);

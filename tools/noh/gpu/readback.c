@@ -122,7 +122,7 @@ static void use(readback *r, GLuint program, const noh_gl_morph_binding *b, cons
     noh_gl_morph_bind(gl, b);
 }
 
-static int finish(readback *r, bit_target *t, int status)
+static int finish(readback *r, bit_target *t, const char *failed)
 {
     const noh_gl_api *gl = &r->g->gl;
     GLenum error = gl->GetError();
@@ -132,9 +132,7 @@ static int finish(readback *r, bit_target *t, int status)
     gl->BindVertexArray(0);
     gl->UseProgram(0);
     target_close(gl, t);
-    if (status) {
-        return tool_fail("readback", "out of memory, or the driver cannot create an RGBA32UI target");
-    }
+    if (failed) return tool_fail("readback", "%s", failed);
     return error ? tool_fail("readback", "GL error 0x%x", error) : 0;
 }
 
@@ -143,6 +141,7 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
     uint32_t width = 1u << mesh->header->morph_width_log2, height = mesh->header->morph_height;
     size_t texels = (size_t)width * height;
     const int two = binding->layer_count == 2;
+    const char *failed = NULL;
     bit_target t;
     int status = 0;
     if (!texels) {
@@ -154,16 +153,17 @@ int readback_layers(readback *r, const noh_mesh *mesh, const noh_gl_morph_bindin
     if (status) {
         return status;
     }
-    status = target_open(&r->g->gl, &t, width, height);
-    if (!status) {
+    if (target_open(&r->g->gl, &t, width, height)) {
+        failed = "the driver cannot draw to an RGBA32UI buffer";
+    } else {
         use(r, r->layers_programs[two], binding, &t);
         r->g->gl.BindVertexArray(r->vertex_array);
         r->g->gl.DrawArraysInstanced(GL_POINTS, 0, (GLsizei)texels, 1);
-        for (unsigned i = 0; i < 3 && !status; i++) {
-            status = target_read(&r->g->gl, &t, i, texels, out + 3 * texels * i);
+        for (unsigned i = 0; i < 3 && !failed; i++) {
+            if (target_read(&r->g->gl, &t, i, texels, out + 3 * texels * i)) failed = "out of memory";
         }
     }
-    return finish(r, &t, status);
+    return finish(r, &t, failed);
 }
 
 int readback_buffer(readback *r, GLuint buffer, size_t offset, size_t bytes, void *out)

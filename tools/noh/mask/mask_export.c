@@ -52,7 +52,7 @@ static int of_model(const char *path, uint32_t size, region_mask *mask)
     memset(&s, 0, sizeof s);
     int failed = source_read(path, &reading, &s, &error);
     if (!failed && (!recipe || recipe_add_extras(recipe, s.m) || recipe_add_known(recipe, s.m, &known))) {
-        failed = model_fail(&error, "", "out of memory for the recipe, or it has more than %u rows", NOH_FACE_ROWS_MAX);
+        failed = recipe_fail(recipe, &error);
     }
     failed = failed || wrinkles_make(s.m, &settings, &error);
     source_free(&s);
