@@ -11,10 +11,9 @@ out vec3 noh_v_gaze;
 out vec3 noh_v_up;
 out vec3 noh_v_out;
 
-/* The eye's gaze and up direction, skinned, in the mesh's own space, where y is up, or z if eyes look along y. They
- * turn with the normal, by targets, and with the joints. model: before skinning; before, after: the normal before
- * and after targets */
-void noh_gaze_vertex(vec3 model, vec3 before, vec3 after, out vec3 gaze, out vec4 up)
+/* The eye's gaze and up direction before skinning, in the mesh's own space, where y is up, or z if eyes look along y.
+ * They turn with the normal by targets. before, after: the normal before and after targets */
+void noh_gaze_vertex(vec3 before, vec3 after, out vec3 gaze, out vec4 up)
 {
     vec3 turn = cross(before, after), upwards;
     float radius = length(noh_surface_values.xyz);
@@ -22,7 +21,6 @@ void noh_gaze_vertex(vec3 model, vec3 before, vec3 after, out vec3 gaze, out vec
     upwards = abs(gaze.y) > 0.7 ? vec3(0.0, 0.0, 1.0) : vec3(0.0, 1.0, 0.0);
     gaze = normalize(gaze + cross(turn, gaze));
     up = vec4(upwards + cross(turn, upwards), 1.0);
-    noh_skin_vertex(model, gaze, up);
 }
 
 /* Both and the direction away from the nose, in the world. x, y, z: rows of the world matrix */

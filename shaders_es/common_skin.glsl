@@ -113,12 +113,41 @@ vec4 noh_user()
 #define NOH_PLACES_HIGH 0u
 #endif
 
-/* The first row of the i-th joint. */
-int noh_joint_row(int i)
+#if NOH_DRAWN == 8 && (defined(NOH_PALETTE_TEXTURE) || defined(NOH_DUAL_QUATERNION))
+/* The joints after the first, one at a time. The loop ends where no weight is left, so that no compiler unrolls it:
+ * unrolled, the palette's rows of several joints wait in registers, and a V3D and a Mali spill (tools/phones). */
+#define NOH_JOINTS_IN_TURN
+struct noh_others {
+    uvec2 places;
+    uvec4 low; /* weights, from the lowest bit up; high: the last word */
+    uint high;
+    int row; /* the first of the joint's */
+    float weight;
+};
+
+noh_others noh_others_of()
 {
-    uint places = i < 4 ? NOH_PLACES_LOW : NOH_PLACES_HIGH;
-    return NOH_JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
+    uvec3 more = noh_a_more_influences;
+    return noh_others(noh_a_influences.xy, uvec4(noh_a_influences.zw, more.xy), more.z, 0, 0.0);
 }
+
+#define NOH_OTHERS_LEFT(o, i) (o.low != uvec4(0u) || o.high != 0u)
+
+void noh_next(inout noh_others o, int i)
+{
+    uint bits = i == 1 ? 22u : 21u;
+    o.places = uvec2(o.places.x >> 8 | o.places.y << 24, o.places.y >> 8);
+    o.row = NOH_JOINT_ROW(int(o.places.x & 255u));
+    o.weight = float(o.low.x & (1u << bits) - 1u) / 4194304.0;
+    o.low = o.low >> bits | uvec4(o.low.yzw, o.high) << 32u - bits;
+    o.high >>= bits;
+}
+#else
+struct noh_others {
+    float weights[NOH_DRAWN];
+    int row;
+    float weight;
+};
 
 /* All weights, in units of 2^-22. The first is not stored: it is 1 minus the others. */
 void noh_stored_weights(out float w[NOH_INFLUENCES])
@@ -147,8 +176,9 @@ void noh_stored_weights(out float w[NOH_INFLUENCES])
 }
 
 /* The weights of the joints used, except for the first, which is again 1 minus the others. */
-void noh_drawn_weights(out float drawn[NOH_DRAWN])
+noh_others noh_others_of()
 {
+    noh_others o;
     float stored[NOH_INFLUENCES], sum = 4194304.0;
     noh_stored_weights(stored);
 #if NOH_DRAWN < NOH_INFLUENCES
@@ -158,9 +188,20 @@ void noh_drawn_weights(out float drawn[NOH_DRAWN])
     }
 #endif
     for (int i = 1; i < NOH_DRAWN; i++) {
-        drawn[i] = stored[i] / sum;
+        o.weights[i] = stored[i] / sum;
     }
+    return o;
 }
+
+#define NOH_OTHERS_LEFT(o, i) (i < NOH_DRAWN)
+
+void noh_next(inout noh_others o, int i)
+{
+    uint places = i < 4 ? NOH_PLACES_LOW : NOH_PLACES_HIGH;
+    o.row = NOH_JOINT_ROW(int(places >> uint(8 * (i & 3)) & 255u));
+    o.weight = o.weights[i];
+}
+#endif
 
 /* 1 with a number's sign, and 1 for both zeros. Not a choice between -1 and 1: compilers would turn a product with it
  * into a choice between the two products, and keep both. */
@@ -178,8 +219,14 @@ vec3 noh_unit_or(vec3 v, vec3 otherwise)
 /* ---- the two ways to blend ---- */
 
 /* Both add the first joint last: its weight is known then, and the others need not be kept. */
+#define NOH_FIRST_ROW NOH_JOINT_ROW(int(NOH_PLACES_LOW & 255u))
 
 #ifdef NOH_DUAL_QUATERNION
+struct noh_blend {
+    vec4 rotation, dual;
+    vec3 x, y, z; /* rows of the stretch */
+};
+
 vec3 noh_rotate(vec4 q, vec3 v)
 {
     return v + 2.0 * cross(q.xyz, cross(q.xyz, v) + q.w * v);
@@ -190,85 +237,90 @@ vec3 noh_rotate(vec4 q, vec3 v)
  * quaternion. Stretches are blended linearly and applied first. As q and -q are the same rotation, each dual quaternion
  * is added with the sign that puts it in the strongest joint's hemisphere, so that the blend takes the shorter arc; the
  * sum is normalised. Its translation is twice the vector part of dual * conjugate(rotation). */
-void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+noh_blend noh_blend_joints()
 {
-    float w[NOH_DRAWN];
-    int row = noh_joint_row(0);
+    noh_others o = noh_others_of();
+    int row = NOH_FIRST_ROW;
     vec4 pivot = NOH_PALETTE_ROW(row), rotation = vec4(0.0), dual = rotation, h = rotation, more = rotation;
-    vec3 x, y, z, cx, cy, cz;
-    float size, side, first = 1.0;
-    noh_drawn_weights(w);
-    for (int i = 1; i < NOH_DRAWN; i++) {
-        vec4 q;
-        row = noh_joint_row(i);
-        q = NOH_PALETTE_ROW(row);
-        side = noh_side(dot(pivot, q));
-        rotation += q * (side * w[i]);
-        dual += NOH_PALETTE_ROW(row + 1) * (side * w[i]);
-        h += NOH_PALETTE_ROW(row + 2) * w[i];
-        more += NOH_PALETTE_ROW(row + 3) * w[i];
-        first -= w[i];
+    float first = 1.0;
+    for (int i = 1; NOH_OTHERS_LEFT(o, i); i++) {
+        noh_next(o, i);
+        vec4 q = NOH_PALETTE_ROW(o.row);
+        float signed_weight = noh_side(dot(pivot, q)) * o.weight;
+        rotation += q * signed_weight;
+        dual += NOH_PALETTE_ROW(o.row + 1) * signed_weight;
+        h += NOH_PALETTE_ROW(o.row + 2) * o.weight;
+        more += NOH_PALETTE_ROW(o.row + 3) * o.weight;
+        first -= o.weight;
     }
-    row = noh_joint_row(0);
     rotation += pivot * first;
     dual += NOH_PALETTE_ROW(row + 1) * first;
     h += NOH_PALETTE_ROW(row + 2) * first;
     more += NOH_PALETTE_ROW(row + 3) * first;
-    size = 1.0 / sqrt(dot(rotation, rotation));
-    rotation *= size;
-    dual *= size;
-    x = vec3(h.x, h.w, more.x);
-    y = vec3(h.w, h.y, more.y);
-    z = vec3(more.x, more.y, h.z);
-    cx = cross(y, z);
-    cy = cross(z, x);
-    cz = cross(x, y);
-    side = noh_side(dot(x, cx));
-    position = noh_rotate(rotation, vec3(dot(x, position), dot(y, position), dot(z, position))) +
-               2.0 * (rotation.w * dual.xyz - dual.w * rotation.xyz + cross(rotation.xyz, dual.xyz));
+    float size = 1.0 / sqrt(dot(rotation, rotation));
+    return noh_blend(rotation * size, dual * size, vec3(h.x, h.w, more.x), vec3(h.w, h.y, more.y), vec3(more.xy, h.z));
+}
+
+void noh_skin_by(noh_blend b, inout vec3 position, inout vec3 normal, inout vec4 tangent)
+{
+    vec3 cx = cross(b.y, b.z), cy = cross(b.z, b.x), cz = cross(b.x, b.y);
+    float side = noh_side(dot(b.x, cx));
+    position = noh_rotate(b.rotation, vec3(dot(b.x, position), dot(b.y, position), dot(b.z, position))) +
+               2.0 * (b.rotation.w * b.dual.xyz - b.dual.w * b.rotation.xyz + cross(b.rotation.xyz, b.dual.xyz));
 #ifndef NOH_DEPTH_ONLY
-    normal = noh_unit_or(noh_rotate(rotation, vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side), normal);
-    tangent = vec4(noh_unit_or(noh_rotate(rotation, vec3(dot(x, tangent.xyz), dot(y, tangent.xyz), dot(z, tangent.xyz))), tangent.xyz),
-                   tangent.w * side);
+    vec3 stretched = vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side;
+    normal = noh_unit_or(noh_rotate(b.rotation, stretched), normal);
+    stretched = vec3(dot(b.x, tangent.xyz), dot(b.y, tangent.xyz), dot(b.z, tangent.xyz));
+    tangent = vec4(noh_unit_or(noh_rotate(b.rotation, stretched), tangent.xyz), tangent.w * side);
 #endif
 }
 #else
+struct noh_blend {
+    vec4 x, y, z; /* rows */
+};
+
 /* Linear blending (Granberg 2009, ch. 3): the matrices are blended first, then applied once. Scales need not be
  * uniform, so normals are transformed by the cofactors of the blend, which are its inverse transpose up to a factor.
  * A blend that mirrors flips their sign and the tangent's handedness. */
-void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
+noh_blend noh_blend_joints()
 {
-    float w[NOH_DRAWN];
-    int row;
-    vec4 x = vec4(0.0), y = x, z = x, p = vec4(position, 1.0);
-    vec3 cx, cy, cz;
-    float side, first = 1.0;
-    noh_drawn_weights(w);
-    for (int i = 1; i < NOH_DRAWN; i++) {
-        row = noh_joint_row(i);
-        x += NOH_PALETTE_ROW(row) * w[i];
-        y += NOH_PALETTE_ROW(row + 1) * w[i];
-        z += NOH_PALETTE_ROW(row + 2) * w[i];
-        first -= w[i];
+    noh_others o = noh_others_of();
+    noh_blend b = noh_blend(vec4(0.0), vec4(0.0), vec4(0.0));
+    float first = 1.0;
+    for (int i = 1; NOH_OTHERS_LEFT(o, i); i++) {
+        noh_next(o, i);
+        b.x += NOH_PALETTE_ROW(o.row) * o.weight;
+        b.y += NOH_PALETTE_ROW(o.row + 1) * o.weight;
+        b.z += NOH_PALETTE_ROW(o.row + 2) * o.weight;
+        first -= o.weight;
     }
-    row = noh_joint_row(0);
-    x += NOH_PALETTE_ROW(row) * first;
-    y += NOH_PALETTE_ROW(row + 1) * first;
-    z += NOH_PALETTE_ROW(row + 2) * first;
-    cx = cross(y.xyz, z.xyz);
-    cy = cross(z.xyz, x.xyz);
-    cz = cross(x.xyz, y.xyz);
-    side = noh_side(dot(x.xyz, cx));
-    position = vec3(dot(x, p), dot(y, p), dot(z, p));
+    int row = NOH_FIRST_ROW;
+    b.x += NOH_PALETTE_ROW(row) * first;
+    b.y += NOH_PALETTE_ROW(row + 1) * first;
+    b.z += NOH_PALETTE_ROW(row + 2) * first;
+    return b;
+}
+
+void noh_skin_by(noh_blend b, inout vec3 position, inout vec3 normal, inout vec4 tangent)
+{
+    vec4 p = vec4(position, 1.0);
+    vec3 cx = cross(b.y.xyz, b.z.xyz), cy = cross(b.z.xyz, b.x.xyz), cz = cross(b.x.xyz, b.y.xyz);
+    float side = noh_side(dot(b.x.xyz, cx));
+    position = vec3(dot(b.x, p), dot(b.y, p), dot(b.z, p));
 #ifndef NOH_DEPTH_ONLY
     normal = noh_unit_or(vec3(dot(cx, normal), dot(cy, normal), dot(cz, normal)) * side, normal);
-    tangent = vec4(noh_unit_or(vec3(dot(x.xyz, tangent.xyz), dot(y.xyz, tangent.xyz), dot(z.xyz, tangent.xyz)), tangent.xyz),
-                   tangent.w * side);
+    vec3 turned = vec3(dot(b.x.xyz, tangent.xyz), dot(b.y.xyz, tangent.xyz), dot(b.z.xyz, tangent.xyz));
+    tangent = vec4(noh_unit_or(turned, tangent.xyz), tangent.w * side);
 #endif
 }
 #endif
 #else
+#define noh_blend int
+#define noh_blend_joints() 0
+#define noh_skin_by(blend, position, normal, tangent)
+#endif
+
 void noh_skin_vertex(inout vec3 position, inout vec3 normal, inout vec4 tangent)
 {
+    noh_skin_by(noh_blend_joints(), position, normal, tangent);
 }
-#endif

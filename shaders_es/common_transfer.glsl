@@ -38,21 +38,6 @@ ivec4 noh_more_lobe()
 #endif
 }
 
-#if defined(NOH_CROWD) && NOH_TRANSFER == 4
-#define NOH_PACKED /* noh_fetch: a V3D spills none then; a Mali spills more with order 6, so it is left out there */
-/* Four bytes in one register, and as they were. */
-int noh_lobe_word(ivec4 bytes)
-{
-    bytes &= 255;
-    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
-}
-
-ivec4 noh_lobe_bytes(int word)
-{
-    return ivec4(word << 24, word << 16, word << 8, word) >> 24;
-}
-#endif
-
 /* Rotate `axis` by the smallest rotation from `from` to `to`, both unit: Rodrigues' formula, with the sine as the
  * length of the cross product. Opposite directions do not rotate. */
 vec3 noh_lobe_turn(vec3 axis, vec3 from, vec3 to)

@@ -212,23 +212,52 @@ vec2 noh_uv_of(ivec4 tile)
 }
 #endif
 
-/* In an order that needs few registers: what a crowd's vertices read early and use late is packed before the targets
- * are read, because a V3D reads all attributes first and keeps them across branches. The joints' matrix is used up
- * before the rows of the world are fetched, these before transfer, and what needs neither comes last. Otherwise a
- * V3D or a Mali spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
+/* What is read early and used late. A V3D reads all attributes first and keeps them across branches and loops: where it
+ * would spill, each is kept in one word, and unpacked with the same bits. */
+#if NOH_TRANSFER > 0 && (NOH_DRAWN == 8 || defined(NOH_CROWD))
+#define NOH_BYTES int
+
+int noh_keep(ivec4 bytes)
+{
+    bytes &= 255;
+    return bytes.x | bytes.y << 8 | bytes.z << 16 | bytes.w << 24;
+}
+
+ivec4 noh_kept_bytes(int word)
+{
+    return ivec4(word << 24, word << 16, word << 8, word) >> 24;
+}
+#else
+#define NOH_BYTES ivec4
+#define noh_keep(whole) whole
+#define noh_kept_bytes(whole) whole
+#endif
+
+/* In an order that needs few registers: eight joints in turn are blended first, since their loop needs as many as all
+ * else, and its result few. The blend is used up before the rows of the world are fetched, these before transfer, and
+ * what needs neither comes last. Otherwise a V3D or a Mali spills, and the vertices of a crowd cost up to five times as
+ * much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
+#if NOH_TRANSFER > 0
+    NOH_BYTES first = noh_keep(noh_a_lobe), more = noh_keep(noh_more_lobe());
+#endif
+#ifdef NOH_JOINTS_IN_TURN
+    noh_blend blend = noh_blend_joints();
+#endif
     ivec4 row = noh_tile_row(), tile = ivec4(row.xy & 0xffff, row.z & 0xff, row.w);
-#ifdef NOH_PACKED
-    int tint = row.x >> 16 | row.y >> 16 << 8 | row.z >> 8 << 16;
-    int first = noh_lobe_word(noh_a_lobe), more = noh_lobe_word(noh_more_lobe());
+#if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+#ifdef NOH_UV_TARGETS
+    v.uv = noh_uv_of(tile);
+#endif
+    NOH_BYTES tint = noh_keep(ivec4(row.xy >> 16, row.z >> 8, row.z >> 16));
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_TEETH
     noh_face_vertex(noh_a_rest);
 #endif
-#ifdef NOH_SKIN
+#if defined(NOH_SKIN) && !defined(NOH_JOINTS_IN_TURN)
     noh_face_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
 #endif
     v.normal = noh_direction_of_pair(noh_a_normal);
@@ -238,24 +267,27 @@ noh_vertex noh_fetch()
         noh_morph_frame(v.normal, v.tangent.xyz);
     }
 #ifndef NOH_DEPTH_ONLY
+#if defined(NOH_SKIN) && defined(NOH_JOINTS_IN_TURN)
+    noh_face_vertex(noh_a_rest, noh_direction_of_pair(noh_a_rest_normal));
+#endif
 #ifdef NOH_WRINKLES
     noh_v_moved = v.model - noh_a_rest;
 #endif
-#ifdef NOH_EYE
-    vec3 gaze;
+#endif
+#ifndef NOH_JOINTS_IN_TURN
+    noh_blend blend = noh_blend_joints();
+#endif
+#if defined(NOH_EYE) && !defined(NOH_DEPTH_ONLY)
+    vec3 gaze, nowhere = v.model;
     vec4 up;
-    noh_gaze_vertex(v.model, noh_direction_of_pair(noh_a_rest_normal), v.normal, gaze, up);
+    noh_gaze_vertex(noh_direction_of_pair(noh_a_rest_normal), v.normal, gaze, up);
+    noh_skin_by(blend, nowhere, gaze, up);
 #endif
-#endif
-    noh_skin_vertex(v.model, v.normal, v.tangent);
+    noh_skin_by(blend, v.model, v.normal, v.tangent);
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
-#ifdef NOH_PACKED
-    ivec4 low = noh_lobe_bytes(first), high = noh_lobe_bytes(more);
-#else
-    ivec4 low = noh_a_lobe, high = noh_more_lobe();
-#endif
-    noh_lobe lobe = noh_lobe_of(low, high, noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
+    vec3 rest = noh_direction_of_pair(noh_a_rest_normal);
+    noh_lobe lobe = noh_lobe_of(noh_kept_bytes(first), noh_kept_bytes(more), rest, normalize(v.normal));
     vec3 axis = normalize(noh_world_normal(x, y, z, lobe.axis));
     lobe.occlusion = clamp(lobe.occlusion + noh_morph_occlusion, 0.0, 1.0);
 #endif
@@ -272,7 +304,9 @@ noh_vertex noh_fetch()
     noh_v_transfer = noh_lobe_shade(lobe, axis);
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
+#ifndef NOH_UV_TARGETS
     v.uv = noh_uv_of(tile);
+#endif
 #endif
 #ifndef NOH_DEPTH_ONLY
 #ifdef NOH_WRINKLES
@@ -294,11 +328,7 @@ noh_vertex noh_fetch()
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
     v.color = vec4(noh_a_color.rgb * noh_a_color.rgb, noh_a_color.a);
-#ifdef NOH_PACKED
-    v.tint = noh_tint_of(ivec4(tint, tint >> 8, tint >> 16, tint >> 24) & 255);
-#else
-    v.tint = noh_tint_of(ivec4(row.x >> 16, row.y >> 16, row.z >> 8 & 255, row.z >> 16));
-#endif
+    v.tint = noh_tint_of(noh_kept_bytes(tint) & 255);
 #endif
 #ifdef NOH_OUTLINE
     v.position += noh_outline_step(v, length(x.xyz));

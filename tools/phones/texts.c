@@ -150,7 +150,8 @@ static void put_corners(void)
                     { "x-skin-layers", NOH_FEATURE_SKIN, 0, 0 },
                     { "x-eye-layers", NOH_FEATURE_EYE, 0, 0 },
                     { "x-teeth-layers", NOH_FEATURE_TEETH, 0, 0 },
-                    { "x-skin-streams-crowd", NOH_FEATURE_SKIN, NOH_LAYERS_STREAMS, 1 },
+                    { "x-skin-streams", NOH_FEATURE_SKIN, NOH_LAYERS_STREAMS, 0 },
+                    { "x-skin-layers-crowd", NOH_FEATURE_SKIN, 0, 1 },
                     { "x-skin-direct-crowd", NOH_FEATURE_SKIN, NOH_LAYERS_DIRECT, 1 },
                     { "x-eye-layers-crowd", NOH_FEATURE_EYE, 0, 1 },
                     { "x-eye-direct-crowd", NOH_FEATURE_EYE, NOH_LAYERS_DIRECT, 1 } };
@@ -158,15 +159,15 @@ static void put_corners(void)
         const uint8_t crowd = corners[i].crowd;
         /* As many maps as a material may have. */
         const uint16_t more = crowd ? NOH_FEATURE_SPECULAR_MAP : NOH_FEATURE_WRINKLE_PIXEL;
-        const uint32_t features = (corners[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_EMISSIVE |
-                                             NOH_FEATURE_ALPHA | NOH_FEATURE_WRINKLES | more);
+        const uint32_t features = (corners[i].surface | NORMAL_AND_SURFACE | NOH_FEATURE_EMISSIVE | NOH_FEATURE_ALPHA |
+                                   NOH_FEATURE_WRINKLES | more);
         const noh_gl_variant_key key = { .influences = 8,
                                          .drawn = 8,
                                          .dual_quaternion = crowd,
                                          .texture = crowd,
                                          .crowd = crowd,
                                          .texels = 1,
-                                         .uv_targets = 1,
+                                         .uv_targets = corners[i].layers_uint != NOH_LAYERS_STREAMS,
                                          .layers_uint = corners[i].layers_uint,
                                          .fade = 1,
                                          .encode_srgb = 1,

@@ -47,7 +47,8 @@ noh_gl_variant_key noh_gl_variant_key_of(const noh_mesh *mesh, const noh_gl_skin
     }
     key.texels = (h->flags & NOH_MESH_TEXELS) != 0;
     key.uv_targets = (h->flags & NOH_MESH_UV_TARGETS) != 0;
-    key.layers_uint = (uint8_t)layers_uint;
+    /* A crowd reads no streams: what has them is drawn alone. */
+    key.layers_uint = (uint8_t)(crowd && layers_uint == NOH_LAYERS_STREAMS ? NOH_LAYERS_VERTICES : layers_uint);
     key.view = (uint8_t)view;
     if (mesh->transfer) key.transfer = (uint8_t)(mesh->transfer->order | mesh->transfer->flags);
     return key;
