@@ -80,17 +80,25 @@ says "66000 corners take too long to cut into triangles: triangulate them (mesh 
 
 # ---- clips ----
 
-awk 'BEGIN {
-    print "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation"
-    for (i = 0; i < 349; i++) print "JOINT j" i "\n{\nOFFSET 0 1 0\nCHANNELS 0"
-    print "End Site\n{\nOFFSET 0 1 0\n}"
-    for (i = 0; i < 350; i++) print "}"
-    print "MOTION\nFrames: 3000\nFrame Time: 0.01"
-    for (i = 0; i < 3000; i++) print i % 7, 0, 0
-}' >"$work/long.bvh"
+# long FRAMES: of 350 joints
+long() {
+    awk -v frames="$1" 'BEGIN {
+        print "HIERARCHY\nROOT j\n{\nOFFSET 0 0 0\nCHANNELS 3 Xrotation Yrotation Zrotation"
+        for (i = 0; i < 349; i++) print "JOINT j" i "\n{\nOFFSET 0 1 0\nCHANNELS 0"
+        print "End Site\n{\nOFFSET 0 1 0\n}"
+        for (i = 0; i < 350; i++) print "}"
+        print "MOTION\nFrames: " frames "\nFrame Time: 0.01"
+        for (i = 0; i < frames; i++) print i % 7, 0, 0
+    }' >"$work/long.bvh"
+}
+long 3000
+noh build "$work/long.bvh" -o "$work/out.noh"
+expect 0 'more frames of joints than the usual effort is spent on'
+check 'and says so' grep -q 'all clips have 1050000 frames of a joint, so they are encoded with --effort 1' "$work/out"
+long 12000
 noh build "$work/long.bvh" -o "$work/out.noh" --quiet
 expect 1 'more frames of joints than are encoded'
-says 'all clips have 1050000 frames of a joint, this one 3000 of 350 joints: too many to encode'
+says 'all clips have 4200000 frames of a joint, this one 12000 of 350 joints: too many to encode'
 says 'lower --rate'
 noh build "$work/long.bvh" -o "$work/out.noh" --quiet --rate 2
 expect 0 'fewer frames of it'

@@ -18,7 +18,7 @@ extern "C" {
 
 #define RAW_JOINTS_MAX 4096u
 #define RAW_FRAMES_MAX (1u << 20)             /* 2.4 hours at 120 Hz */
-#define RAW_BYTES_MAX (UINT64_C(1) << 27)     /* of one file's frames: what pack_clips.c encodes at most, of joints */
+#define RAW_BYTES_MAX (UINT64_C(1) << 28)     /* of one file's frames; pack_clips.c encodes 160 MiB of joints at most */
 #define RAW_EVENTS_MAX 65536u                 /* in one clip */
 #define RAW_JOINT_BYTES (10u * sizeof(float)) /* of one joint in one frame */
 

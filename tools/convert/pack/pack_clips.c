@@ -255,13 +255,13 @@ static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s,
     return failed;
 }
 
-/* Frames of a joint that all clips may have: of mocap with the usual effort, 70 s of a processor. */
+/* Frames of a joint in all clips: beyond WORK_USUAL, which take a processor 70 s of mocap with the usual effort, they are
+ * encoded with the least effort, in a third of the time. */
 #define WORK_USUAL (UINT64_C(1) << 20)
-#define WORK_QUICK (3u * WORK_USUAL)
+#define WORK_MAX (UINT64_C(1) << 22)
 
-static int check_work(raw_set **sets, uint32_t set_count, uint32_t effort, model_error *error)
+static int choose_effort(raw_set **sets, uint32_t set_count, clips_settings *s, model_error *error)
 {
-    const uint64_t limit = effort == 1 ? WORK_QUICK : WORK_USUAL;
     const raw_clip *longest = NULL;
     uint64_t sum = 0, most = 0;
     for (uint32_t i = 0; i < set_count; i++) {
@@ -273,19 +273,33 @@ static int check_work(raw_set **sets, uint32_t set_count, uint32_t effort, model
             most = work > most ? work : most;
         }
     }
-    if (sum <= limit || !longest) return 0;
-    (void)model_fail(
-        error, "",
-        "all clips have %llu frames of a joint, this one %u of %u joints: too many to encode, the limit is "
-        "%llu: lower --rate, cut them, build some as another pack (--only anim)%s",
-        (unsigned long long)sum, longest->frame_count, longest->joint_count, (unsigned long long)limit,
-        effort == 1 ? "" : ", or use --effort 1 (3 times as many)");
-    snprintf(error->where, sizeof error->where, "clip '%.100s'", longest->name);
-    return 1;
+    if (sum <= WORK_USUAL || !longest) return 0;
+    if (sum > WORK_MAX) {
+        (void)model_fail(error, "",
+                         "all clips have %llu frames of a joint, this one %u of %u joints: too many to encode, the "
+                         "limit is %llu: lower --rate, cut them, or build some as another pack (--only anim)",
+                         (unsigned long long)sum, longest->frame_count, longest->joint_count,
+                         (unsigned long long)WORK_MAX);
+        snprintf(error->where, sizeof error->where, "clip '%.100s'", longest->name);
+        return 1;
+    }
+    if (s->clip.effort == 1) return 0;
+    s->clip.effort = 1;
+    if (s->warnings) {
+        fprintf(
+            s->warnings,
+            "warning: all clips have %llu frames of a joint, so they are encoded with --effort 1, which may take more "
+            "bytes: build some as another pack (--only anim) for more effort\n",
+            (unsigned long long)sum);
+    }
+    return 0;
 }
 
-int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *s, encoded_clips *out, model_error *error)
+int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *settings, encoded_clips *out,
+                 model_error *error)
 {
+    clips_settings own = *settings;
+    const clips_settings *s = &own;
     uint32_t total = 0;
     int failed = 0;
     memset(out, 0, sizeof *out);
@@ -300,7 +314,7 @@ int clips_encode(raw_set **sets, uint32_t set_count, const clips_settings *s, en
         return 1;
     }
     failed = named_errors_check(&s->clip_errors, &s->joint_errors, sets, set_count, error) ||
-             (!s->skeletons_only && check_work(sets, set_count, s->clip.effort, error));
+             (!s->skeletons_only && choose_effort(sets, set_count, &own, error));
     for (uint32_t i = 0; i < set_count && !s->skeletons_only && !failed; i++) {
         failed = encode_set(out, i, s, error);
     }
