@@ -151,8 +151,7 @@ static int read_model_file(const char *path, const source_options *options, sour
     if (options->identity && s->m->mesh_count && identity_join(s->m, options->identity, error)) {
         return 1;
     }
-    surface_kinds_of_objects(s->m);
-    if (meshes_upright(s->m)) return model_fail_memory(error);
+    if (surface_kinds_of_objects(s->m) || meshes_upright(s->m)) return model_fail_memory(error);
     if (options->split_eyes && s->m->mesh_count && eyes_split(s->m, options->skin.report, error)) {
         return 1;
     }

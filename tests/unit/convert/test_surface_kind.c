@@ -489,12 +489,17 @@ static void objects_name_eyes(void **state)
         const char *nodes[2], *mesh;
         model_alpha alpha;
         uint32_t given, kind;
-    } cases[] = { { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE },
-                  { { "Object", "Object.001" }, "eyeball", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE },
-                  { { "Eye.L", "Button" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN },
-                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_BLEND, 0, NOH_SURFACE_PLAIN },
-                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 1, NOH_SURFACE_PLAIN },
-                  { { "Eyelid.L", "Eyelid.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN } };
+        const char *material; /* NULL: Material.003 */
+        float metallic;
+    } cases[] = { { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE, NULL, 0.0f },
+                  { { "Object", "Object.001" }, "eyeball", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_EYE, NULL, 0.0f },
+                  { { "Eye.L", "Button" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN, NULL, 0.0f },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_BLEND, 0, NOH_SURFACE_PLAIN, NULL, 0.0f },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 1, NOH_SURFACE_PLAIN, NULL, 0.0f },
+                  { { "Eyelid.L", "Eyelid.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN, NULL, 0.0f },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN, "Eyelashes", 0.0f },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN, "hair", 0.0f },
+                  { { "Eye.L", "Eye.R" }, "Sphere", MODEL_ALPHA_OPAQUE, 0, NOH_SURFACE_PLAIN, NULL, 1.0f } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         model_material material = model_material_default();
@@ -504,10 +509,11 @@ static void objects_name_eyes(void **state)
         model m = { .material_count = 1, .materials = &material, .mesh_count = 1, .meshes = &mesh, .node_count = 2 };
         m.nodes = nodes;
         for (int n = 0; n < 2; n++) nodes[n].name = (char *)(uintptr_t)cases[i].nodes[n];
-        material.name = (char *)(uintptr_t) "Material.003";
+        material.name = (char *)(uintptr_t)(cases[i].material ? cases[i].material : "Material.003");
+        material.metallic = cases[i].metallic;
         material.alpha = cases[i].alpha;
         material.surface_given = (uint8_t)cases[i].given;
-        surface_kinds_of_objects(&m);
+        assert_int_equal(surface_kinds_of_objects(&m), 0);
         assert_int_equal(material.surface, cases[i].kind);
     }
 }

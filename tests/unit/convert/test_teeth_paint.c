@@ -109,7 +109,8 @@ static void pale_gums_become_red(void **state)
                   { "Zunge", skin, 0, 0, 0, 1, 0.3f },     { "TeethAndGums", skin, 0, 0, 0, 0, 0 },
                   { "Mouth", skin, 1, 0, 0, 0, 0 },        { "Gums", skin, 0, 1, 0, 0, 0 },
                   { "Gums", skin, 0, 0, 1, 0, 0 },         { "Tongue", tongue, 0, 0, 0, 0, 0 },
-                  { "Tongue", skin, 0, 0, 0, 0, -1.0f } };
+                  { "Tongue", skin, 0, 0, 0, 0, -1.0f },   { "Mouth_Guard", skin, 0, 0, 0, 0, 0 },
+                  { "shoe_tongue", skin, 0, 0, 0, 0, 0 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
         model *m = mouth_of(skin, 0.002f, fabsf(cases[i].grey));

@@ -1,5 +1,6 @@
 #include "surface_kind.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "convert/base/names.h"
@@ -120,11 +121,6 @@ int surface_is_lashes(const char *name)
     return is_of(name, "lashes");
 }
 
-int surface_is_gums(const char *name)
-{
-    return is_of(name, "gums") && !is_of(name, "teeth");
-}
-
 /* A word, or all of one that languages without spaces have as a part. */
 static int is_all_of(const char *material, const char *word, size_t length)
 {
@@ -134,19 +130,30 @@ static int is_all_of(const char *material, const char *word, size_t length)
     return is_in(material, word, length) || names_has_word(material, part, length + 1u);
 }
 
-int surface_is_bare(const char *name)
+/* Whether a name has a word of either kind, and all others are neutral. */
+static int is_only_of(const char *name, const char *material, const char *other)
 {
     int found = 0;
     for (const char *at = name; *at;) {
         const size_t length = word_length(at);
-        if (length && (is_all_of("bare", at, length) || is_all_of("skin", at, length))) {
+        if (length && (is_all_of(material, at, length) || is_all_of(other, at, length))) {
             found = 1;
         } else if (length && !is_in("neutral", at, length)) {
-            return 0; /* HeadLight, Zombie_Skin */
+            return 0; /* HeadLight, Zombie_Skin, Mouth_Guard, Shoe_Tongue */
         }
         at += length ? length : 1u;
     }
     return found;
+}
+
+int surface_is_gums(const char *name)
+{
+    return is_only_of(name, "gums", "gums");
+}
+
+int surface_is_bare(const char *name)
+{
+    return is_only_of(name, "bare", "skin");
 }
 
 /* Each capital of the pattern stands for one, each 0 for a digit. */
@@ -239,38 +246,45 @@ int surface_shells_set(model *m)
     return failed;
 }
 
-static int has_material(const model_mesh *mesh, uint32_t material)
+/* What objects are by their names, as bits. */
+#define WORN_BY_EYES 1u
+#define WORN_BY_OTHERS 2u
+
+static uint8_t bit_of(const char *name)
 {
-    for (uint32_t s = 0; s < mesh->submesh_count; s++) {
-        if (mesh->submeshes[s].material == material) return 1;
-    }
-    return 0;
+    return surface_kind_of_name(name ? name : "") == NOH_SURFACE_EYE ? WORN_BY_EYES : WORN_BY_OTHERS;
 }
 
-static int is_worn_by_eyes(const model *m, uint32_t material)
+/* Whether neither the name nor the look of a material says what it is: eyes of robots are metal. */
+static int is_unknown(const model_material *m)
 {
-    int found = 0;
-    for (uint32_t i = 0; i < m->node_count; i++) {
-        const model_node *node = &m->nodes[i];
-        if (node->mesh == MODEL_NONE || !has_material(&m->meshes[node->mesh], material)) continue;
-        found = 1;
-        if (surface_kind_of_name(node->name ? node->name : "") != NOH_SURFACE_EYE &&
-            surface_kind_of_name(m->meshes[node->mesh].name) != NOH_SURFACE_EYE) {
-            return 0;
-        }
-    }
-    return found;
+    return m->surface == NOH_SURFACE_PLAIN && !m->surface_given && m->alpha == MODEL_ALPHA_OPAQUE &&
+           (m->metallic < 0.5f || m->surface_texture != MODEL_NONE) &&
+           surface_kind_of_name(m->name) == NOH_SURFACE_PLAIN && !is_of(m->name, "plain") &&
+           !is_of(m->name, "beside-eye") && !is_eye_edge(m->name);
 }
 
-void surface_kinds_of_objects(model *m)
+int surface_kinds_of_objects(model *m)
 {
-    for (uint32_t i = 0; i < m->material_count; i++) {
-        model_material *material = &m->materials[i];
-        if (material->surface == NOH_SURFACE_PLAIN && !material->surface_given &&
-            material->alpha == MODEL_ALPHA_OPAQUE && is_worn_by_eyes(m, i)) {
-            surface_kind_set(material, NOH_SURFACE_EYE);
+    uint8_t *meshes = model_zeros(m->mesh_count, 1), *worn = model_zeros(m->material_count, 1);
+    const int failed = !meshes || !worn;
+    for (uint32_t i = 0; i < m->node_count && !failed; i++) {
+        if (m->nodes[i].mesh != MODEL_NONE) meshes[m->nodes[i].mesh] |= bit_of(m->nodes[i].name);
+    }
+    for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        if (meshes[i] && bit_of(mesh->name) == WORN_BY_EYES) meshes[i] = WORN_BY_EYES;
+        for (uint32_t s = 0; s < mesh->submesh_count; s++) {
+            if (mesh->submeshes[s].material != MODEL_NONE) worn[mesh->submeshes[s].material] |= meshes[i];
         }
     }
+    for (uint32_t i = 0; i < m->material_count && !failed; i++) {
+        if (worn[i] == WORN_BY_EYES && is_unknown(&m->materials[i]))
+            surface_kind_set(&m->materials[i], NOH_SURFACE_EYE);
+    }
+    free(meshes);
+    free(worn);
+    return failed;
 }
 
 int surface_kind_assign(model *m, const char *assignment, model_error *error)
