@@ -52,6 +52,13 @@ printf '0.5 0.6 P\n0.1 0.2 P\n' >"$work/back.phones"
 noh speak 'Palm' --labels "$work/back.phones"
 expect 1 'phones that go back'
 says 'line 2: it starts before the line above'
+mkfifo "$work/pipe.phones"
+noh speak 'Palm' --labels "$work/pipe.phones"
+expect 1 'a pipe, which may never end'
+says 'pipe.phones: the file cannot be read: not a regular file'
+noh speak 'Palm' --labels "$work"
+expect 1 'a folder'
+says 'Is a directory'
 
 noh speak 'Papa bought me five boats.' --json
 if grep -q 'eSpeak NG is not installed' "$work/err"; then

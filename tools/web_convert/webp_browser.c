@@ -27,7 +27,8 @@ static FILE *decoded(const unsigned char *bytes, size_t count)
 static int read_pixels(FILE *f, uint64_t pixels_max, uint32_t size[2], unsigned char **rgba, model_error *error)
 {
     size_t bytes;
-    if (fread(size, sizeof *size, 2, f) != 2) return model_fail(error, "", "the image data is damaged");
+    if (fread(size, sizeof *size, 2, f) != 2)
+        return model_fail(error, "", "the image data is damaged: save it again as PNG");
     if ((uint64_t)size[0] * size[1] > pixels_max) {
         return model_fail(error, "", "the image has %lu x %lu pixels; the limit is %llu", (unsigned long)size[0],
                           (unsigned long)size[1], (unsigned long long)pixels_max);
@@ -38,7 +39,7 @@ static int read_pixels(FILE *f, uint64_t pixels_max, uint32_t size[2], unsigned 
     if (fread(*rgba, 1, bytes, f) == bytes) return 0;
     free(*rgba);
     *rgba = NULL;
-    return model_fail(error, "", "the image data is damaged");
+    return model_fail(error, "", "the image data is damaged: save it again as PNG");
 }
 
 int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uint32_t *width, uint32_t *height,

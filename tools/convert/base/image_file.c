@@ -32,7 +32,7 @@ static int check_size(const unsigned char *bytes, size_t count, uint64_t *pixels
     uint64_t pixels, rows;
     if (count > 0x7fffffffu) return model_fail(error, "", "the image has more than 2 GiB: save it smaller");
     if (!stbi_info_from_memory(bytes, (int)count, &width, &height, &channels)) return fail_to_decode(error);
-    if (width < 1 || height == 0) return model_fail(error, "", "the image data is damaged");
+    if (width < 1 || height == 0) return model_fail(error, "", "the image data is damaged: save it again as PNG");
     rows = height < 0 ? 0u - (uint64_t)(int64_t)height : (uint64_t)height; /* of a BMP with the top row first */
     pixels = (uint64_t)width * rows;
     if (pixels > IMAGE_PIXELS || pixels > *pixels_left) {

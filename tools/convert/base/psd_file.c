@@ -83,7 +83,8 @@ static int check_kind(const psd *p, model_error *error)
 static int check_size(const psd *p, uint64_t pixels_max, model_error *error)
 {
     const uint64_t pixels = (uint64_t)p->width * p->height;
-    if (!pixels || p->channels < (p->grey ? 1u : 3u)) return model_fail(error, "", "the image data is damaged");
+    if (!pixels || p->channels < (p->grey ? 1u : 3u))
+        return model_fail(error, "", "the image data is damaged: save it again as PNG");
     if (pixels > pixels_max) {
         return model_fail(error, "", "the image has %u x %u pixels; the limit is %llu", (unsigned)p->width,
                           (unsigned)p->height, (unsigned long long)pixels_max);

@@ -42,7 +42,7 @@ int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uin
     size_t out_bytes;
     if (load(&w, error)) return 1;
     if (!w.info(bytes, count, &columns, &rows) || columns < 1 || rows < 1) {
-        return model_fail(error, "", "the image data is damaged");
+        return model_fail(error, "", "the image data is damaged: save it again as PNG");
     }
     if ((uint64_t)columns * (uint64_t)rows > pixels_max) {
         return model_fail(error, "", "the image has %d x %d pixels; the limit is %llu", columns, rows,
@@ -55,7 +55,7 @@ int webp_read(const unsigned char *bytes, size_t count, uint64_t pixels_max, uin
     if (!out) return model_fail(error, "", "there is not enough memory for the image");
     if (!w.decode(bytes, count, out, out_bytes, columns * 4)) {
         free(out);
-        return model_fail(error, "", "the image data is damaged");
+        return model_fail(error, "", "the image data is damaged: save it again as PNG");
     }
     *rgba = out;
     return 0;

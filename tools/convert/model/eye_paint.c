@@ -323,6 +323,7 @@ static int finish(model *m, const balls *b)
         if (!is_painted(b, i)) continue;
         eye->base_color_texture = picture;
         for (int c = 0; c < 3; c++) eye->base_color[c] = 1.0f;
+        eye->metallic = 0.0f; /* a glTF file without it says 1 */
         if (eye->roughness > WET) eye->roughness = WET;
         failed = model_warn(m,
                             "material '%s': eyes of one colour look blind, so an iris was painted (--surface "

@@ -255,7 +255,7 @@ static uint8_t bit_of(const char *name)
     return surface_kind_of_name(name ? name : "") == NOH_SURFACE_EYE ? WORN_BY_EYES : WORN_BY_OTHERS;
 }
 
-/* Whether neither the name nor the look of a material says what it is: eyes of robots are metal. */
+/* Whether neither the name nor the look of a material tells its kind: eyes of robots are metal. */
 static int is_unknown(const model_material *m)
 {
     return m->surface == NOH_SURFACE_PLAIN && !m->surface_given && m->alpha == MODEL_ALPHA_OPAQUE &&

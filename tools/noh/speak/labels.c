@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "cli/message.h"
+#include "convert/base/input_file.h"
 #include "noh/face.h"
 
 #define RATE 100.0
@@ -57,15 +58,17 @@ static int read_line(const char *path, size_t number, const char *line, label_li
 
 static int read_labels(const char *path, label_list *out)
 {
-    char line[256];
-    int status = 0;
-    FILE *file = fopen(path, "r");
-    if (!file) return tool_fail(path, "cannot be opened");
-    for (size_t number = 1; !status && fgets(line, sizeof line, file); number++) {
-        line[strcspn(line, "\r\n")] = 0;
+    model_error error;
+    size_t bytes = 0, number = 1;
+    char *text = input_read_text(path, &bytes, &error);
+    int status = text ? 0 : tool_fail(path, "%s", error.what);
+    for (char *line = text, *end; !status && line < text + bytes; line = end + 1, number++) {
+        end = line + strcspn(line, "\n");
+        *end = 0;
+        line[strcspn(line, "\r")] = 0;
         if (line[strspn(line, " \t")]) status = read_line(path, number, line, out);
     }
-    fclose(file);
+    free(text);
     return status || out->count ? status : tool_fail(path, "holds no phones");
 }
 

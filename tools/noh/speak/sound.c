@@ -140,6 +140,8 @@ static int read_all(const sndfile *s, void *file, const char *path, const file_i
 /* only: as mix has it. *other: what should have been taken instead. */
 static int read_file(const sndfile *s, const char *path, size_t only, sound *out, size_t *other)
 {
+    noh_error error = { NOH_OK, "", 0, 0 };
+    noh_file there;
     loudness heard;
     file_info info;
     void *file;
@@ -147,6 +149,8 @@ static int read_file(const sndfile *s, const char *path, size_t only, sound *out
     memset(out, 0, sizeof *out);
     memset(&info, 0, sizeof info);
     memset(&heard, 0, sizeof heard);
+    if (noh_file_map(path, &there, &error)) return tool_fail(path, "cannot be read: %s", error.what); /* also a pipe */
+    noh_file_unmap(&there);
     file = s->open(path, MODE_READ, &info);
     if (!file)
         return tool_fail(path, "cannot be read as sound (WAV, FLAC and others that libsndfile knows): %s",
