@@ -125,8 +125,9 @@ static void add_polygon(mesh_job &m, const std::vector<uint32_t> &points, size_t
                                        &m.j.steps);
     if (failed == 1) throw std::bad_alloc();
     if (failed)
-        fail(place_of(m.j.in, m.geometry), "the concave polygons up to one of " + std::to_string(points.size()) +
-                                               " corners take too long to cut into triangles: triangulate them");
+        fail(place_of(m.j.in, m.geometry), "the concave polygons up to this one, which has " +
+                                               std::to_string(points.size()) +
+                                               " corners, take too long to cut into triangles: triangulate them");
     for (size_t t = 0; t < triangles.size(); t += 3) {
         const corner of[3] = { corners[triangles[t]], corners[triangles[t + 1]], corners[triangles[t + 2]] };
         add_triangle(p, of, determinant(m.pivot) < 0.0);
