@@ -529,10 +529,10 @@ void noh_spring_rotations(const noh_spring_move *moves, uint32_t count);
  * Threads: no state; any thread. */
 
 /* Find spine, neck, head and eyes by joint names such as 'mixamorig:Spine1', 'neck.x', 'b_Head_05', 'LeftEye'; joints
- * of the spine have no legs below them. Ahead is where the soles of the feet point in the bind pose, in quarter turns; +z
- * without feet. Without eye joints, the eyes are at the middle of the head's skin.
+ * of the spine have no legs below them. Ahead is where the soles of the feet point in the bind pose, in quarter turns;
+ * +z without feet. Without eye joints, the eyes are at the middle of the head's skin.
  * pack     joint names, and skinned meshes of that skeleton
- * errors   NOT_FOUND no joint has a name that contains 'head', or as noh_pack_skeleton_at */
+ * errors   NOT_FOUND no joint has a name with the word 'head', or as noh_pack_skeleton_at */
 noh_result noh_gaze_rig_make(const noh_pack *pack, uint32_t skeleton, noh_gaze_rig *rig, noh_error *error);
 
 /* The state of a gaze. A copy continues identically; zeros look ahead. */

@@ -381,9 +381,9 @@ struct noh_gl_caps;
  * accumulators and cached segments are restored if they fit.
  *
  * caps    noh_gl_caps (gl_device.h), as noh_gl_open fills it in; NULL with desc->gpu NULL
- * errors  ARG a field of the desc is invalid (where: the kind), or caps are NULL or zeros; NOT_FOUND no pack of a kind has a graph that its
- *         `graphs` names; MEMORY no plan keeps the bounds (need: bytes of the smallest plan); LIMIT; DATA a clip is
- *         damaged. *plan is then undefined */
+ * errors  ARG a field of the desc is invalid (where: the kind), or caps are NULL or zeros; NOT_FOUND no pack of a kind
+ *         has a graph that its `graphs` names; MEMORY no plan keeps the bounds (need: bytes of the smallest plan);
+ *         LIMIT; DATA a clip is damaged. *plan is then undefined */
 noh_result noh_stage_plan_make(const noh_stage_desc *desc, const struct noh_gl_caps *caps, noh_stage_plan *plan,
                                noh_error *error);
 

@@ -9,10 +9,11 @@
 extern "C" {
 #endif
 
-/* Where a body's front is, in quarter turns from +z towards +x, 0..3: where the soles of its legs point in the bind pose.
- * Names of left and right are not needed. 0 if there are no legs, or they point along the line of the hips.
- * All that needs a front asks here, except faces, which may have no legs (stage_face_open.c). */
+/* Where a body's front is, in quarter turns from +z towards +x, 0..3: where the soles of its feet point in the bind
+ * pose. Names of left and right are not needed. 0 if there are no feet, or they point along the line of the hips.
+ * Everything that needs a front calls this, except faces, which may have no legs (stage_face_open.c). */
 uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig);
+
 /* The same with the rig made for it. */
 uint32_t noh_front_of(const noh_ragdoll_source *source);
 

@@ -185,7 +185,7 @@ noh_result noh_gaze_rig_find(const noh_ragdoll_source *source, uint32_t front, n
 {
     const uint32_t head = find_head(source);
     if (head == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name contains 'head': fill in the gaze rig by hand", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name has the word 'head': fill in the gaze rig by hand", 0, 0);
     }
     memset(rig, 0, sizeof *rig);
     find_chain(source, head, rig);

@@ -185,7 +185,7 @@
       .kind = OPTION_TEXT,                                                                                  \
       .at = offsetof(T, m.look_at),                                                                         \
       .value = "X,Y,Z",                                                                                     \
-      .what = "a point that eyes, head, neck and spine turn to, in the pack's unit; the body faces +z",     \
+      .what = "a point that eyes, head, neck and spine turn to, in the model's axes and the pack's unit",   \
       .example = "0.5,1.6,2" },                                                                             \
     {                                                                                                       \
         .name = "--ground", .kind = OPTION_TEXT, .at = offsetof(T, m.ground), .value = "stairs|slope|FILE", \
