@@ -653,10 +653,10 @@ typedef struct noh_retarget_limb {
 
 typedef struct noh_retarget {
     noh_clip_map clips; /* for noh_kind_desc.map and noh_clip_bank_desc.map: they then play clips of the source */
-    const noh_transform *rest;           /* [target->joint_count] borrowed: the target's reference pose */
-    const noh_retarget_joint *joints;    /* [target->joint_count] borrowed */
-    uint32_t flags;                      /* NOH_RETARGET_*; may be changed, but not while a bank plays the map */
-    uint32_t bone_count;                 /* bones that both have */
+    const noh_transform *rest;        /* [target->joint_count] borrowed: the target's reference pose */
+    const noh_retarget_joint *joints; /* [target->joint_count] borrowed */
+    uint32_t flags;                   /* NOH_RETARGET_*; may be changed, but not while a bank plays the map */
+    uint32_t bone_count;              /* bones that both have */
     /* how much higher than the source's reference pose its clips' ground is, in its unit; 0 unless changed. A bank
      * and a stage measure root motion and bounds when they are made: set it before that, and leave it */
     float ground;

@@ -80,7 +80,8 @@ noh_stage_face *noh_stage_change_face(noh_stage *s, noh_actor actor, noh_stage_k
 /* Links by the recipes of the kind's face, or else (face NULL, too) the pack's own and those that are built in. */
 uint32_t noh_stage_face_bind(const noh_kind_desc *kind, noh_face_find_fn find, const void *user, noh_face_link *links,
                              uint32_t link_max);
-/* Where the joints of its eyes are at rest, model space; 0: there are none. *head: z of its head's joint, if it has one. */
+/* Where the joints of its eyes are at rest, model space; 0: there are none. *head: z of its head's joint, unchanged
+ * without one. */
 int noh_stage_face_eye_joints(const noh_kind_desc *kind, float eyes[2][3], float *head);
 uint32_t noh_stage_face_links(const noh_kind_desc *kind); /* an upper bound */
 void noh_stage_run_face(noh_modifier_work *w);            /* over the pose and the floats of the work */
