@@ -249,7 +249,7 @@ fi
 
 noh budget "$puppet" --actors 20 --nominal --bytes 1000
 expect 1 'a bound that no stage keeps'
-says 'keeps the bounds of a stage: raise them, or lower actor_count or visible_max of its kinds; the smallest takes '
+says 'keeps the bounds of a stage: raise them, lower actor_count or visible_max of its kinds, or build their packs with --lod; the smallest takes '
 smallest=$(sed -n 's/.* (1000 bytes, \([0-9]*\) needed)$/\1/p' "$work/err")
 noh budget "$puppet" --actors 20 --nominal --bytes "$smallest"
 expect 0 'that smallest one is possible'

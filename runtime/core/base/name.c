@@ -33,15 +33,19 @@ static size_t end_of(const char *name, size_t at, const char *word)
     return 0;
 }
 
-static const char *const joined[] = { "left", "right", "upper", "lower" };
+/* Words that names join to others: leftarm, hindleg, headbone. */
+static const char *const joined[] = { "left", "right", "upper", "lower", "front", "fore",
+                                      "hind", "back",  "rear",  "bone",  "joint" };
+#define JOINED (sizeof joined / sizeof joined[0])
 
 static int begins_at(const char *name, size_t at)
 {
     const char side = at ? letter_of(name[at - 1u]) : '\0';
     if (is_edge(name, at) || ((side == 'l' || side == 'r') && is_edge(name, at - 1u))) return 1;
-    for (size_t i = 0; i < 4u; i++) {
-        const size_t length = i ? 5u : 4u;
-        if (at >= length && end_of(name, at - length, joined[i]) == at) return 1;
+    for (size_t i = 0; i < JOINED; i++) {
+        for (size_t length = 4; length < 6 && length <= at; length++) {
+            if (end_of(name, at - length, joined[i]) == at) return 1;
+        }
     }
     return 0;
 }
@@ -50,7 +54,7 @@ static int ends_at(const char *name, size_t at)
 {
     const char last = letter_of(name[at]);
     if (is_edge(name, at) || ((last == 'l' || last == 'r' || last == 's') && is_edge(name, at + 1u))) return 1;
-    for (size_t i = 0; i < 4u; i++) {
+    for (size_t i = 0; i < JOINED; i++) {
         if (end_of(name, at, joined[i])) return 1;
     }
     return 0;

@@ -14,7 +14,7 @@ extern "C" {
  * Everything that needs a front calls this, except faces, which may have no legs (stage_face_open.c). */
 uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig);
 
-/* The same with the rig made for it. */
+/* The same with the rig made for it; without skin on its feet, where the joints of its toes lie. */
 uint32_t noh_front_of(const noh_ragdoll_source *source);
 
 /* The state of a foot. Heights and positions are in world space. */

@@ -226,8 +226,38 @@ noh_result noh_feet_rig_make(const noh_ragdoll_source *source, noh_feet_rig *rig
     return NOH_OK;
 }
 
+/* Where the toes' joints lie. Returns 0 without toes. */
+static int find_toes(const noh_ragdoll_source *source, noh_feet_leg *leg)
+{
+    static const float none[3] = { 0.0f, 0.0f, 0.0f };
+    const noh_skeleton *joints = &source->joints;
+    float ankle[3], toe[3], unused[4];
+    memset(leg->knee, 0, sizeof leg->knee);
+    noh_ragdoll_bind(joints, leg->foot, ankle, unused);
+    for (uint32_t j = leg->foot + 1u; j < joints->joint_count; j++) {
+        if (joints->parents[j] != leg->foot) continue;
+        noh_ragdoll_bind(joints, j, toe, unused);
+        noh_sub3(toe, ankle, toe);
+        noh_madd3(leg->knee, 1.0f, toe, leg->knee);
+    }
+    leg->knee[1] = 0.0f;
+    noh_normalize3(leg->knee, none);
+    return noh_dot3(leg->knee, leg->knee) > 0.0f;
+}
+
 uint32_t noh_front_of(const noh_ragdoll_source *source)
 {
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
     noh_feet_rig legs;
-    return noh_feet_rig_make(source, &legs, NULL) ? 0u : noh_feet_front(&source->joints, &legs);
+    uint32_t count;
+    if (noh_feet_rig_make(source, &legs, NULL) == NOH_OK) return noh_feet_front(&source->joints, &legs);
+    if (noh_ragdoll_find_rows(source, rows, &count, NULL) != NOH_OK) return 0;
+    memset(&legs, 0, sizeof legs);
+    for (uint32_t i = 0; i < count && legs.leg_count < NOH_FEET_LEGS_MAX; i++) {
+        noh_feet_leg *leg = &legs.legs[legs.leg_count];
+        if (!leg_of(source, rows, count, i, leg) || !find_toes(source, leg)) continue;
+        (void)measure(source, leg);
+        legs.leg_count++;
+    }
+    return noh_feet_front(&source->joints, &legs);
 }
