@@ -2,8 +2,8 @@
 # cross.sh: builds the library for other processors and systems without a warning, and runs the tests there that
 # tests/cross_tests.sh lists: aarch64 (NEON) and armv7 (scalar; NOH_LONG) under qemu-user, wasm (scalar) under node,
 # Windows under Wine. The library is -O2 everywhere (NOH_LONG: more levels, and x86 with i386, whose amalgam
-# check_install.sh builds; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools are
-# missing is skipped and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
+# check_install.sh builds; warnings of clang, which is also emcc's, do not depend on the level). A target whose tools
+# are missing is skipped and says why. Closes with "N passed, N failed, N skipped", as tests/run.sh does.
 set -u
 cd "$(dirname "$0")/.." || exit 1
 build=${NOH_BUILD:-build}

@@ -306,11 +306,11 @@ typedef struct noh_wrinkles_header {
  * them, and no accumulation texels. Libraries older than this chunk refuse a pack with it (unknown type). ---- */
 
 typedef struct noh_far_joints_header {
-    uint32_t mesh;         /* the n-th mesh chunk, a skinned one without dual quaternions */
-    uint32_t level;        /* the finest level whose vertices they move, above 0 */
-    uint32_t joint_count;  /* 1..NOH_FAR_JOINTS_MAX */
-    uint32_t target_count; /* of the mesh */
-    uint32_t first_joint;  /* of them, among the skin's joints */
+    uint32_t mesh;           /* the n-th mesh chunk, a skinned one without dual quaternions */
+    uint32_t level;          /* the finest level whose vertices they move, above 0 */
+    uint32_t joint_count;    /* 1..NOH_FAR_JOINTS_MAX */
+    uint32_t target_count;   /* of the mesh */
+    uint32_t first_joint;    /* of them, among the skin's joints */
     uint32_t centres_offset; /* float[joint_count][3], mesh space */
     uint32_t scales_offset;  /* float[joint_count][2], 0 or above: of moves, model units, and of turns, radians */
     uint32_t motions_offset; /* uint32_t[target_count][joint_count][2]: the move b and the turn w about the centre at
@@ -397,8 +397,8 @@ typedef struct noh_node {
  *          for 0.24. Zeros: none
  *   eye    xyz the gaze in the bind pose and mesh space, with the iris radius as its length, after the joints' scales;
  *          w the sine of the angle at the eyeball's centre between the gaze and the rim of the iris. surface_more: the
- *          edges of the upper and lower lid in front of the eyeball, in radii of it: at a distance a from the gaze, away
- *          from the nose, the edge is at the height x + y a + z a^2. Zeros: unknown
+ *          edges of the upper and lower lid in front of the eyeball, in radii of it: at a distance a from the gaze,
+ *          away from the nose, the edge is at the height x + y a + z a^2. Zeros: unknown
  *   teeth  nearness to the lips, 1 at the foremost teeth, 0 where no light arrives: dot(xyz, position in the bind pose)
  *          + w; zeros: unknown. surface_more: above 0 if known; 0; 0; half the lips' gap at rest, in depths of the
  *          mouth, or 0 for 0.24

@@ -1,6 +1,6 @@
 #!/bin/sh
-# Small files that ask for much: each is converted within seconds, or refused with a message that says what is too large,
-# where it is and what to do.
+# Small files that ask for much: each is converted within seconds, or refused with a message that says what is too
+# large, where it is and what to do.
 . "$(dirname "$0")/lib.sh"
 
 sh tests/support/small_glb.sh | tail -c 200 >"$work/small.bin"

@@ -392,6 +392,7 @@ static void levels_are_shown_in_their_colours(void **state)
 
 static void open_null(gpu *g)
 {
+    memset(g, 0, sizeof *g);
     assert_int_equal(gpu_open(g, "null"), 0);
     g->caps.blend_f32 = g->caps.blend_f32_exact = 1;
 }
@@ -407,7 +408,6 @@ static void frames_make_nothing(void **state)
     cast c;
     const uint32_t frames = test_is_sanitized() ? 1500 : 10000;
     (void)state;
-    memset(&g, 0, sizeof g);
     open_null(&g);
     cast_open(&c);
     few_are_seen(&c);
@@ -500,7 +500,6 @@ static void few_of_a_crowd_are_drawn(void **state)
     uint32_t left_out = 0, waited = 0;
     cast c;
     (void)state;
-    memset(&g, 0, sizeof g);
     open_null(&g);
     open_crowd(&c, &g, 0);
     all = c.plan.gpu_bytes;
@@ -547,7 +546,6 @@ static void random_casts_use_what_is_planned(void **state)
         noh_error error;
         noh_actor actor;
         uint64_t full;
-        memset(&g, 0, sizeof g);
         open_null(&g); /* again: it never gives a name twice, and has few of them */
         memset(kinds, 0, sizeof kinds);
         memset(&c.desc, 0, sizeof c.desc);
@@ -623,7 +621,6 @@ static void a_device_that_was_not_opened_is_refused(void **state)
     noh_error error;
     cast c;
     (void)state;
-    memset(&g, 0, sizeof g);
     open_null(&g);
     cast_open(&c);
     c.desc.gpu = &noh_stage_on_gl;
@@ -655,7 +652,6 @@ static void a_refusing_driver_leaves_nothing(void **state)
     uint32_t refused = 0;
     cast c;
     (void)state;
-    memset(&g, 0, sizeof g);
     open_null(&g);
     cast_open(&c);
     c.desc.gpu = &noh_stage_on_gl;

@@ -22,8 +22,8 @@ static inline int noh_name_begins(const char *name, const char *start)
 }
 
 /* Whether a name has a word of small letters, in any case and over separators: 'upper_arm.L' has "upperarm" and "arm",
- * 'handbag' has not "hand". Words end at separators, digits and capitals; a side, a plural's s, and words such as upper,
- * hind and bone may be joined to a word (name.c). */
+ * 'handbag' has not "hand". Words end at separators, digits and capitals; a side, a plural's s, and words such as
+ * upper, hind and bone may be joined to a word (name.c). */
 int noh_name_has(const char *name, const char *word);
 
 #endif

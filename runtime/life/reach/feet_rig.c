@@ -179,21 +179,6 @@ static float measure(const noh_ragdoll_source *s, noh_feet_leg *leg)
     return noh_apart3(hip, knee) + noh_apart3(knee, ankle);
 }
 
-uint32_t noh_feet_front(const noh_skeleton *joints, const noh_feet_rig *rig)
-{
-    float ahead[3] = { 0.0f, 0.0f, 0.0f }, hips[2][3] = { { 0.0f } };
-    for (uint32_t i = 0; i < rig->leg_count; i++) {
-        float knee[3], rotation[4];
-        noh_ragdoll_bind(joints, rig->legs[i].thigh, hips[i % 2u], rotation);
-        noh_quat_rotate(rotation, rig->legs[i].knee, knee);
-        noh_madd3(ahead, 1.0f, knee, ahead);
-    }
-    const uint32_t front = noh_quarter_of(ahead[0], ahead[2]);
-    if (rig->leg_count != 2u) return front;
-    noh_sub3(hips[0], hips[1], hips[0]);
-    return noh_quarter_of(hips[0][0], hips[0][2]) % 2u == front % 2u ? 0u : front; /* along the hips: not known */
-}
-
 static uint32_t larger(uint32_t a, uint32_t b)
 {
     return a > b ? a : b;
@@ -226,7 +211,9 @@ noh_result noh_feet_rig_make(const noh_ragdoll_source *source, noh_feet_rig *rig
     return NOH_OK;
 }
 
-/* Where the toes' joints lie. Returns 0 without toes. */
+/* ---- the front ---- */
+
+/* Where the joints of its toes lie, as the direction of the knee. Returns 0 without toes. */
 static int find_toes(const noh_ragdoll_source *source, noh_feet_leg *leg)
 {
     static const float none[3] = { 0.0f, 0.0f, 0.0f };
@@ -242,22 +229,45 @@ static int find_toes(const noh_ragdoll_source *source, noh_feet_leg *leg)
     }
     leg->knee[1] = 0.0f;
     noh_normalize3(leg->knee, none);
+    (void)measure(source, leg);
     return noh_dot3(leg->knee, leg->knee) > 0.0f;
+}
+
+static void find_legs(const noh_ragdoll_source *source, noh_feet_rig *rig)
+{
+    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t count;
+    memset(rig, 0, sizeof *rig);
+    if (noh_ragdoll_find_rows(source, rows, &count, NULL) != NOH_OK) return;
+    for (uint32_t i = 0; i < count && rig->leg_count < NOH_FEET_LEGS_MAX; i++) {
+        noh_feet_leg *leg = &rig->legs[rig->leg_count];
+        if (leg_of(source, rows, count, i, leg) && find_toes(source, leg)) rig->leg_count++;
+    }
+}
+
+uint32_t noh_feet_front(const noh_ragdoll_source *source, const noh_feet_rig *rig)
+{
+    float ahead[3] = { 0.0f, 0.0f, 0.0f }, hips[2][3] = { { 0.0f } };
+    noh_feet_rig without_skin;
+    if (!rig->leg_count) {
+        find_legs(source, &without_skin);
+        rig = &without_skin;
+    }
+    for (uint32_t i = 0; i < rig->leg_count; i++) {
+        float knee[3], rotation[4];
+        noh_ragdoll_bind(&source->joints, rig->legs[i].thigh, hips[i % 2u], rotation);
+        noh_quat_rotate(rotation, rig->legs[i].knee, knee);
+        noh_madd3(ahead, 1.0f, knee, ahead);
+    }
+    const uint32_t front = noh_quarter_of(ahead[0], ahead[2]);
+    if (rig->leg_count != 2u) return front;
+    noh_sub3(hips[0], hips[1], hips[0]);
+    return noh_quarter_of(hips[0][0], hips[0][2]) % 2u == front % 2u ? 0u : front; /* along the hips: not known */
 }
 
 uint32_t noh_front_of(const noh_ragdoll_source *source)
 {
-    noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
-    noh_feet_rig legs;
-    uint32_t count;
-    if (noh_feet_rig_make(source, &legs, NULL) == NOH_OK) return noh_feet_front(&source->joints, &legs);
-    if (noh_ragdoll_find_rows(source, rows, &count, NULL) != NOH_OK) return 0;
-    memset(&legs, 0, sizeof legs);
-    for (uint32_t i = 0; i < count && legs.leg_count < NOH_FEET_LEGS_MAX; i++) {
-        noh_feet_leg *leg = &legs.legs[legs.leg_count];
-        if (!leg_of(source, rows, count, i, leg) || !find_toes(source, leg)) continue;
-        (void)measure(source, leg);
-        legs.leg_count++;
-    }
-    return noh_feet_front(&source->joints, &legs);
+    noh_feet_rig rig;
+    if (noh_feet_rig_make(source, &rig, NULL) != NOH_OK) rig.leg_count = 0;
+    return noh_feet_front(source, &rig);
 }

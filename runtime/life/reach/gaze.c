@@ -38,14 +38,16 @@ static int has_any(const char *name, const char *const *words)
     return *words != NULL;
 }
 
-static uint32_t find_head(const noh_ragdoll_source *s)
+int noh_name_is_head(const char *name)
 {
     static const char *const no_head[] = { "headtop", "headend", "headnub", "forehead", "headlight", NULL };
+    return noh_name_has(name, "head") && !has_any(name, no_head);
+}
+
+static uint32_t find_head(const noh_ragdoll_source *s)
+{
     uint32_t joint = 0;
-    while (joint < s->joints.joint_count &&
-           !(noh_name_has(name_of(s, joint), "head") && !has_any(name_of(s, joint), no_head))) {
-        joint++;
-    }
+    while (joint < s->joints.joint_count && !noh_name_is_head(name_of(s, joint))) joint++;
     return joint < s->joints.joint_count ? joint : NOH_NONE;
 }
 
@@ -185,7 +187,8 @@ noh_result noh_gaze_rig_find(const noh_ragdoll_source *source, uint32_t front, n
 {
     const uint32_t head = find_head(source);
     if (head == NOH_NONE) {
-        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name has the word 'head': fill in the gaze rig by hand", 0, 0);
+        return noh_fail(error, NOH_ERR_NOT_FOUND, "no joint name has the word 'head': fill in the gaze rig by hand", 0,
+                        0);
     }
     memset(rig, 0, sizeof *rig);
     find_chain(source, head, rig);

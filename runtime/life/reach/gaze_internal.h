@@ -9,6 +9,9 @@
 extern "C" {
 #endif
 
+/* Whether a joint is a head by its name, and not the end of one, a forehead or a lamp. */
+int noh_name_is_head(const char *name);
+
 /* noh_gaze_rig_make for a body whose front is known.
  * front    noh_feet_front */
 noh_result noh_gaze_rig_find(const noh_ragdoll_source *source, uint32_t front, noh_gaze_rig *rig, noh_error *error);

@@ -72,7 +72,7 @@ void noh_stage_find_parts(noh_stage_ragdoll_kind *shared, const noh_ragdoll_sour
     p->spine = p->chest = p->head = NOH_NONE;
     if (noh_feet_rig_make(source, &shared->legs, NULL) != NOH_OK) return;
     find_legs(shared);
-    p->front = (uint16_t)noh_feet_front(&source->joints, &shared->legs);
+    p->front = (uint16_t)noh_feet_front(source, &shared->legs);
     for (uint32_t i = 1; i < rig->body_count && p->has_legs; i++) {
         const uint32_t upper = rig->bodies[i].parent;
         if (!(rig->joints[i].flags & NOH_RAGDOLL_HINGE) || i == p->shins[0] || i == p->shins[1]) continue;

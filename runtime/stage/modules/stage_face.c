@@ -1,9 +1,9 @@
 /* stage_face.c: an actor's face in a job: time, where it looks, joints and targets.
  *
- * The space of a neck has its origin in the joint that turns the head, and at rest the axes of the model, turned so that
- * the face looks along +z. It goes along with what clips do to that joint. What the face turns is added to that: part of
- * it in the neck, so that it bends, and the rest in the head, whose eyes are then aimed from where the neck has taken
- * them. */
+ * The space of a neck has its origin in the joint that turns the head, and at rest the axes of the model, turned so
+ * that the face looks along +z. It goes along with what clips do to that joint. What the face turns is added to that:
+ * part of it in the neck, so that it bends, and the rest in the head, whose eyes are then aimed from where the neck has
+ * taken them. */
 #include "life/face/face_internal.h"
 #include "life/face/recipe_internal.h"
 #include "noh/base.h"

@@ -174,7 +174,7 @@ noh_result noh_kind_stand_make(const noh_kind_desc *kind, noh_kind_stand *stand,
     if (result != NOH_OK) return result;
     source.metres = header->unit_cm / 100.0f;
     if (noh_feet_rig_make(&source, &stand->legs, NULL)) stand->legs.leg_count = 0;
-    stand->front = noh_feet_front(&source.joints, &stand->legs);
+    stand->front = noh_feet_front(&source, &stand->legs);
     if (noh_reach_rig_find(&source, stand->front, &stand->arms, NULL)) stand->arms.arm_count = 0;
     if (noh_gaze_rig_find(&source, stand->front, &stand->trunk, NULL)) stand->trunk.joint_count = 0;
     if (stand->arms.arm_count || stand->legs.leg_count || stand->trunk.joint_count) return NOH_OK;

@@ -1,5 +1,5 @@
-/* Bodies that were modelled with another front: all that asks for it gets the same answer, and they stand, look ahead and
- * look at points as one that faces +z does, turned. */
+/* Bodies that were modelled with another front: all that asks for it gets the same answer, and they stand, look ahead
+ * and look at points as one that faces +z does, turned. */
 #include "support/stage_fixture.h"
 
 #include "draw/facing.h"

@@ -11,8 +11,8 @@
  * seen, too, leaves its eye as it is. Painted materials become white and wet, and add a warning. Meshes without texture
  * coordinates get zeros for all else, and no tangents. Surfaces of materials are known. If the model has no texture of
  * its own, materials of skin, or named as a face, head or neck, that are grey or have a colour of people become skin,
- * each with a warning, unless their surface is given or they have vertex colours: a living eye in plaster looks uncanny.
- * Grey takes skin's colour.
+ * each with a warning, unless their surface is given or they have vertex colours: a living eye in plaster looks
+ * uncanny. Grey takes skin's colour.
  * returns  1: out of memory */
 int eye_paint(model *m);
 

@@ -6,7 +6,7 @@
 #include <math.h>
 
 #include "affine.h"
-#include "core/base/name_internal.h"
+#include "life/reach/gaze_internal.h"
 #include "model_build.h"
 
 /* ---- nodes ---- */
@@ -126,23 +126,14 @@ static int is_joint(const model *m, uint32_t node)
     return 0;
 }
 
-/* As gazes find it (low_life.h). */
-static int is_head(const char *name)
-{
-    static const char *const others[] = { "headtop", "headend", "headnub", "forehead", "headlight" };
-    for (size_t i = 0; i < sizeof others / sizeof others[0]; i++) {
-        if (noh_name_has(name, others[i])) return 0;
-    }
-    return noh_name_has(name, "head");
-}
-
 /* Of the first `count` nodes, the joint of that name, or, name NULL, the head. */
 static uint32_t find_joint(const model *m, uint32_t count, const char *name)
 {
     for (uint32_t n = 0; n < count; n++) {
         const char *own = plain_name(m->nodes[n].name);
         if (!own || !is_joint(m, n)) continue;
-        if (name ? strcmp(own, plain_name(name)) == 0 || strcmp(m->nodes[n].name, name) == 0 : is_head(own)) return n;
+        if (name ? strcmp(own, plain_name(name)) == 0 || strcmp(m->nodes[n].name, name) == 0 : noh_name_is_head(own))
+            return n;
     }
     return MODEL_NONE;
 }

@@ -22,8 +22,8 @@ uint32_t surface_kind_by_name(const char *name, model_alpha alpha);
 /* Whether a part has no vertex colours, or white ones. */
 int surface_is_white(const model_mesh *mesh, const model_submesh *part);
 
-/* Whether a material's name means lashes, or, with all of its words, what is soft in a mouth, or a part of the body that
- * is skin unless it has a colour, or skin: "M_Face_L", and not "head_scarf", "Zombie_Skin" or "Mouth_Guard". */
+/* Whether a material's name means lashes, or, with all of its words, what is soft in a mouth, or a part of the body
+ * that is skin unless it has a colour, or skin: "M_Face_L", and not "head_scarf", "Zombie_Skin" or "Mouth_Guard". */
 int surface_is_lashes(const char *name);
 int surface_is_gums(const char *name);
 int surface_is_bare(const char *name);
@@ -36,8 +36,8 @@ int surface_is_of_vroid(const char *name);
  * skin, 0.025 for eyes. */
 void surface_kind_set(model_material *m, uint32_t kind);
 
-/* Opaque materials whose names say nothing, and which are no metal, are eyes where all objects that have them are, by the
- * names of nodes or meshes: "Eye.L" of "Material.003".
+/* Opaque materials whose names say nothing, and which are no metal, are eyes where all objects that have them are, by
+ * the names of nodes or meshes: "Eye.L" of "Material.003".
  * returns  1: out of memory */
 int surface_kinds_of_objects(model *m);
 

@@ -255,8 +255,8 @@ static int encode_set(encoded_clips *m, uint32_t index, const clips_settings *s,
     return failed;
 }
 
-/* Frames of a joint in all clips: beyond WORK_USUAL, which take a processor 70 s of mocap with the usual effort, they are
- * encoded with the least effort, in a third of the time. */
+/* Frames of a joint in all clips: beyond WORK_USUAL, which take a processor 70 s of mocap with the usual effort, they
+ * are encoded with the least effort, in a third of the time. */
 #define WORK_USUAL (UINT64_C(1) << 20)
 #define WORK_MAX (UINT64_C(1) << 22)
 

@@ -221,8 +221,8 @@ static int head_by_joint(const figure *f, const bounds *all, bounds *head)
     0.3               /* of the figure's height: a face as high is a head alone or a bust; of a body it is a seventh */
 #define HAIR_OVER 0.1 /* of the figure's height: hair may reach over its meshes by as much */
 
-/* The face with its hair and ears, within the figure: the room around it, of its height, and as much as what is over the
- * chin reaches, tails and hats, not arms. */
+/* The face with its hair and ears, within the figure: the room around it, of its height, and as much as what is over
+ * the chin reaches, tails and hats, not arms. */
 static bounds around_face(const figure *f, const bounds *all, bounds face)
 {
     const double high = face.high[1] - face.low[1];
