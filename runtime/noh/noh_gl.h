@@ -385,7 +385,8 @@ noh_result noh_stage_draw(noh_stage *stage, noh_pass pass, uint32_t view, noh_st
  * no colour without it; other stages ignore it. NULL: none. */
 void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting);
 
-/* The light textures of the stage, for backdrops, floors and shaders of your own; NULL without noh_stage_desc.light. */
+/* The light textures of the stage, for backdrops, floors and shaders of your own; NULL without noh_stage_desc.light or
+ * noh_stage_desc.gpu. */
 const noh_gl_light *noh_stage_light_of(const noh_stage *stage);
 
 /* Draw a view into the shadow map of the stage. The view has no height_px: noh_view_shadow makes one.
@@ -396,7 +397,8 @@ noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *err
 /* Create shaders of your own (low_gl.h; shaders_es/README.md lists what they can call).
  * memory  [bytes] at least noh_stage_shader_size, aligned to NOH_MEMORY_ALIGN; the shader keeps it
  * log     as in noh_gl_device: messages of the driver
- * errors  ARG memory is NULL or misaligned; MEMORY `bytes` is too small; else as noh_gl_renderer_create */
+ * errors  ARG memory is NULL or misaligned, or noh_stage_desc has no `gpu`; MEMORY `bytes` is too small; else as
+ *         noh_gl_renderer_create */
 size_t noh_stage_shader_size(const noh_stage *stage);
 noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
                                    char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error);
@@ -425,7 +427,8 @@ typedef struct noh_stage_drawn {
 } noh_stage_drawn;
 
 /* Get a mesh of an actor, by the index of noh_actor_mesh_at. Valid until the next frame.
- * errors  NOT_FOUND the actor is gone, has no such mesh, or no view of the last frame saw it */
+ * errors  NOT_FOUND the actor is gone, has no such mesh, or no view of the last frame saw it; ARG noh_stage_desc has no
+ *         `gpu` */
 noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error);
 
 /* ======== backdrop ========
@@ -533,7 +536,7 @@ typedef struct noh_stage_decals {
     uint32_t draws; /* draw calls so far */
 } noh_stage_decals;
 
-/* The exact bytes of memory. The stage has noh_stage_desc.gpu. */
+/* The exact bytes of memory. 0: noh_stage_desc has no `gpu`. */
 size_t noh_stage_decals_size(const noh_stage *stage);
 
 /* memory   [bytes] at least noh_stage_decals_size, aligned to NOH_MEMORY_ALIGN; the decals keep it

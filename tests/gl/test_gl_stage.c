@@ -610,6 +610,40 @@ static void random_casts_use_what_is_planned(void **state)
     cast_close(&c);
 }
 
+#define REFUSED(call, word)                        \
+    do {                                           \
+        memset(&error, 0, sizeof error);           \
+        assert_int_equal(call, NOH_ERR_ARG);       \
+        assert_non_null(strstr(error.what, word)); \
+    } while (0)
+
+/* Of a stage without `gpu`: what returns a result says what to set, what returns none does nothing. And objects that
+ * take a device say which call was forgotten. */
+static void every_call_without_a_gpu_is_refused(const cast *c, gpu *g)
+{
+    static const noh_gl_shader_desc shader_desc = { .name = "none" };
+    static noh_gl none;
+    static noh_lighting lighting;
+    static noh_stage_decals decals;
+    static noh_gl_renderer renderer;
+    static noh_stage_floor floor;
+    const noh_gl_renderer_desc renderer_desc = { .mesh_count = 0 };
+    const noh_gl_device device = device_of(g);
+    noh_stage_shader *shader;
+    noh_stage_drawn drawn;
+    noh_error error;
+    REFUSED(noh_stage_draw_shadow(c->stage, 0, &error), "noh_stage_on_gl");
+    REFUSED(noh_actor_on_gl(c->stage, noh_stage_actor_at(c->stage, 0), 0, &drawn, &error), "noh_stage_on_gl");
+    assert_int_equal(noh_stage_shader_size(c->stage), 0);
+    REFUSED(noh_stage_shader_create(c->stage, NULL, 0, &shader_desc, NULL, 0, &shader, &error), "noh_stage_on_gl");
+    assert_int_equal(noh_stage_decals_size(c->stage), 0);
+    REFUSED(noh_stage_decals_create(c->stage, &device, NULL, 0, NULL, &decals, &error), "noh_stage_on_gl");
+    noh_stage_set_lighting(c->stage, &lighting);
+    assert_null(noh_stage_light_of(c->stage));
+    REFUSED(noh_stage_floor_create(&none.device, 0, &floor, &error), "noh_gl_open");
+    REFUSED(noh_gl_renderer_create(&none.device, &renderer_desc, NULL, 0, &renderer, &error), "noh_gl_open");
+}
+
 /* Where noh_gl_open was forgotten, plan and stage say so; and a draw, where the stage has no gpu. */
 static void a_device_that_was_not_opened_is_refused(void **state)
 {
@@ -638,7 +672,7 @@ static void a_device_that_was_not_opened_is_refused(void **state)
     assert_int_equal(noh_stage_frame(c.stage, CAST_STEP, &view, NULL, NULL, NULL), NOH_OK);
     assert_int_equal(noh_stage_draw(c.stage, NOH_PASS_COLOR, 0, NULL, &error), NOH_ERR_ARG);
     assert_non_null(strstr(error.what, "noh_stage_on_gl"));
-    assert_int_equal(noh_stage_draw_shadow(c.stage, 0, &error), NOH_ERR_ARG);
+    every_call_without_a_gpu_is_refused(&c, &g);
     cast_close(&c);
     gpu_close(&g);
 }

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "core/base/assert_internal.h"
+#include "core/base/compiler_internal.h"
+#include "gl/device/gl_api_internal.h"
 
 noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *error)
 {
@@ -20,4 +22,10 @@ noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *e
     gl->device.log = gl->log;
     gl->device.log_bytes = sizeof gl->log;
     return NOH_OK;
+}
+
+noh_result noh_gl_device_check(const noh_gl_device *device, noh_error *error)
+{
+    if (NOH_PAGE || (device && device->api && device->ledger)) return NOH_OK;
+    return noh_fail(error, NOH_ERR_ARG, "the device is empty: call noh_gl_open first", 0, 0);
 }

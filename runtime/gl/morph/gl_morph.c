@@ -147,8 +147,9 @@ noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_devi
     noh_gl_morph *m;
     noh_arena arena;
     noh_result result;
-    NOH_ASSERT(device && device->api && device->caps && device->ledger && desc && morph);
-    result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
+    NOH_ASSERT(desc && morph);
+    result = noh_gl_device_check(device->caps ? device : NULL, error);
+    if (!result) result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
         result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor can address", 0,
                           plan.cpu_bytes);

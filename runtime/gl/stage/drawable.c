@@ -81,10 +81,11 @@ static void delete_objects(noh_gl_drawable *d, const noh_gl_api *gl)
 noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_drawable_desc *desc, noh_gl_drawable *out,
                                   noh_error *error)
 {
-    NOH_ASSERT(device && device->api && device->ledger && out);
-    const noh_gl_api *gl = device->api;
-    noh_result result = NOH_OK;
+    NOH_ASSERT(out);
+    noh_result result = noh_gl_device_check(device, error);
     memset(out, 0, sizeof *out);
+    if (result) return result;
+    const noh_gl_api *gl = device->api;
     out->gl = gl;
     out->ledger = device->ledger;
     out->is_soft = noh_gl_has_soft_shadows(device->caps);

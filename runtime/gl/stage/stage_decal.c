@@ -87,8 +87,8 @@ size_t noh_stage_decals_size(const noh_stage *stage)
 {
     noh_arena arena = noh_arena_measure();
     void *shader;
-    NOH_ASSERT(stage && stage->gpu);
-    return carve(stage, &arena, NULL, &shader);
+    NOH_ASSERT(stage);
+    return NOH_PAGE || stage->gpu ? carve(stage, &arena, NULL, &shader) : 0;
 }
 
 noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device, void *memory, size_t bytes,
@@ -108,7 +108,8 @@ noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device
     void *shader;
     NOH_ASSERT(stage && device && out);
     memset(out, 0, sizeof *out);
-    noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_decals_size(stage), error);
+    noh_result result = noh_gl_stage_check(stage, error);
+    if (!result) result = noh_arena_open(&arena, memory, bytes, noh_stage_decals_size(stage), error);
     if (result) return result;
     out->stage = stage;
     if (picture) out->picture = *picture;

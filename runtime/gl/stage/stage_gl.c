@@ -3,6 +3,7 @@
 
 #include "core/base/assert_internal.h"
 #include "core/base/compiler_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_skin_internal.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -571,9 +572,8 @@ static noh_result init(void *memory, size_t bytes, const void *device, const noh
     noh_stage_gl first;
     noh_result result;
     first.device = *(const noh_gl_device *)device;
-    if (!NOH_PAGE && !(first.device.api && first.device.caps && first.device.ledger)) {
-        return noh_fail(error, NOH_ERR_ARG, "the device of a stage is empty: call noh_gl_open first", 0, 0);
-    }
+    result = noh_gl_device_check(first.device.caps ? &first.device : NULL, error);
+    if (result) return result;
     m.caps = first.device.caps;
     m.gl = &first;
     result = visit(&m, error);
@@ -797,11 +797,13 @@ static void take_before(const noh_stage *s, const noh_stage_kind *k, const noh_s
 
 noh_result noh_actor_on_gl(noh_stage *stage, noh_actor actor, uint32_t index, noh_stage_drawn *out, noh_error *error)
 {
-    NOH_ASSERT(stage->gpu && out);
+    NOH_ASSERT(stage && out);
     noh_stage_kind *k;
     const noh_stage_actor *a = noh_stage_actor_of(stage, actor, &k);
     const noh_stage_shown *shown;
     const noh_gl_item *item;
+    const noh_result result = noh_gl_stage_check(stage, error);
+    if (result) return result;
     if (!a) {
         return noh_stage_gone(error, actor);
     }
@@ -843,9 +845,10 @@ const noh_stage_gpu noh_stage_on_gl = { measure_stage,
 
 size_t noh_stage_shader_size(const noh_stage *stage)
 {
-    NOH_ASSERT(stage && stage->gpu);
+    NOH_ASSERT(stage);
     const noh_stage_gl *gl = stage->gpu;
     noh_arena arena = noh_arena_measure();
+    if (!NOH_PAGE && !gl) return 0;
     (void)noh_arena_carve(&arena, sizeof(noh_stage_shader), 16);
     (void)noh_arena_carve(&arena, gl->variants_bytes, 16);
     return arena.used;
@@ -854,13 +857,14 @@ size_t noh_stage_shader_size(const noh_stage *stage)
 noh_result noh_stage_shader_create(noh_stage *stage, void *memory, size_t bytes, const noh_gl_shader_desc *desc,
                                    char *log, size_t log_bytes, noh_stage_shader **shader, noh_error *error)
 {
-    NOH_ASSERT(stage && stage->gpu && desc && shader);
+    NOH_ASSERT(stage && desc && shader);
     const noh_stage_gl *gl = stage->gpu;
     noh_gl_device device;
     noh_arena arena;
     noh_stage_shader *made;
     void *variants;
-    noh_result result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
+    noh_result result = noh_gl_stage_check(stage, error);
+    if (result == NOH_OK) result = noh_arena_open(&arena, memory, bytes, noh_stage_shader_size(stage), error);
     if (result != NOH_OK) {
         return result;
     }

@@ -146,6 +146,12 @@ static void draw_pass(drawing *d, int pass)
     noh_gl_draw_priority(d->renderer, NOH_PRIORITY_ANY);
 }
 
+noh_result noh_gl_stage_check(const noh_stage *stage, noh_error *error)
+{
+    if (NOH_PAGE || stage->gpu) return NOH_OK;
+    return noh_fail(error, NOH_ERR_ARG, "the stage draws nothing: set noh_stage_desc.gpu to &noh_stage_on_gl", 0, 0);
+}
+
 /* Check that a view can be drawn. */
 static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colour, noh_error *error)
 {
@@ -153,10 +159,8 @@ static noh_result check_draw(const noh_stage *stage, uint32_t view, int is_colou
         return noh_fail(error, NOH_ERR_ARG, "the last frame has no such view, or noh_stage_frame_end was not called",
                         view, stage->view_count);
     }
-    if (!NOH_PAGE && !stage->gpu) {
-        return noh_fail(error, NOH_ERR_ARG, "the stage draws nothing: set noh_stage_desc.gpu to &noh_stage_on_gl", 0,
-                        0);
-    }
+    const noh_result result = noh_gl_stage_check(stage, error);
+    if (result) return result;
     if (stage->desc.light && is_colour && !((const noh_stage_gl *)stage->gpu)->lighting) {
         return noh_fail(error, NOH_ERR_ARG, "the stage has a light: call noh_stage_set_lighting before drawing", 0, 0);
     }
@@ -266,21 +270,22 @@ void noh_gl_draw_alone(noh_gl_alone *alone, uint32_t index, const noh_stage_part
 
 void noh_stage_set_lighting(noh_stage *stage, const noh_lighting *lighting)
 {
-    NOH_ASSERT(stage && stage->gpu && stage->desc.light);
-    ((noh_stage_gl *)stage->gpu)->lighting = lighting;
+    NOH_ASSERT(stage);
+    if (NOH_PAGE || stage->gpu) ((noh_stage_gl *)stage->gpu)->lighting = lighting;
 }
 
 const noh_gl_light *noh_stage_light_of(const noh_stage *stage)
 {
-    NOH_ASSERT(stage && stage->gpu);
-    return ((const noh_stage_gl *)stage->gpu)->light;
+    NOH_ASSERT(stage);
+    return NOH_PAGE || stage->gpu ? ((const noh_stage_gl *)stage->gpu)->light : NULL;
 }
 
 noh_result noh_stage_draw_shadow(noh_stage *stage, uint32_t view, noh_error *error)
 {
     const noh_stage_gl *gl = stage->gpu;
-    noh_result result;
-    if ((!NOH_PAGE && !gl) || !gl->light || !gl->light->framebuffer) {
+    noh_result result = noh_gl_stage_check(stage, error);
+    if (result) return result;
+    if (!gl->light || !gl->light->framebuffer) {
         return noh_fail(error, NOH_ERR_ARG, "the stage has no shadow map: set noh_gl_light_desc.shadow_px", 0, 0);
     }
     noh_gl_light_begin_shadow(gl->light);

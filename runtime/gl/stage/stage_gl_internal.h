@@ -280,6 +280,9 @@ noh_result noh_gl_visit_slot(const noh_stage_desc *desc, const noh_stage_plan *p
                              noh_stage_gl *gl, uint32_t kind, void *memory, noh_kind_room *room, uint32_t *morph_path,
                              noh_error *error);
 
+/* errors  ARG the stage has no `gpu` (stage_gl_draw.c) */
+noh_result noh_gl_stage_check(const noh_stage *stage, noh_error *error);
+
 /* ---- what stages share (stage_gl_share.c) ---- */
 
 static inline int noh_gl_shares(const noh_stage_gl *gl)

@@ -316,7 +316,7 @@ static void begin(const noh_stage_hair *h, const layout *l, int program, const n
     d->gl->UniformMatrix4fv(uniforms[U_CAMERA], 1, GL_FALSE, v->view_projection);
     d->gl->Uniform4f(uniforms[U_EYE], v->eye[0], v->eye[1], v->eye[2], v->height_px ? 1.0f : 0.0f);
     d->gl->Uniform4f(uniforms[U_LIGHT], v->light[0], v->light[1], v->light[2], 0.0f);
-    if (h->lit && gl->light && gl->lighting && program == NOH_DRAWABLE_COLOR) {
+    if (h->lit && noh_stage_light_of(s) && gl->lighting && program == NOH_DRAWABLE_COLOR) {
         noh_gl_drawable_light(d, gl->light, gl->lighting, s->origin);
     }
 }
@@ -341,7 +341,7 @@ static void draw_groups(noh_stage_hair *h, const layout *l, int program, float l
 
 void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t view, noh_pass pass)
 {
-    NOH_ASSERT(hair && hair->drawable.gl && stage && stage->gpu);
+    NOH_ASSERT(hair && hair->drawable.gl && stage);
     const noh_gl_api *gl = hair->drawable.gl;
     const layout l = layout_of(noh_actor_hair_desc_of(hair->hair));
     const int program = pass == NOH_PASS_DEPTH ? NOH_DRAWABLE_DEPTH : NOH_DRAWABLE_COLOR;
@@ -361,9 +361,9 @@ void noh_stage_hair_draw(noh_stage_hair *hair, const noh_stage *stage, uint32_t 
 
 void noh_stage_hair_draw_shadow(noh_stage_hair *hair, const noh_stage *stage, uint32_t view)
 {
-    NOH_ASSERT(hair && hair->drawable.gl && stage && stage->gpu);
+    NOH_ASSERT(hair && hair->drawable.gl && stage);
     const noh_stage_gl *gl = stage->gpu;
-    const noh_gl_light *light = gl->light;
+    const noh_gl_light *light = noh_stage_light_of(stage);
     if (!light || !light->framebuffer) return;
     noh_gl_group_begin(hair->drawable.gl, "noh hair's shadow", NULL);
     noh_gl_light_bind_shadow(light);

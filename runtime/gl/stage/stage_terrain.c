@@ -144,7 +144,7 @@ static void begin(const noh_stage_terrain *t, int program, const noh_stage *s, c
     gl->Uniform4f(uniforms[U_STEEP], steep[0], steep[1], steep[2], 1.0f);
     if (t->desc.lit && s && program == NOH_DRAWABLE_COLOR) {
         const noh_stage_gl *of = s->gpu;
-        if (of->light && of->lighting) noh_gl_drawable_light(d, of->light, of->lighting, o);
+        if (noh_stage_light_of(s) && of->lighting) noh_gl_drawable_light(d, of->light, of->lighting, o);
     }
     noh_gl_tests_begin(gl, raster);
     gl->Disable(GL_CULL_FACE);
@@ -180,14 +180,15 @@ void noh_stage_terrain_draw(noh_stage_terrain *terrain, const noh_stage *stage, 
 void noh_stage_terrain_draw_shadow(noh_stage_terrain *terrain, const noh_stage *stage, const noh_stage_view *view)
 {
     noh_gl_raster raster;
-    NOH_ASSERT(terrain && terrain->drawable.gl && stage && stage->gpu && view);
+    NOH_ASSERT(terrain && terrain->drawable.gl && stage && view);
     const noh_stage_gl *gl = stage->gpu;
-    if (!gl->light || !gl->light->framebuffer) return;
+    const noh_gl_light *light = noh_stage_light_of(stage);
+    if (!light || !light->framebuffer) return;
     noh_gl_group_begin(terrain->drawable.gl, "noh terrain's shadow", NULL);
-    noh_gl_light_bind_shadow(gl->light);
+    noh_gl_light_bind_shadow(light);
     begin(terrain, NOH_DRAWABLE_DEPTH, NULL, view, &raster);
     noh_gl_depth_only_begin(terrain->drawable.gl, &raster);
     draw_blocks(terrain, NOH_DRAWABLE_DEPTH, 1);
     noh_gl_drawable_end(&terrain->drawable, &raster);
-    noh_gl_light_end_shadow(gl->light, view->view_projection, gl->lighting);
+    noh_gl_light_end_shadow(light, view->view_projection, gl->lighting);
 }
