@@ -1,5 +1,7 @@
 #include "lod_joints_weights.h"
 
+#include "lod_joints.h"
+
 #include <string.h>
 
 #define CANDIDATES 8u /* joints of a point that are tried in all combinations */
@@ -17,7 +19,35 @@ double joint_dot(const float *a, const float *b, size_t count)
     return sum;
 }
 
+/* Of one column with three others, with the bits of joint_dot: each addition waits for the last one of its sum, so that
+ * three sums take the time of one. */
+static void three_dots(const float *a, const float *const others[3], size_t count, double out[3])
+{
+    const float *b = others[0], *c = others[1], *d = others[2];
+    double with_b = 0.0, with_c = 0.0, with_d = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        with_b += (double)a[i] * (double)b[i];
+        with_c += (double)a[i] * (double)c[i];
+        with_d += (double)a[i] * (double)d[i];
+    }
+    out[0] = with_b;
+    out[1] = with_c;
+    out[2] = with_d;
+}
+
 /* ---- candidates ---- */
+
+/* Of each joint's column: with what is wanted, with what the last round left, with itself. */
+enum { WANTED, LEFT, ITSELF, DOTS };
+
+static void measure(const joint_columns *of, const float *left, double dots[LOD_JOINTS_MAX][DOTS])
+{
+    for (uint32_t j = 0; j < of->joint_count; j++) {
+        const float *own = of->predicted + j * of->width;
+        const float *const others[DOTS] = { of->wanted, left, own };
+        three_dots(own, others, of->width, dots[j]);
+    }
+}
 
 static int is_candidate(const choice *c, uint32_t joint)
 {
@@ -27,19 +57,18 @@ static int is_candidate(const choice *c, uint32_t joint)
     return 0;
 }
 
-/* Add the joints that alone come nearest to a column, until there are `most`. */
-static void add_nearest(const joint_columns *of, const float *to, uint32_t most, choice *c)
+/* Add the joints that alone come nearest to a column, WANTED or LEFT, until there are `most`. */
+static void add_nearest(const joint_columns *of, double dots[LOD_JOINTS_MAX][DOTS], int to, uint32_t most, choice *c)
 {
     double gain[CANDIDATES];
     uint32_t nearest[CANDIDATES], count = 0;
     const uint32_t room = most - c->count;
     for (uint32_t j = 0; j < of->joint_count; j++) {
-        const float *own = of->predicted + j * of->width;
         double with, length, w, least;
         uint32_t at;
         if (of->parent[j] != of->of || is_candidate(c, j)) continue;
-        with = joint_dot(own, to, of->width);
-        length = joint_dot(own, own, of->width);
+        with = dots[j][to];
+        length = dots[j][ITSELF];
         w = length > 0.0 && with > 0.0 ? with / length : 0.0;
         w = w < of->share ? w : of->share;
         least = w * (w * length - 2.0 * with);
@@ -63,6 +92,7 @@ static void add_nearest(const joint_columns *of, const float *to, uint32_t most,
  * the rest nearest to what the last round left. */
 static void choose(const joint_columns *of, const uint8_t *joint, const float *weight, float *left, choice *c)
 {
+    double dots[LOD_JOINTS_MAX][DOTS], three[3];
     memcpy(left, of->wanted, of->width * sizeof *left);
     c->count = 0;
     for (uint32_t i = 0; i < JOINTS_PER_VERTEX; i++) {
@@ -71,13 +101,21 @@ static void choose(const joint_columns *of, const uint8_t *joint, const float *w
         c->joint[c->count++] = joint[i];
         for (size_t k = 0; k < of->width; k++) left[k] -= weight[i] * own[k];
     }
-    add_nearest(of, of->wanted, (c->count + CANDIDATES) / 2u, c);
-    add_nearest(of, left, CANDIDATES, c);
+    measure(of, left, dots);
+    add_nearest(of, dots, WANTED, (c->count + CANDIDATES) / 2u, c);
+    add_nearest(of, dots, LEFT, CANDIDATES, c);
     for (uint32_t i = 0; i < c->count; i++) {
         const float *own = of->predicted + c->joint[i] * of->width;
-        c->with[i] = joint_dot(own, of->wanted, of->width);
-        for (uint32_t k = 0; k <= i; k++) {
-            c->gram[i][k] = c->gram[k][i] = joint_dot(own, of->predicted + c->joint[k] * of->width, of->width);
+        c->with[i] = dots[c->joint[i]][WANTED];
+        c->gram[i][i] = dots[c->joint[i]][ITSELF];
+        for (uint32_t k = 0; k < i; k++) {
+            if (k % 3u == 0) {
+                const float *others[3];
+                for (uint32_t n = 0; n < 3u; n++)
+                    others[n] = of->predicted + c->joint[k + n < i ? k + n : k] * of->width;
+                three_dots(own, others, of->width, three);
+            }
+            c->gram[i][k] = c->gram[k][i] = three[k % 3u];
         }
     }
 }
