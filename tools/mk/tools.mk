@@ -214,7 +214,7 @@ PUPPET_SPRINGS := tools/demo_assets/puppet/puppet.springs
 
 # With what gets up from a fall.
 $(BUILD)/demo/puppet_falls.noh: $(BUILD)/demo/puppet.glb $(BUILD)/demo/get_up.glb $(BUILD)/noh
-	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --plain --quiet
+	$(BUILD)/noh build $(filter %.glb,$^) -o $@ --plain --effort 1 --quiet
 
 $(BUILD)/demo/arm_transfer.noh: $(BUILD)/demo/arm.glb $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --transfer 4 --quiet
@@ -233,7 +233,7 @@ $(BUILD)/demo/puppet.noh: $(BUILD)/demo/puppet.glb $(PUPPET_GRAPH) $(PUPPET_SPRI
 $(BUILD)/demo/puppet_levels.noh: $(BUILD)/demo/puppet.glb $(PUPPET_MOVES) $(BUILD)/noh
 	$(BUILD)/noh build $< -o $@ --plain --lod 4 --lod-fast --graph $(PUPPET_MOVES) --quiet
 $(BUILD)/demo/roam.noh: $(BUILD)/demo/roam.glb $(ROAM_MATCH) $(BUILD)/noh
-	$(BUILD)/noh build $< -o $@ --match $(ROAM_MATCH) --quiet
+	$(BUILD)/noh build $< -o $@ --match $(ROAM_MATCH) --effort 1 --quiet
 endif
 
 # Figures of shaders on phones, for `noh budget --gpu`.
