@@ -17,12 +17,18 @@ vec3 noh_toon(noh_surface s, float lit)
 {
     vec3 lamp = normalize(noh_key * vec3(1.0, 0.4, 1.0) + 0.3 * s.view);
     float hard = noh_surface_more[0].x, reach = dot(s.normal, lamp) + noh_surface_values.w + 1.0 - hard;
-    vec3 color = mix(s.shade, s.albedo, clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit);
+#ifdef NOH_TOON_MASKS
+    reach += (255.0 * s.masks.r - 128.0) / 127.0;
+#endif
+    vec3 tone = mix(s.shade, s.albedo, clamp(reach / max(2.0 - 2.0 * hard, 1e-3), 0.0, 1.0) * lit), color = tone;
     float away = clamp(1.0 - dot(s.normal, s.view) + noh_surface_more[0].z, 1e-4, 1.0);
     color += noh_surface_more[1] * pow(away, noh_surface_more[0].y);
 #ifdef NOH_MATCAP
     vec3 right = normalize(vec3(s.view.z, 1e-6, -s.view.x)), up = cross(s.view, right);
     color += texture(noh_wrinkle_weights_1, vec2(0.5) + 0.5 * vec2(dot(right, s.normal), -dot(up, s.normal))).rgb;
+#endif
+#ifdef NOH_TOON_MASKS
+    color = mix(tone, color, s.masks.b);
 #endif
     return color;
 }

@@ -9,6 +9,7 @@
  *   NOH_TOON          defined: it is a toon
  *   NOH_TOON_SHADE    defined: and its shade has a texture
  *   NOH_MATCAP        defined: and it has a matcap
+ *   NOH_TOON_MASKS    defined: and it has masks of its edge and its rim
  *   NOH_HAIR          defined: it is hair
  *   NOH_WRINKLES      defined: it has a wrinkle map and weights of regions
  *   NOH_WRINKLE_PIXEL defined: the weights are in a mask that pixels read
@@ -68,6 +69,9 @@ uniform mediump sampler2D noh_wrinkle_weights_0; /* the shade */
 #ifdef NOH_MATCAP
 uniform mediump sampler2D noh_wrinkle_weights_1; /* the matcap */
 #endif
+#ifdef NOH_TOON_MASKS
+uniform mediump sampler2D noh_wrinkle_weights_2; /* r: shift of the edge, b: multiplies rim and matcap */
+#endif
 #endif
 
 #ifdef NOH_HAIR
@@ -91,6 +95,7 @@ struct noh_surface {
     float f90;       /* of non-metals, at grazing angles */
 #ifdef NOH_TOON
     vec3 shade;      /* linear colour where no light arrives */
+    vec3 masks;      /* shift of the edge; share of the rim */
 #endif
 #ifdef NOH_HAIR
     vec3 strand;     /* unit, along the hair, perpendicular to the normal */
@@ -206,6 +211,9 @@ noh_surface noh_surface_of(vec4 base, vec3 position, vec3 normal, vec4 tangent, 
     s.shade *= noh_surface_values.rgb;
 #elif defined(NOH_TOON)
     s.shade = noh_surface_values.rgb * s.albedo;
+#endif
+#ifdef NOH_TOON_MASKS
+    s.masks = texture(noh_wrinkle_weights_2, uv).rgb;
 #endif
 #ifdef NOH_EMISSIVE
     s.emissive = noh_emissive * texture(noh_emissive_texture, uv).rgb;

@@ -389,6 +389,7 @@ typedef struct noh_node {
 #define NOH_MATERIAL_SPECULAR_ROUGHNESS 128u /* multiplies roughness */
 #define NOH_MATERIAL_TOON_SHADE 256u         /* a toon's shade has a texture of its own; without: the base colour's */
 #define NOH_MATERIAL_OUTLINE_LIT 512u        /* the base colour multiplies the colour of the outline */
+#define NOH_MATERIAL_TOON_MASKS 1024u        /* pixels of a toon read the red and blue of its third texture */
 
 /* The lighting model of a material. noh_material.surface_values (x, y, z, w) and then surface_more hold, for
  *   skin   x millimetres per world unit, for scattering; 0: 1000. Then the inside of the mouth, in the bind pose and
@@ -425,7 +426,10 @@ typedef struct noh_node {
 /* noh_material.more_textures of a toon */
 #define NOH_TOON_SHADE 0u  /* rgb in shade, with NOH_MATERIAL_TOON_SHADE; NOH_NONE: white */
 #define NOH_TOON_MATCAP 1u /* rgb added, by the normal seen from the eye */
-#define NOH_TOON_WIDTH 2u  /* data: g multiplies the width of the outline, sampled at vertices */
+#define NOH_TOON_WIDTH \
+    2u /* data: g multiplies the width of the outline, sampled at vertices; with
+                             * NOH_MATERIAL_TOON_MASKS (255 r - 128) / 127 is added to the cosine of the light, and b
+                             * multiplies rim and matcap */
 
 /* Textures are indices of texture chunks, or NOH_NONE; colour textures are sRGB, the others LINEAR. The mesh's texture
  * coordinates include any texture transform of the source. */

@@ -447,11 +447,12 @@ noh_gl_skin_binding noh_gl_skin_binding_of(const noh_gl_skin *skin, uint32_t ins
 #define NOH_FEATURE_ALPHA 2048u              /* cut or blended: pixels are discarded by alpha */
 #define NOH_FEATURE_PHONE 4096u /* the phone tier: approximations at pixels; set by the renderer, not by a material */
 
-#define NOH_FEATURE_TOON_SHADE 8192u /* with a toon: its shade has a texture */
-#define NOH_FEATURE_MATCAP 16384u    /* with a toon */
-#define NOH_FEATURE_OUTLINE 32768u   /* with a toon: the outline's hull in place of the surface */
-#define NOH_FEATURE_COLORS 65536u    /* a map of regions that targets colour (noh_wrinkles.colors) */
-#define NOH_FEATURE_HAIR 131072u     /* cards of hair */
+#define NOH_FEATURE_TOON_SHADE 8192u   /* with a toon: its shade has a texture */
+#define NOH_FEATURE_MATCAP 16384u      /* with a toon */
+#define NOH_FEATURE_OUTLINE 32768u     /* with a toon: the outline's hull in place of the surface */
+#define NOH_FEATURE_COLORS 65536u      /* a map of regions that targets colour (noh_wrinkles.colors) */
+#define NOH_FEATURE_HAIR 131072u       /* cards of hair */
+#define NOH_FEATURE_TOON_MASKS 262144u /* with a toon: masks of its edge and its rim */
 
 #define NOH_GL_DEFINES_BYTES 864u
 

@@ -710,6 +710,48 @@ static void a_toon_has_a_rim_and_a_matcap(void **state)
     scene_close(&s);
 }
 
+/* Its third texture moves the edge towards the light, and takes half of the rim and the matcap away. */
+static void a_toon_has_masks(void **state)
+{
+    static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
+    static uint8_t rgba[16 * 16 * 4];
+    const model_texture mask = { .rgba = rgba, .width = 16, .height = 16, .wrap_s = 10497, .wrap_t = 10497 };
+    model_material toon = scene_material(values);
+    noh_lighting lighting;
+    double worst = 0.0;
+    size_t count;
+    scene s;
+    (void)state;
+    for (uint32_t i = 0; i < 16 * 16; i++) memcpy(rgba + 4 * i, (uint8_t[4]){ 64, 255, 128, 255 }, 4);
+    toon.surface = NOH_SURFACE_TOON;
+    toon.toon_masks = 1;
+    toon.surface_values[0] = toon.surface_values[1] = 0.5f;
+    toon.surface_more[0] = 0.9f;
+    toon.surface_more[1] = 65536.0f * 204.0f; /* blue, 0.64 */
+    toon.surface_more[2] = 3.0f;
+    toon.more_textures[NOH_TOON_WIDTH] = 0;
+    model_texture data = mask;
+    data.use = MODEL_TEXTURE_DATA;
+    uint8_t *pack = scene_pack(&toon, &data, &count);
+    scene_open_pack(&s, pack, count, &scene_black, 0, NULL);
+    key_alone(front, &lighting);
+    uint8_t *drawn = scene_draw(&s, SPHERE, scene_identity, &lighting);
+    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
+        const double x = pixel_at(i % SIDE), y = -pixel_at(i / SIDE), r2 = x * x + y * y;
+        if (r2 > 0.8) continue;
+        const double z = sqrt(1.0 - r2), lit = fmin(fmax((z - 64.0 / 127.0 + 0.1) / 0.2, 0.0), 1.0);
+        for (int c = 0; c < 3; c++) {
+            const double shade = c < 2 ? 0.15 : 0.0, rim = c == 2 ? 0.64 * pow(1.0 - z, 3.0) * 128.0 / 255.0 : 0.0;
+            const double should = 0.9 * (shade + (0.3 - shade) * lit + rim);
+            worst = fmax(worst, fabs(decoded(drawn[4 * i + (uint32_t)c]) - should));
+        }
+    }
+    print_message("off by %.4f at most\n", worst);
+    assert_true(worst < 0.03);
+    free(drawn);
+    scene_close(&s);
+}
+
 /* A ball of radius 0.5 under an outline of 0.1 in the world, or a twentieth of the picture's height, also in a mirror:
  * the hull's front is open. */
 static void a_toon_has_an_outline(void **state)
@@ -763,6 +805,7 @@ int main(void)
         cmocka_unit_test(a_toon_has_two_tones),
         cmocka_unit_test(a_toon_needs_no_key),
         cmocka_unit_test(a_toon_has_a_rim_and_a_matcap),
+        cmocka_unit_test(a_toon_has_masks),
         cmocka_unit_test(a_toon_has_an_outline),
         cmocka_unit_test(a_highlight_is_seen_from_its_point),
     };

@@ -66,6 +66,7 @@ uint32_t noh_material_maps(const noh_material *m)
                      (m->emissive[0] > 0.0f || m->emissive[1] > 0.0f || m->emissive[2] > 0.0f) +
                      (m->wrinkle_texture != NOH_NONE) + ((m->flags & SPECULAR) != 0) +
                      ((m->flags & NOH_MATERIAL_WRINKLE_CODES) != 0) + ((m->flags & NOH_MATERIAL_TOON_SHADE) != 0) +
+                     ((m->flags & NOH_MATERIAL_TOON_MASKS) != 0) +
                      (is_toon && m->more_textures[NOH_TOON_MATCAP] != NOH_NONE);
     return (uint32_t)maps;
 }
@@ -93,7 +94,7 @@ static noh_result check_toon(const noh_check *check, const noh_material *m, uint
     const float *more = m->surface_more;
     const uint64_t where = at + offsetof(noh_material, surface_more);
     if (m->surface != NOH_SURFACE_TOON) {
-        return m->flags & (NOH_MATERIAL_TOON_SHADE | NOH_MATERIAL_OUTLINE_LIT)
+        return m->flags & (NOH_MATERIAL_TOON_SHADE | NOH_MATERIAL_OUTLINE_LIT | NOH_MATERIAL_TOON_MASKS)
                    ? noh_check_fail(check, "material has flags of a toon, but another surface", at)
                    : NOH_OK;
     }
@@ -118,7 +119,7 @@ static noh_result check_material(const noh_check *check, const noh_material *m, 
     if (!result) result = noh_check_floats(check, m->surface_values, 4, "material value is not finite");
     if (!result) result = noh_check_floats(check, m->surface_more, 6, "material value is not finite");
     if (!result) result = check_material_textures(check, m, at);
-    if (!result && m->flags & ~1023u) {
+    if (!result && m->flags & ~2047u) {
         result = noh_check_fail(check, "unknown material flags", at + offsetof(noh_material, flags));
     }
     if (!result) result = check_wrinkle_codes(check, m, at);

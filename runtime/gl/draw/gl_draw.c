@@ -261,7 +261,8 @@ static void set_features(const noh_gl_renderer *r, const noh_gl_variant *v, cons
         r->gl->Uniform3fv(v->u_emissive, 1, m->emissive);
     }
     for (uint32_t k = 0; k < 3; k++) {
-        static const uint32_t of[3] = { NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP, NOH_FEATURE_OUTLINE };
+        static const uint32_t of[3] = { NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP,
+                                        NOH_FEATURE_OUTLINE | NOH_FEATURE_TOON_MASKS };
         if (features & NOH_FEATURE_TOON && features & of[k])
             bind_picture(r, NOH_UNIT_WRINKLE_WEIGHTS + k, m->more_textures[k], pictures);
     }

@@ -91,6 +91,7 @@ uint32_t noh_gl_features_of(const noh_mesh *mesh, const noh_material *m)
         features |= NOH_FEATURE_TOON;
         if (m->flags & NOH_MATERIAL_TOON_SHADE) features |= NOH_FEATURE_TOON_SHADE;
         if (m->more_textures[NOH_TOON_MATCAP] != NOH_NONE) features |= NOH_FEATURE_MATCAP;
+        if (m->flags & NOH_MATERIAL_TOON_MASKS) features |= NOH_FEATURE_TOON_MASKS;
     }
     return features;
 }
@@ -141,7 +142,8 @@ static unsigned shadow_taps(uint32_t features)
 {
     static const unsigned maps[] = { NOH_FEATURE_NORMAL_MAP, NOH_FEATURE_SURFACE_MAP,   NOH_FEATURE_EMISSIVE,
                                      NOH_FEATURE_WRINKLES,   NOH_FEATURE_WRINKLE_PIXEL, NOH_FEATURE_SPECULAR_MAP,
-                                     NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP,        NOH_FEATURE_COLORS };
+                                     NOH_FEATURE_TOON_SHADE, NOH_FEATURE_MATCAP,        NOH_FEATURE_COLORS,
+                                     NOH_FEATURE_TOON_MASKS };
     unsigned left = NOH_GL_FETCHES_MAX - 2u; /* base colour and environment */
     if (features & NOH_FEATURE_PHONE) return 1u;
     for (size_t i = 0; i < sizeof maps / sizeof maps[0]; i++) left -= (features & maps[i]) != 0;
@@ -181,6 +183,7 @@ void noh_gl_variant_defines(noh_gl_variant_key key, char text[NOH_GL_DEFINES_BYT
                   { key.features & NOH_FEATURE_TOON, "#define NOH_TOON\n" },
                   { key.features & NOH_FEATURE_TOON_SHADE, "#define NOH_TOON_SHADE\n" },
                   { key.features & NOH_FEATURE_MATCAP, "#define NOH_MATCAP\n" },
+                  { key.features & NOH_FEATURE_TOON_MASKS, "#define NOH_TOON_MASKS\n" },
                   { key.features & NOH_FEATURE_OUTLINE, "#define NOH_OUTLINE\n" },
                   { key.features & NOH_FEATURE_SPECULAR_MAP, "#define NOH_SPECULAR_MAP\n" },
                   { key.features & NOH_FEATURE_SPECULAR_ROUGHNESS, "#define NOH_SPECULAR_ROUGHNESS\n" },

@@ -1918,7 +1918,71 @@ static void mtoon_has_textures(void **state)
     assert_int_equal(m->textures[own->more_textures[NOH_TOON_WIDTH]].use, MODEL_TEXTURE_DATA);
     assert_true(!same->toon_shade && same->more_textures[NOH_TOON_SHADE] == MODEL_NONE);
     assert_true(white->toon_shade && white->more_textures[NOH_TOON_SHADE] == MODEL_NONE);
-    assert_true(has_warning(m, "rimMultiplyTexture of its MToon shading was left out"));
+    assert_true(white->more_textures[NOH_TOON_WIDTH] == MODEL_NONE && !white->toon_masks); /* it has no rim */
+    model_free(m);
+}
+
+/* Images of the edge's shift, the outline's width and the rim are the channels of one texture, in bytes of light; an
+ * image that changes nothing has none. */
+static void mtoon_has_masks(void **state)
+{
+    scene *s = vrm_scene("\"VRMC_vrm\":{}");
+    (void)state;
+#define TOON(rest) "{\"extensions\":{\"VRMC_materials_mtoon\":{\"parametricRimColorFactor\":[1,1,1]," rest "}}}"
+    APPEND(
+        s->rest,
+        ",\"materials\":[" TOON(
+            "\"rimMultiplyTexture\":{\"index\":0},\"shadingShiftTexture\":{\"index\":0,"
+            "\"scale\":-0.5}") "," TOON("\"shadingShiftTexture\":{\"index\":0,\"scale\":0}") "," TOON("\"shadingShiftTexture\":{\"index\":0},\"outlineWidthMode\":\"worldCoordinates\","
+                                                                                                      "\"outlineWidthFactor\":0.1,\"outlineWidthMultiplyTexture\":{\"index\":0}") "],"
+                                                                                                                                                                                  "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
+        png_2x1);
+#undef TOON
+    model *m = load(s);
+    const uint8_t rim[8] = { 65, 255, 54, 255, 128, 255, 58, 255 }, width[8] = { 255, 0, 255, 255, 128, 128, 255, 255 };
+    const model_material *own = &m->materials[0], *none = &m->materials[1], *line = &m->materials[2];
+    assert_true(own->toon_masks && !none->toon_masks && line->toon_masks);
+    assert_int_equal(m->textures[own->more_textures[NOH_TOON_WIDTH]].use, MODEL_TEXTURE_DATA);
+    assert_memory_equal(m->textures[own->more_textures[NOH_TOON_WIDTH]].rgba, rim, sizeof rim);
+    assert_memory_equal(m->textures[line->more_textures[NOH_TOON_WIDTH]].rgba, width, sizeof width);
+    assert_int_equal(none->more_textures[NOH_TOON_WIDTH], MODEL_NONE);
+    assert_true(has_warning(m, "the hue of rimMultiplyTexture of its MToon shading was left out"));
+    model_free(m);
+}
+
+/* Each property without a place in a pack has a warning, in both versions; what blends keeps its order. */
+static void mtoon_is_not_lost_in_silence(void **state)
+{
+    static const char *const told[] = { "giEqualizationFactor of its MToon shading was taken as 1",
+                                        "rimLightingMixFactor of its MToon shading was taken as 1",
+                                        "outlineLightingMixFactor of its MToon shading was taken as 1",
+                                        "uvAnimationScrollXSpeedFactor of its MToon shading was left out" };
+    scene *s = vrm_scene("\"VRMC_vrm\":{}");
+    (void)state;
+    APPEND(
+        s->rest, "%s",
+        ",\"materials\":[{\"alphaMode\":\"BLEND\",\"extensions\":{\"VRMC_materials_mtoon\":{\"giEqualizationFactor\":0.5,"
+        "\"parametricRimColorFactor\":[1,1,1],\"rimLightingMixFactor\":0,\"outlineWidthMode\":\"screenCoordinates\","
+        "\"outlineWidthFactor\":0.01,\"outlineLightingMixFactor\":0.6,\"uvAnimationScrollXSpeedFactor\":0.1,"
+        "\"renderQueueOffsetNumber\":-3}}},{\"alphaMode\":\"BLEND\",\"extensions\":{\"VRMC_materials_mtoon\":"
+        "{\"transparentWithZWrite\":true,\"renderQueueOffsetNumber\":9}}}]");
+    model *m = load(s);
+    for (size_t i = 0; i < sizeof told / sizeof told[0]; i++) assert_true(has_warning(m, told[i]));
+    assert_int_equal(m->materials[0].priority, -3);
+    assert_int_equal(m->materials[1].priority, -91);
+    model_free(m);
+    s = vrm_scene("\"VRM\":{\"materialProperties\":[{\"shader\":\"VRM/MToon\",\"renderQueue\":2998,\"floatProperties\":"
+                  "{\"_UvAnimRotation\":1},\"textureProperties\":{\"_ShadingGradeTexture\":0,\"_RimTexture\":0},"
+                  "\"vectorProperties\":{\"_RimColor\":[1,1,1,1]}},{\"shader\":\"VRM/MToon\",\"renderQueue\":2502,"
+                  "\"floatProperties\":{\"_BlendMode\":3}}]}");
+    APPEND(s->rest,
+           ",\"materials\":[{\"alphaMode\":\"BLEND\"},{\"alphaMode\":\"BLEND\"}],\"textures\":[{\"source\":0}],"
+           "\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
+           png_2x1);
+    m = load(s);
+    assert_true(has_warning(m, "_UvAnimRotation of its MToon shading was left out"));
+    assert_true(has_warning(m, "_ShadingGradeTexture of its MToon shading was left out"));
+    assert_true(m->materials[0].toon_masks && m->materials[0].priority == -2 && m->materials[1].priority == -99);
     model_free(m);
 }
 
@@ -3115,6 +3179,8 @@ int main(void)
         cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(large_images_are_counted_first),
         cmocka_unit_test(mtoon_has_textures),
+        cmocka_unit_test(mtoon_has_masks),
+        cmocka_unit_test(mtoon_is_not_lost_in_silence),
         cmocka_unit_test(animation_linear),
         cmocka_unit_test(animation_of_normalised_bytes),
         cmocka_unit_test(animation_cubic),

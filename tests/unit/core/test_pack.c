@@ -433,12 +433,12 @@ static float nan_value(void)
       (f->materials[0].surface = NOH_SURFACE_TOON, f->materials[0].surface_more[5] = 16777216.0f))                   \
     X(material_toon_rim, DATA, "power of a toon's rim",                                                              \
       (f->materials[0].surface = NOH_SURFACE_TOON, f->materials[0].surface_more[2] = -1.0f))                         \
-    X(material_toon_flags, DATA, "flags of a toon", f->materials[0].flags |= NOH_MATERIAL_TOON_SHADE)                \
+    X(material_toon_flags, DATA, "flags of a toon", f->materials[0].flags |= NOH_MATERIAL_TOON_MASKS)                \
     X(material_toon_matcap, DATA, "colour texture for data", f->materials[0].more_textures[NOH_TOON_MATCAP] = 0)     \
     X(material_texture_missing, DATA, "texture", f->materials[0].base_color_texture = 1)                             \
     X(material_flags, DATA, "flags", f->materials[0].flags = 32)                                                     \
     X(material_wrinkles, DATA, "unknown models of wrinkles", f->materials[0].wrinkle_models = 1)                     \
-    X(material_flags_unknown, DATA, "flags", f->materials[0].flags |= 1024)                                          \
+    X(material_flags_unknown, DATA, "flags", f->materials[0].flags |= 2048)                                          \
     X(material_specular_missing, DATA, "specular map", f->materials[0].flags |= 192)                                 \
     X(material_f90, DATA, "grazing angles", f->materials[0].f90_loss = 1.5f)                                         \
     X(material_specular_unused, DATA, "specular map", f->materials[0].specular_texture = 1)                          \

@@ -255,11 +255,17 @@ bool faces_back(const file &f);
 void read_vrm(file &f); /* after read_nodes and read_meshes */
 /* A target without deltas for each expression of a mesh, moved by its recipe: after read_animations. */
 void add_expressions(file &f);
+/* A member of an object, or NULL. */
+const tinygltf::Value *member(const tinygltf::Value &object, const char *key);
+const tinygltf::Value *array_member(const tinygltf::Value &object, const char *key);
+std::string text_member(const tinygltf::Value &object, const char *key); /* "": it has none */
+const tinygltf::Value *vrm_extension(const file &f, const char *name);   /* of the file */
 /* The textures of a toon, indices in the file, or -1. */
 struct toon_maps {
     bool given = false; /* it is a toon of VRM (MToon) */
-    int shade = -1, matcap = -1, width = -1;
-    double matcap_factor[3] = { 1.0, 1.0, 1.0 };
+    int shade = -1, matcap = -1, width = -1, shift = -1, rim = -1;
+    double matcap_factor[3] = { 1.0, 1.0, 1.0 }, shift_scale = 1.0;
+    int priority = 0; /* of what blends: VRM's order */
 };
 /* MToon of a material: sets its tones, rim and outline. After its base colour. */
 toon_maps read_toon(file &f, size_t index, const std::string &where, model_material &out);

@@ -15,7 +15,7 @@
 namespace gltf
 {
 
-static const int SPECULAR_KEY = -1, MATCAP_KEY = -2; /* in file.texture_of, in place of a use */
+static const int SPECULAR_KEY = -1, MATCAP_KEY = -2, MASKS_KEY = -3; /* in file.texture_of, in place of a use */
 
 static std::string material_where(const file &f, size_t material)
 {
@@ -190,10 +190,10 @@ static void put_channel(const model_texture &from, model_texture &to, size_t cha
     }
 }
 
-static void fill_channel(model_texture &t, size_t channel)
+static void fill_channel(model_texture &t, size_t channel, uint8_t byte = 255)
 {
     const size_t count = size_t{ t.width } * t.height;
-    for (size_t i = 0; i < count; ++i) t.rgba[i * 4 + channel] = 255;
+    for (size_t i = 0; i < count; ++i) t.rgba[i * 4 + channel] = byte;
 }
 
 /* Put a channel of another image into a map. */
@@ -532,12 +532,85 @@ static uint32_t matcap_texture(file &f, const toon_maps &toon, const std::string
     return f.texture_of[key] = slot;
 }
 
+/* Masks of a toon: how far the edge moves, in red, the outline's width, in green, and the light of the rim, in blue. A
+ * channel that changes nothing has this byte. */
+static const uint8_t no_mask[3] = { 128, 255, 255 };
+
+static double mask_of(const uint8_t *rgba, size_t channel, double scale)
+{
+    const double shift = std::min(std::max(scale * rgba[0] / 255.0, -1.0), 1.0);
+    if (channel == 0) return 128.0 + 127.0 * shift;
+    if (channel == 1) return rgba[1];
+    return 255.0 * (0.2126 * light_of(rgba[0]) + 0.7152 * light_of(rgba[1]) + 0.0722 * light_of(rgba[2]));
+}
+
+/* Put the mask that an image is into its channel. Returns whether it changes anything. */
+static bool make_mask(file &f, model_texture &t, size_t channel, double scale, const std::string &where)
+{
+    bool counts = false, has_hue = false;
+    for (size_t i = 0; i < size_t{ t.width } * t.height; ++i) {
+        uint8_t *rgba = t.rgba + i * 4;
+        has_hue |= channel == 2 && std::abs(rgba[0] - rgba[1]) + std::abs(rgba[1] - rgba[2]) > 64;
+        rgba[channel] = static_cast<uint8_t>(mask_of(rgba, channel, scale) + 0.5);
+        counts |= rgba[channel] != no_mask[channel];
+    }
+    if (has_hue) leave_out(f, where, ": the hue of rimMultiplyTexture of its MToon shading was left out");
+    return counts;
+}
+
+static uint32_t make_masks(file &f, const int images[3], double scale, const std::string &where)
+{
+    uint32_t slot = MODEL_NONE;
+    for (size_t c = 0; c < 3; ++c) {
+        const uint32_t own = images[c] < 0 ? MODEL_NONE : try_texture(f, static_cast<size_t>(images[c]), where);
+        if (own == MODEL_NONE) continue;
+        const bool counts = make_mask(f, f.out->textures[own], c, scale, where);
+        if (counts && slot == MODEL_NONE) {
+            slot = own;
+            for (size_t other = 0; other < 3; ++other)
+                if (other != c) fill_channel(f.out->textures[slot], other, no_mask[other]);
+            fill_channel(f.out->textures[slot], 3);
+            f.out->textures[slot].use = MODEL_TEXTURE_DATA;
+            continue;
+        }
+        if (counts) put_channel(f.out->textures[own], f.out->textures[slot], c);
+        drop_last_texture(f);
+    }
+    return slot;
+}
+
+/* Whether pixels need it; vertices read the width. */
+static bool is_for_pixels(const model_texture &masks)
+{
+    for (size_t i = 0; i < size_t{ masks.width } * masks.height * 4; i += 4)
+        if (masks.rgba[i] != no_mask[0] || masks.rgba[i + 2] != no_mask[2]) return true;
+    return false;
+}
+
+/* Images of masks become one texture, which takes the size and sampling of the first. */
+static void read_masks(file &f, const toon_maps &toon, model_material &out, const std::string &where)
+{
+    const bool has_rim = out.surface_more[1] > 0.0f || out.more_textures[NOH_TOON_MATCAP] != MODEL_NONE;
+    const int images[3] = { toon.shift_scale == 0.0 ? -1 : toon.shift, out.surface_more[4] == 0.0f ? -1 : toon.width,
+                            has_rim ? toon.rim : -1 };
+    uint32_t &slot = out.more_textures[NOH_TOON_WIDTH];
+    if (images[0] < 0 && images[2] < 0) {
+        slot = texture_for(f, images[1], MODEL_TEXTURE_DATA, where);
+        return;
+    }
+    const int scale = static_cast<int>(std::lround(toon.shift_scale * 1000.0)); /* within 100 either way */
+    const std::array<int, 4> key = { MASKS_KEY - 100000 - scale, images[0], images[1], images[2] };
+    auto found = f.texture_of.find(key);
+    slot = found != f.texture_of.end() ? found->second
+                                       : f.texture_of[key] = make_masks(f, images, toon.shift_scale, where);
+    out.toon_masks = slot != MODEL_NONE && is_for_pixels(f.out->textures[slot]);
+}
+
 static void read_toon_maps(file &f, const toon_maps &toon, model_material &out, const std::string &where)
 {
     out.more_textures[NOH_TOON_SHADE] = texture_for(f, toon.shade, MODEL_TEXTURE_COLOR, where);
     out.more_textures[NOH_TOON_MATCAP] = matcap_texture(f, toon, where);
-    if (out.surface_more[4] != 0.0f)
-        out.more_textures[NOH_TOON_WIDTH] = texture_for(f, toon.width, MODEL_TEXTURE_DATA, where);
+    read_masks(f, toon, out, where);
 }
 
 /* By "extras": {"tint": false}. */
@@ -561,11 +634,11 @@ static void read_specular_maps(file &f, const tinygltf::Material &m, int occlusi
     out.surface_texture = surface_texture(f, occlusion, roughness, is_alone ? weight : -1, where);
 }
 
-/* By "extras": {"priority": 1}, or VRM's order of what blends, -9..9. */
-static void read_priority(file &f, const tinygltf::Material &m, model_material &out, const std::string &where)
+/* By "extras": {"priority": 1}, or VRM's order of what blends. */
+static void read_priority(file &f, const tinygltf::Material &m, const toon_maps &toon, model_material &out,
+                          const std::string &where)
 {
-    const double queue = number_in(extension_of(m, "VRMC_materials_mtoon"), "renderQueueOffsetNumber", 0.0);
-    if (queue >= -128.0 && queue <= 127.0) out.priority = static_cast<int16_t>(queue);
+    if (out.alpha == MODEL_ALPHA_BLEND) out.priority = static_cast<int16_t>(toon.priority);
     if (!m.extras.IsObject() || !m.extras.Has("priority")) return;
     const tinygltf::Value &value = m.extras.Get("priority");
     const double number = value.IsNumber() ? value.GetNumberAsDouble() : 1000.0;
@@ -618,14 +691,14 @@ static void read_material(file &f, size_t index, model_material &out)
     if (const tinygltf::Value *gloss = extension_of(m, gloss_name)) read_gloss(f, *gloss, out, where);
     const toon_maps toon = read_surface(f, index, out, where);
     read_tint(f, m, out, where);
-    read_priority(f, m, out, where);
+    read_priority(f, m, toon, out, where);
     read_maps(f, m, toon, out, where);
 }
 
 void read_materials(file &f)
 {
-    /* each texture as colours, normals and data; a surface and a specular map, or a matcap, a material, and an image
-     * that is put into one */
+    /* each texture as colours, normals and data; a surface and a specular map, or a matcap and masks, a material, and an
+     * image that is put into one */
     f.out->textures = allocate<model_texture>(f, f.json.textures.size() * 3 + f.json.materials.size() * 2 + 1,
                                               "textures");
     f.out->materials = allocate<model_material>(f, f.json.materials.size(), "materials");

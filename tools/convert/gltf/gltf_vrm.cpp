@@ -1,5 +1,5 @@
-/* gltf_vrm.cpp: the figure of a VRM file: the nodes that are bones of a person, its expressions, its toon materials
- * (MToon), and, before VRM 1.0, that it faces -z.
+/* gltf_vrm.cpp: the figure of a VRM file: the nodes that are bones of a person, its expressions, and, before VRM 1.0,
+ * that it faces -z. gltf_mtoon.cpp reads its toon materials.
  *
  * The bones take VRM's names for them, which are the same in every file: hips, leftUpperArm. Expressions become lines
  * of a face's recipe (base/recipe_read.h); those that a face has no channel for, such as an author's own, are moved by
@@ -22,18 +22,18 @@ using value = tinygltf::Value;
 
 #define LINES_MAX (NOH_FACE_ROWS_MAX / 2u) /* the rest is for rows by names of targets and joints */
 
-static const value *member(const value &object, const char *key)
+const value *member(const value &object, const char *key)
 {
     return object.IsObject() && object.Has(key) ? &object.Get(key) : nullptr;
 }
 
-static const value *array_member(const value &object, const char *key)
+const value *array_member(const value &object, const char *key)
 {
     const value *found = member(object, key);
     return found && found->IsArray() ? found : nullptr;
 }
 
-static std::string text_member(const value &object, const char *key)
+std::string text_member(const value &object, const char *key)
 {
     const value *found = member(object, key);
     return found && found->IsString() ? found->Get<std::string>() : std::string();
@@ -47,7 +47,7 @@ static size_t index_member(const value &object, const char *key, size_t limit)
     return index >= 0 && static_cast<size_t>(index) < limit ? static_cast<size_t>(index) : limit;
 }
 
-static const value *extension(const file &f, const char *name)
+const value *vrm_extension(const file &f, const char *name)
 {
     const auto found = f.json.extensions.find(name);
     return found != f.json.extensions.end() && found->second.IsObject() ? &found->second : nullptr;
@@ -55,7 +55,7 @@ static const value *extension(const file &f, const char *name)
 
 bool faces_back(const file &f)
 {
-    return extension(f, "VRM") && !extension(f, "VRMC_vrm");
+    return vrm_extension(f, "VRM") && !vrm_extension(f, "VRMC_vrm");
 }
 
 /* --- bones --- */
@@ -324,142 +324,6 @@ void add_expressions(file &f)
         }
 }
 
-/* --- MToon --- */
-
-static double number_member(const value *object, const char *key, double otherwise)
-{
-    const value *found = object ? member(*object, key) : nullptr;
-    return found && found->IsNumber() ? found->GetNumberAsDouble() : otherwise;
-}
-
-static double between(double value, double low, double high)
-{
-    return value >= low ? (value <= high ? value : high) : low; /* low where it is no number */
-}
-
-/* A colour of MToon, linear; black where it lacks one. Before VRM 1.0 colours are as a screen shows them: gamma 2.2. */
-static void color_member(const value *object, const char *key, double gamma, double otherwise, double rgb[3])
-{
-    const value *list = object ? member(*object, key) : nullptr;
-    for (int i = 0; i < 3; ++i) {
-        const bool given = list && list->IsArray() && static_cast<int>(list->ArrayLen()) > i && list->Get(i).IsNumber();
-        rgb[i] = given ? std::pow(between(list->Get(i).GetNumberAsDouble(), 0.0, 1.0), gamma) : otherwise;
-    }
-}
-
-/* As noh_material.surface_more has it. */
-static float color_code(const value *object, const char *key, double gamma)
-{
-    double rgb[3], code = 0.0;
-    color_member(object, key, gamma, 0.0, rgb);
-    for (int i = 2; i >= 0; --i) code = 256.0 * code + std::floor(255.0 * std::sqrt(rgb[i]) + 0.5);
-    return static_cast<float>(code);
-}
-
-static int texture_member(const value *object, const char *key)
-{
-    const value *found = object ? member(*object, key) : nullptr;
-    if (found && found->IsObject()) found = member(*found, "index");
-    return found && found->IsInt() ? found->GetNumberAsInt() : -1;
-}
-
-static bool have_one_image(const file &f, int a, int b)
-{
-    const auto &all = f.json.textures;
-    const auto count = static_cast<int>(all.size());
-    return a == b || (a >= 0 && b >= 0 && a < count && b < count && all[static_cast<size_t>(a)].source >= 0 &&
-                      all[static_cast<size_t>(a)].source == all[static_cast<size_t>(b)].source);
-}
-
-/* Where one image colours light and shade, the tone in shade is a share of that in light. */
-static void set_tones(const file &f, size_t index, const value *from, const char *key, double gamma, toon_maps &maps,
-                      model_material &out)
-{
-    double shade[3];
-    color_member(from, key, gamma, 0.0, shade);
-    out.toon_shade = !have_one_image(f, maps.shade,
-                                     f.json.materials[index].pbrMetallicRoughness.baseColorTexture.index);
-    if (!out.toon_shade) maps.shade = -1;
-    for (int i = 0; i < 3; ++i) {
-        const double lit = out.toon_shade ? 1.0 : static_cast<double>(out.base_color[i]);
-        out.surface_values[i] = static_cast<float>(between(lit > 1e-4 ? shade[i] / lit : 1.0, 0.0, 1.0));
-    }
-}
-
-static void set_rim(const value *numbers, const char *power, const char *lift, model_material &out)
-{
-    out.surface_more[2] = static_cast<float>(between(number_member(numbers, power, 5.0), 0.0, 1000.0));
-    out.surface_more[3] = static_cast<float>(between(number_member(numbers, lift, 0.0), -1.0, 1.0));
-}
-
-static float outline_width(const value *numbers, const char *key, double scale)
-{
-    return static_cast<float>(between(number_member(numbers, key, 0.0) * scale, -1.0, 1.0));
-}
-
-static void leave_out_of_toon(file &f, const value *from, const std::string &where,
-                              std::initializer_list<const char *> keys)
-{
-    for (const char *key : keys)
-        if (texture_member(from, key) >= 0)
-            leave_out(f, where, std::string(": ") + key + " of its MToon shading was left out");
-}
-
-/* VRM 0.0 has them apart from the materials, in their order. Its tones begin and end at cosines of the light, 1.0's at
- * a middle and half a width; its outlines are in hundredths of a metre, or of half the picture's height (UniVRM
- * converts them in the same way). */
-static toon_maps read_old_toon(file &f, const value &vrm, size_t index, const std::string &where, model_material &out)
-{
-    toon_maps maps;
-    const value *all = array_member(vrm, "materialProperties");
-    if (!all || index >= all->ArrayLen()) return maps;
-    const value &m = all->Get(static_cast<int>(index));
-    const value *floats = member(m, "floatProperties"), *vectors = member(m, "vectorProperties");
-    const value *textures = member(m, "textureProperties");
-    if (text_member(m, "shader") != "VRM/MToon") return maps;
-    const double begin = between(number_member(floats, "_ShadeShift", 0.0), -1.0, 1.0);
-    const double hard = between(number_member(floats, "_ShadeToony", 0.9), 0.0, 1.0), end = 1.0 + (begin - 1.0) * hard;
-    const double mode = number_member(floats, "_OutlineWidthMode", 0.0);
-    const bool is_mixed = number_member(floats, "_OutlineColorMode", 0.0) > 0.5;
-    maps = { true, texture_member(textures, "_ShadeTexture"), texture_member(textures, "_SphereAdd"),
-             texture_member(textures, "_OutlineWidthTexture") };
-    set_tones(f, index, vectors, "_ShadeColor", 2.2, maps, out);
-    out.surface_values[3] = static_cast<float>(-0.5 * (begin + end));
-    out.surface_more[0] = static_cast<float>(between(1.0 - 0.5 * (end - begin), 1e-3, 1.0));
-    out.surface_more[1] = color_code(vectors, "_RimColor", 2.2);
-    set_rim(floats, "_RimFresnelPower", "_RimLift", out);
-    if (mode > 0.5) out.surface_more[4] = outline_width(floats, "_OutlineWidth", mode < 1.5 ? 0.01 : -0.005);
-    out.surface_more[5] = color_code(vectors, "_OutlineColor", 2.2);
-    out.outline_lit = is_mixed && number_member(floats, "_OutlineLightingMix", 1.0) >= 0.5;
-    leave_out_of_toon(f, textures, where, { "_RimTexture", "_UvAnimMaskTexture" });
-    return maps;
-}
-
-toon_maps read_toon(file &f, size_t index, const std::string &where, model_material &out)
-{
-    const tinygltf::ExtensionMap &extensions = f.json.materials[index].extensions;
-    const auto found = extensions.find("VRMC_materials_mtoon");
-    const value *old = extension(f, "VRM");
-    if (found == extensions.end() || !found->second.IsObject())
-        return old ? read_old_toon(f, *old, index, where, out) : toon_maps();
-    const value &m = found->second;
-    const std::string mode = text_member(m, "outlineWidthMode");
-    toon_maps maps{ true, texture_member(&m, "shadeMultiplyTexture"), texture_member(&m, "matcapTexture"),
-                    texture_member(&m, "outlineWidthMultiplyTexture") };
-    color_member(&m, "matcapFactor", 1.0, 1.0, maps.matcap_factor);
-    set_tones(f, index, &m, "shadeColorFactor", 1.0, maps, out);
-    out.surface_values[3] = static_cast<float>(between(number_member(&m, "shadingShiftFactor", 0.0), -1.0, 1.0));
-    out.surface_more[0] = static_cast<float>(between(number_member(&m, "shadingToonyFactor", 0.9), 1e-3, 1.0));
-    out.surface_more[1] = color_code(&m, "parametricRimColorFactor", 1.0);
-    set_rim(&m, "parametricRimFresnelPowerFactor", "parametricRimLiftFactor", out);
-    if (mode == "worldCoordinates") out.surface_more[4] = outline_width(&m, "outlineWidthFactor", 1.0);
-    if (mode == "screenCoordinates") out.surface_more[4] = outline_width(&m, "outlineWidthFactor", -1.0);
-    out.surface_more[5] = color_code(&m, "outlineColorFactor", 1.0);
-    out.outline_lit = number_member(&m, "outlineLightingMixFactor", 1.0) >= 0.5;
-    leave_out_of_toon(f, &m, where, { "shadingShiftTexture", "rimMultiplyTexture", "uvAnimationMaskTexture" });
-    return maps;
-}
-
 /* --- all of it --- */
 
 /* Curves of expressions and of the gaze lie in nodes of their own. */
@@ -491,8 +355,8 @@ static void read_vrm_animation(file &f, const value &animation)
 void read_vrm(file &f)
 {
     recipes r;
-    const value *now = extension(f, "VRMC_vrm"), *old = extension(f, "VRM");
-    if (const value *animation = extension(f, "VRMC_vrm_animation")) read_vrm_animation(f, *animation);
+    const value *now = vrm_extension(f, "VRMC_vrm"), *old = vrm_extension(f, "VRM");
+    if (const value *animation = vrm_extension(f, "VRMC_vrm_animation")) read_vrm_animation(f, *animation);
     if (!now && !old) return;
     name_bones(f, now ? *now : *old);
     if (now)

@@ -72,9 +72,9 @@ typedef struct model_material {
     uint32_t surface;        /* NOH_SURFACE_* of format.h */
     uint8_t surface_given;   /* 1: by --surface or the file's extras, so that no guess changes its looks */
     float surface_values[4], surface_more[6];
-    uint8_t toon_shade, outline_lit; /* NOH_MATERIAL_TOON_SHADE, NOH_MATERIAL_OUTLINE_LIT */
-    uint32_t specular_texture;       /* index into textures or MODEL_NONE */
-    uint8_t specular_roughness;      /* 1: its alpha is roughness, else the weight of f0 and f90 */
+    uint8_t toon_shade, outline_lit, toon_masks; /* NOH_MATERIAL_TOON_SHADE, _OUTLINE_LIT, _TOON_MASKS */
+    uint32_t specular_texture;                   /* index into textures or MODEL_NONE */
+    uint8_t specular_roughness;                  /* 1: its alpha is roughness, else the weight of f0 and f90 */
     float f90_loss;
 } model_material;
 
@@ -91,7 +91,7 @@ typedef struct model_target {
     float *uv;                                     /* [vertex_count][2]; NULL where it moves no texture coordinates */
     uint8_t has_position, has_normal, has_tangent; /* whether the file gave it, in any primitive */
     float lips; /* by how much it opens the lips at weight 1: half of their gap, in depths of the mouth (lip_rim.h) */
-    uint8_t identity;                              /* makes one face differ from another: NOH_TARGET_IDENTITY */
+    uint8_t identity; /* makes one face differ from another: NOH_TARGET_IDENTITY */
     /* [submesh_count] MODEL_MISSING_* bits: deltas for model_complete to compute; NULL = none */
     uint8_t *missing;
 } model_target;

@@ -182,7 +182,7 @@ static void forget_toon(model_material *m)
 {
     memset(m->surface_values, 0, sizeof m->surface_values);
     memset(m->surface_more, 0, sizeof m->surface_more);
-    m->toon_shade = m->outline_lit = 0;
+    m->toon_shade = m->outline_lit = m->toon_masks = 0;
     for (int i = 0; i < 3; i++) m->more_textures[i] = MODEL_NONE;
 }
 

@@ -114,7 +114,8 @@ static uint32_t material_flags(const model_material *m)
                                               : NOH_MATERIAL_SPECULAR_WEIGHT) |
            (tint_is_taken(m) ? 0u : NOH_MATERIAL_UNTINTED) | (m->wrinkle_codes ? NOH_MATERIAL_WRINKLE_CODES : 0u) |
            (m->surface == NOH_SURFACE_TOON && m->toon_shade ? NOH_MATERIAL_TOON_SHADE : 0u) |
-           (m->surface == NOH_SURFACE_TOON && m->outline_lit ? NOH_MATERIAL_OUTLINE_LIT : 0u);
+           (m->surface == NOH_SURFACE_TOON && m->outline_lit ? NOH_MATERIAL_OUTLINE_LIT : 0u) |
+           (m->surface == NOH_SURFACE_TOON && m->toon_masks ? NOH_MATERIAL_TOON_MASKS : 0u);
 }
 
 static void write_maps(const model_material *from, noh_material *to)

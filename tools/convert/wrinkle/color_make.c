@@ -105,6 +105,7 @@ static uint32_t maps_of(const model_material *of)
                       (of->specular_texture != MODEL_NONE) + (of->wrinkle_texture != MODEL_NONE) + of->wrinkle_codes +
                       (of->emissive[0] > 0.0f || of->emissive[1] > 0.0f || of->emissive[2] > 0.0f) +
                       (of->surface == NOH_SURFACE_TOON && of->toon_shade) +
+                      (of->surface == NOH_SURFACE_TOON && of->toon_masks) +
                       (of->surface == NOH_SURFACE_TOON && of->more_textures[NOH_TOON_MATCAP] != MODEL_NONE));
 }
 

@@ -43,7 +43,8 @@ static void list_maps(const noh_pack *pack, const noh_material *m, material_map 
     const material_map codes = { "wrinkle regions by pixel", "wrinkle_regions", m->more_textures[0] };
     const material_map toon[] = { { "shade", "shade", m->more_textures[NOH_TOON_SHADE] },
                                   { "matcap", "matcap", m->more_textures[NOH_TOON_MATCAP] },
-                                  { "outline width", "outline_width", m->more_textures[NOH_TOON_WIDTH] } };
+                                  { m->flags & NOH_MATERIAL_TOON_MASKS ? "shift, outline width, rim" : "outline width",
+                                    "outline_width", m->more_textures[NOH_TOON_WIDTH] } };
     for (uint32_t i = 0; i < MAPS; i++) maps[i] = all[i];
     if (m->flags & NOH_MATERIAL_WRINKLE_CODES) maps[6] = codes;
     for (uint32_t i = 0; i < 3 && m->surface == NOH_SURFACE_TOON; i++) maps[6 + i] = toon[i];
@@ -90,7 +91,10 @@ typedef struct material_cost {
 
 static material_cost cost_of(const noh_pack *pack, const noh_material *m)
 {
-    const uint32_t last = m->surface == NOH_SURFACE_TOON ? 7u : m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u : 5u;
+    const uint32_t last = m->flags & NOH_MATERIAL_TOON_MASKS      ? 8u
+                          : m->surface == NOH_SURFACE_TOON        ? 7u
+                          : m->flags & NOH_MATERIAL_WRINKLE_CODES ? 6u
+                                                                  : 5u;
     material_cost cost = { 0, 1, 0, 0 };
     material_map maps[MAPS];
     list_maps(pack, m, maps);
