@@ -1575,6 +1575,30 @@ static void old_mtoon_is_a_toon(void **state)
     model_free(m);
 }
 
+/* A warning for each kind names the node; the extension itself is known. */
+static void constraints_give_warnings(void **state)
+{
+    scene *s = triangle("", "");
+    (void)state;
+#define FOLLOWS(name, rest) \
+    "{\"name\":\"" name     \
+    "\",\"mesh\":0,\"extensions\":{\"VRMC_node_constraint\":{\"specVersion\":\"1.0\",\"constraint\":" rest "}}}"
+    APPEND(s->rest, ",\"extensionsUsed\":[\"VRMC_node_constraint\"],\"nodes\":[%s,%s,%s,%s,%s]",
+           FOLLOWS("wrist", "{\"roll\":{\"source\":1,\"rollAxis\":\"X\",\"weight\":0.5}}"),
+           FOLLOWS("elbow", "{\"roll\":{\"source\":0,\"rollAxis\":\"X\"}}"),
+           FOLLOWS("eye", "{\"aim\":{\"source\":0,\"aimAxis\":\"PositiveZ\"}}"),
+           FOLLOWS("hip", "{\"rotation\":{\"source\":0}}"), FOLLOWS("none", "7"));
+#undef FOLLOWS
+    model *m = load(s);
+    assert_true(
+        has_warning(m, "node 'wrist': its VRM constraint (roll) was left out, so it moves with its parent alone"));
+    assert_true(has_warning(m, "(and 1 more like it)"));
+    assert_true(has_warning(m, "node 'eye': its VRM constraint (aim)"));
+    assert_true(has_warning(m, "node 'hip': its VRM constraint (rotation)"));
+    assert_false(has_warning(m, "not supported"));
+    model_free(m);
+}
+
 /* --- animations --- */
 
 /* A morphing triangle with two keys of weights: accessors 2 (times) and 3 (values). */
@@ -3178,6 +3202,7 @@ int main(void)
         cmocka_unit_test(mtoon_is_a_toon),
         cmocka_unit_test(old_mtoon_is_a_toon),
         cmocka_unit_test(large_images_are_counted_first),
+        cmocka_unit_test(constraints_give_warnings),
         cmocka_unit_test(mtoon_has_textures),
         cmocka_unit_test(mtoon_has_masks),
         cmocka_unit_test(mtoon_is_not_lost_in_silence),

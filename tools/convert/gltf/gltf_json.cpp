@@ -61,7 +61,7 @@ static const char *const supported[] = { "KHR_mesh_quantization",  "EXT_meshopt_
                                          "EXT_texture_webp",       "VRMC_vrm",
                                          "VRMC_vrm_animation",     "VRMC_springBone",
                                          "VRMC_materials_mtoon",   "VRM",
-                                         "KHR_node_visibility" };
+                                         "KHR_node_visibility",    "VRMC_node_constraint" };
 
 bool is_supported(const std::string &name)
 {

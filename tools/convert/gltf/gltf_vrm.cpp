@@ -352,9 +352,25 @@ static void read_vrm_animation(file &f, const value &animation)
     if (member(animation, "lookAt")) leave_out(f, "VRM lookAt", ": its animation was left out: clips have no gaze");
 }
 
+/* No joint of a pack follows another one: a node with a constraint keeps its place on its parent. */
+static void note_constraints(file &f)
+{
+    for (size_t i = 0; i < f.json.nodes.size(); ++i) {
+        const auto found = f.json.nodes[i].extensions.find("VRMC_node_constraint");
+        const value *of = found == f.json.nodes[i].extensions.end() ? nullptr : member(found->second, "constraint");
+        for (const char *kind : { "roll", "aim", "rotation" })
+            if (of && member(*of, kind))
+                leave_out(f, "node '" + printable(name_or(f.json.nodes[i].name, "node", i)) + "'",
+                          text(": its VRM constraint (%s) was left out, so it moves with its parent alone: bake "
+                               "constraints into the animations",
+                               kind));
+    }
+}
+
 void read_vrm(file &f)
 {
     recipes r;
+    note_constraints(f);
     const value *now = vrm_extension(f, "VRMC_vrm"), *old = vrm_extension(f, "VRM");
     if (const value *animation = vrm_extension(f, "VRMC_vrm_animation")) read_vrm_animation(f, *animation);
     if (!now && !old) return;
