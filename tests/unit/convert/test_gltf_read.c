@@ -18,6 +18,7 @@
 #include <cmocka.h>
 #include <meshoptimizer.h>
 
+#include "convert/base/file_kind.h"
 #include "convert/base/input_file.h"
 #include "convert/model/model.h"
 #include "support/support.h"
@@ -2116,6 +2117,13 @@ static void bad_images_are_warnings(void **state)
     (void)state;
     check_left_out_texture("{\"uri\":\"nowhere.png\"}", "does not exist");
     check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAA\"}", "of an unknown kind, not a PNG");
+    check_left_out_texture(
+        "{\"uri\":\"data:image/png;base64,dmVyc2lvbiBodHRwczovL2dpdC1sZnMuZ2l0aHViLmNvbS9zcGVjL3YxCg==\"}",
+        "it is a Git LFS pointer in place of the file: run git lfs pull");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,PCFkb2N0eXBlIGh0bWw+PGh0bWw+PC9odG1sPg==\"}",
+                           "it is a web page in place of the file");
+    check_left_out_texture("{\"uri\":\"data:image/png;base64,AAAAIGZ0eXBhdmlmAAAAAA==\"}",
+                           "it is an AVIF picture, not a PNG");
     check_left_out_texture("{\"uri\":\"data:image/png;base64,iVBORw0KGgoAAAAAAAAA\"}", "damaged");
     check_left_out_texture("{\"bufferView\":99}", "buffer view 99 does not exist");
     check_left_out_texture("{\"uri\":\"/etc/hostname\"}", "not a relative path");
@@ -2596,6 +2604,29 @@ static void missing_buffers_are_refused(void **state)
     snprintf(json, sizeof json, format, "36,\"uri\":\"/etc/hostname\"");
     write_text("test.gltf", json);
     file_refused("not a relative path", "buffer 0");
+    write_text("test.bin", "version https://git-lfs.github.com/spec/v1\noid sha256:0\n");
+    snprintf(json, sizeof json, format, "36,\"uri\":\"test.bin\"");
+    write_text("test.gltf", json);
+    file_refused("'test.bin' is a Git LFS pointer in place of the file: run git lfs pull", "buffer 0");
+    snprintf(file_path, sizeof file_path, "%s/test.bin", folder);
+    assert_int_equal(remove(file_path), 0);
+}
+
+/* The bytes say what came in place of a file, whatever its ending is. */
+static void bytes_say_what_came_in_place_of_a_file(void **state)
+{
+    static const char *const endings[] = { "test.glb", "test.fbx", "test.png", "test.zip" };
+    (void)state;
+    for (size_t i = 0; i < sizeof endings / sizeof endings[0]; i++) {
+        write_text(endings[i], "version https://git-lfs.github.com/spec/v1\n");
+        const file_kind *kind = file_kind_of(file_path);
+        assert_non_null(kind);
+        assert_int_equal(kind->reader, READER_NONE);
+        assert_string_equal(kind->what, "a Git LFS pointer in place of the file");
+        write_text(endings[i], "<!DOCTYPE html>\n<html>");
+        assert_string_equal(file_kind_of(file_path)->what, "a web page in place of the file");
+        assert_int_equal(remove(file_path), 0);
+    }
 }
 
 /* Bad numbers of any attribute are read as 0, with the first place and a count. */
@@ -3242,6 +3273,7 @@ int main(void)
         cmocka_unit_test(bytes_behind_a_wrong_length_are_read),
         cmocka_unit_test(giant_counts_are_refused),
         cmocka_unit_test(missing_buffers_are_refused),
+        cmocka_unit_test(bytes_say_what_came_in_place_of_a_file),
         cmocka_unit_test(numbers_that_are_not_finite_are_zeros),
         cmocka_unit_test(worlds_beyond_the_limit_are_refused),
         cmocka_unit_test(primitives_may_have_fewer_targets),

@@ -13,6 +13,7 @@
 #define SPEECH "noh speak makes a clip of a recording"
 #define ARCHIVE "unpack it, and give noh the model in it"
 #define TEXT(option) "noh build MODEL " option " FILE reads it"
+#define WEB_PAGE "download the file itself: this is the page that shows or refuses it"
 
 /* Rows with both a beginning and an ending are of one format; the first row that fits counts. */
 static const file_kind kinds[] = {
@@ -61,7 +62,8 @@ static const file_kind kinds[] = {
     { ".dds", "DDS ", READER_NONE, "a DDS picture", PICTURE },
     { ".ktx2", "\xabKTX 20", READER_NONE, "a KTX2 picture", PICTURE },
     { ".ktx", "\xabKTX 11", READER_NONE, "a KTX picture", PICTURE },
-    { ".avif", NULL, READER_NONE, "an AVIF picture", PICTURE },
+    { ".avif", "ftypavif", READER_NONE, "an AVIF picture", PICTURE },
+    { ".heic", "ftypheic", READER_NONE, "a HEIC picture", PICTURE },
     { ".webp", NULL, READER_NONE, "a WebP picture", PICTURE },
     { ".mtl", NULL, READER_NONE, "materials of an OBJ file", "give noh the .obj file" },
     { ".bin", NULL, READER_NONE, "data of a glTF file", "give noh the .gltf file that names it" },
@@ -81,6 +83,11 @@ static const file_kind kinds[] = {
     { ".names", NULL, READER_NONE, "a text of names", TEXT("--names") },
     { ".place", NULL, READER_NONE, "a text of a place", "noh crowd PACK --place FILE reads it" },
     { ".session", NULL, READER_NONE, "a recording of play", "noh lab replay PACK --play FILE reads it" },
+    { NULL, "version https://git-lfs.", READER_NONE, "a Git LFS pointer in place of the file",
+      "run git lfs pull in its repository" },
+    { NULL, "<!DOCTYPE html", READER_NONE, "a web page in place of the file", WEB_PAGE },
+    { NULL, "<!doctype html", READER_NONE, "a web page in place of the file", WEB_PAGE },
+    { NULL, "<html", READER_NONE, "a web page in place of the file", WEB_PAGE },
 };
 
 #define KIND_COUNT (sizeof kinds / sizeof kinds[0])
@@ -100,7 +107,9 @@ const file_kind *file_kind_of_bytes(const void *bytes, size_t count)
 {
     for (size_t i = 0; i < KIND_COUNT; i++) {
         const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
-        if (length && count >= length && memcmp(bytes, kinds[i].begins, length) == 0) return &kinds[i];
+        const size_t at = length && strncmp(kinds[i].begins, "ftyp", 4) == 0 ? 4 : 0; /* after the length of its box */
+        if (length && count >= at + length && memcmp((const char *)bytes + at, kinds[i].begins, length) == 0)
+            return &kinds[i];
     }
     return NULL;
 }
@@ -127,7 +136,7 @@ const file_kind *file_kind_of(const char *path)
     }
     if (began && began->reader != READER_NONE) return began;
     if (!is_there && ends && ends->reader == READER_NONE) return NULL;
-    return !began || (ends && ends->reader == READER_NONE) ? ends : began;
+    return !began || (began->ending && ends && ends->reader == READER_NONE) ? ends : began;
 }
 
 int file_kind_is_built(const file_kind *kind)

@@ -23,7 +23,7 @@ typedef enum file_reader {
 } file_reader;
 
 typedef struct file_kind {
-    const char *ending; /* in small letters; NULL: by its first bytes alone */
+    const char *ending; /* in small letters; NULL: of no format, but what came in place of a file */
     const char *begins; /* its first bytes, without a zero; NULL: by its ending alone */
     file_reader reader;
     const char *what;    /* "a Blender file" */

@@ -136,6 +136,8 @@ static int decode_other(const unsigned char *bytes, size_t count, uint64_t *pixe
     } else if (is_cut_picture(kind)) {
         return model_fail(error, "", "it is %s of %zu bytes, which was cut off: save or copy it again", kind->what,
                           count);
+    } else if (kind && !kind->ending) {
+        return model_fail(error, "", "it is %s: %s", kind->what, kind->instead);
     } else {
         return model_fail(error, "", "it is %s, not a PNG, JPEG, WebP, TGA, BMP or Photoshop picture: save it as PNG",
                           kind    ? kind->what

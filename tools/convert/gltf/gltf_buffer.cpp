@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "convert/base/file_kind.h"
 #include "convert/base/input_file.h"
 
 namespace tinygltf
@@ -103,8 +104,11 @@ static std::string path_of(const file &f, const std::string &uri, const std::str
 
 bytes read_uri(file &f, const std::string &uri, const std::string &where)
 {
-    bytes data = uri.compare(0, 5, "data:") == 0 ? decode_data_uri(uri, where)
-                                                 : read_whole_file(path_of(f, uri, where), where);
+    const bool is_inside = uri.compare(0, 5, "data:") == 0;
+    bytes data = is_inside ? decode_data_uri(uri, where) : read_whole_file(path_of(f, uri, where), where);
+    const file_kind *kind = file_kind_of_bytes(data.data(), data.size());
+    if (kind && !kind->ending)
+        fail(where, (is_inside ? "it" : "'" + printable(uri) + "'") + " is " + kind->what + ": " + kind->instead);
     f.input_bytes += data.size();
     if (f.input_bytes > input_bytes_max)
         fail(where, "the glTF and its files are larger than 4 GiB together, which is the limit");
