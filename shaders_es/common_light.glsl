@@ -62,8 +62,8 @@ vec3 noh_bounced(vec3 albedo, float open)
 /* Schlick's reflectance at an angle, from what it is at normal incidence to what it is at grazing angles. */
 vec3 noh_fresnel(vec3 f0, float f90, float cosine)
 {
-    float away = clamp(1.0 - cosine, 0.0, 1.0), away2 = away * away;
-    return f0 + (f90 - f0) * (away2 * away2 * away);
+    float away = 1.0 - cosine, away2 = away * away, part = away2 * away2 * away;
+    return f0 * (1.0 - part) + f90 * part;
 }
 
 #ifndef NOH_HAIR
@@ -234,6 +234,36 @@ vec3 noh_matte_light(noh_surface s, float shadow)
     return noh_rest_light(s) + key;
 #endif
 }
+#else
+/* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007),
+ * times the visibility term of Smith in Schlick's approximation, times pi. nh, nl, nv: cosines between the normal, the
+ * half vector, the light and the eye. */
+float noh_gloss(float nh, float nl, float nv, float roughness)
+{
+    float a = roughness * roughness, a2 = a * a;
+    float d = nh * nh * (a2 - 1.0) + 1.0;
+    float k = a * 0.5;
+    return 0.25 * a2 / (d * d * (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
+}
+
+/* Light from sky and ground. */
+vec3 noh_sky(float up)
+{
+    return vec3(0.365, 0.37, 0.39) + up * vec3(0.135, 0.17, 0.21);
+}
+
+/* The diffuse reflection of the key light, by channel. A plain ball reflects 1.18 / 3 of a lamp in total, where cosines
+ * sum to a half: skin is scaled to the same total. */
+vec3 noh_key_matte(noh_surface s)
+{
+#ifdef NOH_SKIN
+    return (2.36 / 3.0) * noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric));
+#else
+    float wrapped = max((dot(s.normal, noh_key) + 0.18) / 1.18, 0.0);
+    return vec3(wrapped * wrapped);
+#endif
+}
+#endif
 
 /* The highlight of the key light, divided by its colour, without reflectance, times pi. nh, nl, nv: cosines between the
  * normal for reflections, and the half vector, the light and the eye */
@@ -249,6 +279,7 @@ float noh_key_glossed(float nh, float nl, float nv, float roughness)
 #endif
 }
 
+#ifdef NOH_LIT
 #ifdef NOH_TOON
 /* noh_lighting[3..5].w: the mean light and the key.
  * Colours are the artist's: the light, the same for the whole figure, tints them by half of its hue, and darkens them
@@ -308,62 +339,19 @@ vec3 noh_light(noh_surface s)
     color += noh_lighting[0].rgb * ((1.0 - open) * vec3(0.045, 0.022, 0.019)); /* by the walls, whatever is painted dark */
 #endif
 #endif
-    color += gloss * again * mirrored;
+    vec3 shine = gloss * mirrored;
     if (noh_key_gloss > 0.0) {
         /* The half vector h is noh_key + s.view, divided by its length: its cosines need no vector. */
-        float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(max(2.0 * lv, 1e-6)), nl = dot(mirror, noh_key);
+        float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(2.0 * lv + 1e-6), nl = dot(mirror, noh_key);
         float nh = clamp((nl + across) * shorter, 0.0, 1.0);
         vec3 fresnel = noh_fresnel(f0, f90, lv * shorter);
         float glossed = noh_key_gloss * shadow * noh_key_glossed(nh, max(nl, 0.0), nv, roughness);
-        color += fresnel * again * noh_key_color * glossed;
+        shine += fresnel * (noh_key_color * glossed);
     }
-    return noh_expose(color + s.emissive);
+    return noh_expose(color + shine * again + s.emissive);
 }
 #endif
 #else
-/* The isotropic GGX distribution (Walter et al., "Microfacet Models for Refraction through Rough Surfaces", 2007),
- * times the visibility term of Smith in Schlick's approximation. nh, nl, nv: cosines between the normal, the half
- * vector, the light and the eye. */
-float noh_highlight(float nh, float nl, float nv, float roughness)
-{
-    float a = roughness * roughness, a2 = a * a;
-    float d = nh * nh * (a2 - 1.0) + 1.0;
-    float k = a * 0.5;
-    return a2 * (0.25 / 3.14159265) / (d * d * (nl * (1.0 - k) + k) * (nv * (1.0 - k) + k));
-}
-
-/* The highlight of the key light. normal: for reflections */
-float noh_key_glossed(vec3 normal, vec3 h, float nv, float roughness)
-{
-    float nl = max(dot(normal, noh_key), 0.0), nh = max(dot(normal, h), 0.0);
-#ifdef NOH_SKIN
-    vec2 lobes = noh_lobes_at(roughness);
-    return nl * mix(noh_highlight(nh, nl, nv, lobes.y), noh_highlight(nh, nl, nv, lobes.x), noh_narrow_lobe);
-#elif defined(NOH_EYE)
-    return nl > 0.0 ? noh_lamp(nh) : 0.0;
-#else
-    return nl * noh_highlight(nh, nl, nv, roughness);
-#endif
-}
-
-/* Light from sky and ground. */
-vec3 noh_sky(float up)
-{
-    return mix(vec3(0.23, 0.20, 0.18), vec3(0.50, 0.54, 0.60), up * 0.5 + 0.5);
-}
-
-/* The diffuse reflection of the key light, by channel. A plain ball reflects 1.18 / 3 of a lamp in total, where cosines
- * sum to a half: skin is scaled to the same total. */
-vec3 noh_key_matte(noh_surface s)
-{
-#ifdef NOH_SKIN
-    return (2.36 / 3.0) * noh_scatter(noh_scatter_cosines(s, noh_key), noh_curvature(s.position, s.geometric));
-#else
-    float wrapped = max((dot(s.normal, noh_key) + 0.18) / 1.18, 0.0);
-    return vec3(wrapped * wrapped);
-#endif
-}
-
 #ifdef NOH_TOON
 vec3 noh_light(noh_surface s)
 {
@@ -388,25 +376,27 @@ vec3 noh_light(noh_surface s)
     vec3 f0 = mix(s.f0, s.albedo, s.metallic);
     float f90 = mix(s.f90, 1.0, s.metallic);
     vec3 diffuse = s.albedo * (1.0 - s.metallic);
+    vec3 lamp = noh_key;
+    float square = 1.0;
 #ifdef NOH_EYE
-    vec3 h = normalize(noh_key - 0.35 * normalize(noh_v_up) + s.view); /* low enough to be visible below the lid */
-#else
-    vec3 h = normalize(noh_key + s.view);
+    lamp -= 0.35 * normalize(noh_v_up); /* low enough to be visible below the lid */
+    square = dot(lamp, lamp);
 #endif
-    float nv = max(noh_seen(s, dot(mirror, s.view)), 1e-3);
+    float across = dot(mirror, s.view), nv = max(noh_seen(s, across), 1e-3), lv = dot(lamp, s.view);
+    float shorter = inversesqrt(square + 1.000001 + 2.0 * lv); /* the half vector needs no vector, as above */
+    float nh = max(dot(mirror, lamp) + across, 0.0) * shorter;
 #ifdef NOH_PHONE
     vec3 fresnel = f0;
 #else
-    vec3 fresnel = noh_fresnel(f0, f90, dot(h, s.view));
+    vec3 fresnel = noh_fresnel(f0, f90, (lv + 1.0) * shorter);
 #endif
-    vec3 sky = s.occlusion * noh_sky(s.normal.y);
-    vec3 color = diffuse * (vec3(1.02, 0.98, 0.92) * noh_key_matte(s) + 0.62 * sky);
-    color += fresnel * noh_key_glossed(mirror, h, nv, roughness) * 2.6;
-    color += f0 * sky * (0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic);
+    vec3 even = 0.62 * diffuse + f0 * ((0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic));
 #ifndef NOH_PHONE
-    float rim = max(1.0 - nv, 0.0); /* nv may exceed 1 by rounding */
-    color += 0.10 * sky * rim * rim * rim * (1.0 - 0.6 * roughness);
+    float rim = 1.0 - nv;
+    even += rim * rim * rim * (0.1 - 0.06 * roughness);
 #endif
+    vec3 color = diffuse * (noh_key_matte(s) * vec3(1.02, 0.98, 0.92)) + even * (s.occlusion * noh_sky(s.normal.y));
+    color += fresnel * (0.8276 * noh_key_glossed(nh, max(dot(mirror, noh_key), 0.0), nv, roughness));
 #if defined(NOH_SKIN) || defined(NOH_TEETH)
     color *= noh_bounced(s.albedo, noh_open());
 #endif
