@@ -398,6 +398,50 @@ static void strips_are_those_of_the_cpu(void **state)
     close_scene(&s);
 }
 
+/* Millimetres from a point to the strips' roots. */
+static double to_roots(const noh_haircut *cut, const float *rest, const float at[3])
+{
+    double least = 1e9;
+    for (uint32_t i = 0; i < cut->header->strip_count; i++) {
+        float p[3], t[3];
+        noh_haircut_vertex(cut, rest, i, 0.0f, p, t);
+        const double x = p[0] - at[0], y = p[1] - at[1], z = p[2] - at[2];
+        least = fmin(least, 1e3 * sqrt(x * x + y * y + z * z));
+    }
+    return least;
+}
+
+/* The mask's wig: its roots are on the edge of the painted hair, and its strips pass behind the ears, whose rims they
+ * do not cross. */
+static void the_wig_fits_the_mask(void **state)
+{
+    static const float line[][3] = {
+        { 0.006f, 0.089f, 0.011f }, { 0.023f, 0.081f, 0.011f }, { 0.042f, 0.062f, 0.008f }, { 0.053f, 0.041f, 0.003f }
+    };
+    static const double ear[3] = { 0.0696, 0.0, -0.0084 }, half[3] = { 0.007, 0.022, 0.007 };
+    scene s;
+    double worst = 0.0;
+    int across = 0;
+    (void)state;
+    open_scene(&s, 1, 1, 0.0f, IN_STATE);
+    const float *rest = s.cut.desc.rest;
+    for (size_t i = 0; i < TEST_COUNT(line); i++) worst = fmax(worst, to_roots(&s.cut, rest, line[i]));
+    for (uint32_t i = 0; i < s.cut.header->strip_count; i++) {
+        int inside = 0;
+        for (int k = 0; k <= 48; k++) {
+            float p[3], t[3];
+            noh_haircut_vertex(&s.cut, rest, i, (float)k / 48.0f, p, t);
+            inside |= fabs(fabs((double)p[0]) - ear[0]) < half[0] && fabs((double)p[1] - ear[1]) < half[1] &&
+                      fabs((double)p[2] - ear[2]) < half[2];
+        }
+        across += inside;
+    }
+    printf("# roots at most %.1f mm from the painted line; %d strips in the ears\n", worst, across);
+    assert_true(worst < 5.0);
+    assert_int_equal(across, 0);
+    close_scene(&s);
+}
+
 /* ---- bytes and draws ---- */
 
 static void bytes_are_exact(void **state)
@@ -514,17 +558,19 @@ static void the_hairline_is_soft(void **state)
     scene s;
     (void)state;
     open_scene(&s, 1, 1, 0.0f, IN_STATE);
-    frame_from(&s, RADIANS(20.0f), RADIANS(35.0f), 0.3f);
-    uint8_t *bald = picture(&s, 0), *hair = picture(&s, 1);
-    for (uint32_t i = 0; i + 1u < SIDE * SIDE; i++) {
-        if (bald[4u * i] < 100 || bald[4u * i + 4u] < 100) continue;
-        const double step = (double)hair[4u * i] / bald[4u * i] - (double)hair[4u * i + 4u] / bald[4u * i + 4u];
-        all += fabs(step) > 0.1;
-        hard += fabs(step) > 0.5;
+    for (int view = -2; view <= 2; view++) {
+        frame_from(&s, RADIANS(20.0f * (float)view), RADIANS(35.0f), 0.3f);
+        uint8_t *bald = picture(&s, 0), *hair = picture(&s, 1);
+        for (uint32_t i = 0; i + 1u < SIDE * SIDE; i++) {
+            if (bald[4u * i] < 100 || bald[4u * i + 4u] < 100) continue;
+            const double step = (double)hair[4u * i] / bald[4u * i] - (double)hair[4u * i + 4u] / bald[4u * i + 4u];
+            all += fabs(step) > 0.1;
+            hard += fabs(step) > 0.5;
+        }
+        free(bald);
+        free(hair);
     }
     printf("# %u of %u edges of hair on paint are hard\n", hard, all);
-    free(bald);
-    free(hair);
     close_scene(&s);
     assert_true(all > 30u && 10u * hard < all); /* the paint begins where the strips do: few edges are left */
 }
@@ -568,6 +614,7 @@ static void hair_fades_into_paint(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(strips_are_those_of_the_cpu),
+    cmocka_unit_test(the_wig_fits_the_mask),
     cmocka_unit_test(hair_of_the_largest_moves),
     cmocka_unit_test(hair_moves_more_as_it_comes_nearer),
     cmocka_unit_test(hair_in_the_state_moves),

@@ -48,7 +48,7 @@ static void build(Model *model)
 Figure mask_build(void)
 {
     static const FigureMaterial materials[PART_COUNT] = {
-        { "paint", 0.55 }, { "wood", 0.30 }, { "eyes", 0.12 }, { "teeth", 0.25 }, { "mouth", 0.60 }
+        { "paint", 0.55 }, { "wood", 0.65 }, { "eyes", 0.12 }, { "teeth", 0.25 }, { "mouth", 0.60 }
     };
     double *open[PARTS_MAX];
     Figure mask = { .name = "mask",
