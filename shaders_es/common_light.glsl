@@ -50,7 +50,7 @@ vec3 noh_bounced(vec3 albedo, float open)
 #else
     float white = ((2.0404 * open - 4.7951) * open + 2.7552) * open;
     float black = ((0.6417 - 0.3324 * open) * open + 0.6903) * open;
-    vec3 bounced = max(vec3(open), min(albedo, vec3(0.6, 0.3, 0.28)) * white + black);
+    vec3 bounced = max(vec3(open), min(albedo, vec3(0.6, 0.15, 0.1)) * white + black);
 #ifdef NOH_LIT
     return bounced;
 #else
