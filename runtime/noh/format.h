@@ -426,10 +426,9 @@ typedef struct noh_node {
 /* noh_material.more_textures of a toon */
 #define NOH_TOON_SHADE 0u  /* rgb in shade, with NOH_MATERIAL_TOON_SHADE; NOH_NONE: white */
 #define NOH_TOON_MATCAP 1u /* rgb added, by the normal seen from the eye */
-#define NOH_TOON_WIDTH \
-    2u /* data: g multiplies the width of the outline, sampled at vertices; with
-                             * NOH_MATERIAL_TOON_MASKS (255 r - 128) / 127 is added to the cosine of the light, and b
-                             * multiplies rim and matcap */
+/* Data: g multiplies the width of the outline, sampled at vertices; with NOH_MATERIAL_TOON_MASKS
+ * (255 r - 128) / 127 is added to the cosine of the light, and b multiplies rim and matcap. */
+#define NOH_TOON_WIDTH 2u
 
 /* Textures are indices of texture chunks, or NOH_NONE; colour textures are sRGB, the others LINEAR. The mesh's texture
  * coordinates include any texture transform of the source. */
