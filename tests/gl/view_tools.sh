@@ -72,6 +72,15 @@ printf '[half\nsmile = 1\n' >"$work/own.presets"
 hand 'a broken file of presets' "$mask" --play off --presets own.presets <<'HAND'
 expect "message line 1: 'half' is neither"
 HAND
+rm "$work/own.presets" && mkfifo "$work/own.presets"
+hand 'a pipe instead of a file of presets' "$mask" --play off --presets own.presets <<'HAND'
+expect "message cannot be read: not a regular file"
+HAND
+(cd "$work" && timeout 60 "$build/noh" view "$mask" --script own.presets) >"$work/out" 2>"$work/err"
+code=$?
+expect 1 'a pipe instead of a script'
+says 'not a regular file'
+rm "$work/own.presets"
 
 # ---- over the mesh ----
 

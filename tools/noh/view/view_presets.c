@@ -168,26 +168,36 @@ static int add_recipes(view_presets *p, const view_model *m)
 
 /* ---- the user's own ---- */
 
-static char *read_text(const char *path)
+#define TEXT_BYTES_MAX (1u << 22)
+
+/* *out stays NULL where there is no such file. noh_file_map refuses folders and pipes. */
+static int read_text(const char *path, char **out)
 {
-    FILE *file = fopen(path, "rb");
-    byte_buffer text = { NULL, 0, 0, 0 };
-    char part[4096];
-    size_t count;
-    if (!file) return NULL;
-    while ((count = fread(part, 1, sizeof part, file)) > 0 && text.count < 1u << 22) buffer_append(&text, part, count);
-    fclose(file);
-    if (!buffer_append(&text, "", 1)) buffer_free(&text);
-    return (char *)text.bytes;
+    noh_file file;
+    noh_error error;
+    const noh_result result = noh_file_map(path, &file, &error);
+    int status = 0;
+    if (result == NOH_ERR_NOT_FOUND) return 0;
+    if (result) return tool_fail(path, "cannot be read: %s", error.what);
+    if (file.bytes > TEXT_BYTES_MAX) {
+        status = tool_fail(path, "the file has more than %u bytes", TEXT_BYTES_MAX);
+    } else if (!(*out = malloc(file.bytes + 1u))) {
+        status = tool_fail(path, "out of memory");
+    } else {
+        if (file.bytes) memcpy(*out, file.data, file.bytes);
+        (*out)[file.bytes] = 0;
+    }
+    noh_file_unmap(&file);
+    return status;
 }
 
 static int add_own(view_presets *p)
 {
-    char *text = read_text(p->path);
+    char *text = NULL;
+    int status = read_text(p->path, &text), begun = 0;
     weights_reader reader = { text, 0 };
     weights_item item;
     weights_kind kind;
-    int status = 0, begun = 0;
     while (text && !status && (kind = weights_next(&reader, &item)) != WEIGHTS_END) {
         if (kind == WEIGHTS_PRESET) {
             status = add_preset(p, item.name, 1);

@@ -37,21 +37,39 @@ struct view_script {
 
 /* ---- opening ---- */
 
+/* noh_file_map refuses folders and pipes. */
+static int read_file(const char *path, char *out, size_t room)
+{
+    noh_file file;
+    noh_error error;
+    int status = 0;
+    if (noh_file_map(path, &file, &error)) return tool_fail(path, "cannot be read: %s", error.what);
+    if (file.bytes > room) {
+        status = tool_fail(path, "the file has more than %zu bytes", room);
+    } else if (file.bytes) {
+        memcpy(out, file.data, file.bytes);
+    }
+    noh_file_unmap(&file);
+    return status;
+}
+
 view_script *view_script_open(const char *path)
 {
-    FILE *file = strcmp(path, "-") == 0 ? stdin : fopen(path, "rb");
     view_script *s = calloc(1, sizeof *s);
-    size_t count, room = 1u << 20;
-    if (!file || !s || !(s->text = malloc(room))) {
-        tool_fail(path, file ? "out of memory" : "cannot be read");
+    const size_t room = 1u << 20;
+    if (!s || !(s->text = calloc(room, 1))) {
+        tool_fail(path, "out of memory");
         view_script_close(s);
         return NULL;
     }
     snprintf(s->path, sizeof s->path, "%s", path);
-    count = fread(s->text, 1, room - 1u, file);
-    s->text[count] = 0;
     s->next = s->text;
-    if (file != stdin) fclose(file);
+    if (strcmp(path, "-") == 0) {
+        (void)fread(s->text, 1, room - 1u, stdin);
+    } else if (read_file(path, s->text, room - 1u)) {
+        view_script_close(s);
+        return NULL;
+    }
     return s;
 }
 
