@@ -202,7 +202,7 @@ check 'no picture is left of it' test ! -e "$work/no.png"
 
 if [ -f "$assets/hero/body.glb" ]; then
     printf 'walk 0.1 step\nrun 0.2 step\njump 0.5 land\n' >"$work/keys.txt"
-    "$build/noh" build "$assets/hero/body.glb" -o "$work/body.noh" --plain --wrinkles face --lod 2 --lod-fast --events "$work/keys.txt" --quiet
+    "$build/noh" build "$assets/hero/body.glb" -o "$work/body.noh" --plain --wrinkles face --lod 2 --lod-fast --effort 1 --events "$work/keys.txt" --quiet
     noh bench "$work/body.noh" --only crowd --quick --json
     expect 0 'a bench of fifty bodies: events equal, bytes as planned'
     check 'there were events' awk '/"crowd_events":/ { gsub(/[^0-9]/, ""); found = $0 > 20 } END { exit !found }' "$work/out"

@@ -557,7 +557,9 @@ static void the_hairline_is_soft(void **state)
     uint32_t hard = 0, all = 0;
     scene s;
     (void)state;
+    fixture_gpu()->caps.samples_max = 4;
     open_scene(&s, 1, 1, 0.0f, IN_STATE);
+    s.g->caps.samples_max = 1;
     for (int view = -2; view <= 2; view++) {
         frame_from(&s, RADIANS(20.0f * (float)view), RADIANS(35.0f), 0.3f);
         uint8_t *bald = picture(&s, 0), *hair = picture(&s, 1);

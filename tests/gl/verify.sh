@@ -50,7 +50,7 @@ for model in hero/head.glb hero/head_sparse.glb hero/head_meshopt.glb hero/ident
         skip "$model" 'not in NOH_ASSETS'
         continue
     fi
-    noh build "$assets/$model" -o "$work/model.noh" --plain --wrinkles face --quiet
+    noh build "$assets/$model" -o "$work/model.noh" --plain --wrinkles face --effort 1 --quiet
     expect 0 "build of $model"
     verify "$model" "$work/model.noh"
 done

@@ -67,6 +67,7 @@ gpu *fixture_gpu(void)
         if (shared_state == WORKS) {
             find_uniform = shared.gl.GetUniformLocation;
             shared.gl.GetUniformLocation = count_lookup;
+            shared.caps.samples_max = 1;
         }
         if (shared_state == WORKS && shared.gl.DebugMessageCallback) {
             shared.gl.Enable(GL_DEBUG_OUTPUT);

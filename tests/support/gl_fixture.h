@@ -12,7 +12,8 @@
 #include "noh/low_gl.h"
 
 /* One context for the whole program, of EGL or of the driver that NOH_TEST_DRIVER names (tests/gl/matrix.sh); skips the
- * test where there is none. Starts with no GL errors counted. */
+ * test where there is none. Starts with no GL errors counted. Its caps tell of one sample, because four take a software
+ * rasteriser half of a test's time; set samples_max to 4, which every driver has, for a test of edges. */
 gpu *fixture_gpu(void);
 /* Close it at the end. Fits cmocka's group teardown. */
 int fixture_tear_down(void **state);
