@@ -134,9 +134,9 @@ if has pkg-config; then
     check 'pkg-config says the version' test "$(PKG_CONFIG_PATH="$prefix/lib/pkgconfig" pkg-config --modversion noh)" = "$version"
     language=c
     by_pkg_config 'gcc, C99' gcc -std=gnu99 -O2
-    ! has clang || by_pkg_config 'clang, C11' clang -std=gnu11 -O2
+    ! has clang || by_pkg_config 'clang, C11' clang -std=gnu11 -O1
     language=c++
-    ! has g++ || by_pkg_config 'g++, C++17' g++ -std=gnu++17 -O2
+    ! has g++ || by_pkg_config 'g++, C++17' g++ -std=gnu++17 -O1
 else
     skip 'pkg-config' 'no pkg-config here'
 fi
