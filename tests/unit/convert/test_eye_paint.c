@@ -32,6 +32,7 @@ static model *model_of(const char *name, uint32_t surface, uint32_t vertices, ui
     mesh->name = model_string(name);
     mesh->vertex_count = vertices;
     mesh->position = test_zeros(3u * vertices * sizeof *mesh->position);
+    mesh->normal = test_zeros(3u * vertices * sizeof *mesh->normal);
     mesh->uv = test_zeros(2u * vertices * sizeof *mesh->uv);
     mesh->indices = test_zeros((indices + 6u) * sizeof *mesh->indices); /* with room for two triangles */
     mesh->submeshes = test_zeros(sizeof *mesh->submeshes);
@@ -345,6 +346,7 @@ static void add_part(model *m, float grey)
     mesh->name = model_string("face");
     mesh->vertex_count = 3;
     mesh->position = test_zeros(9 * sizeof *mesh->position);
+    mesh->normal = test_zeros(9 * sizeof *mesh->normal);
     mesh->color = test_zeros(12 * sizeof *mesh->color);
     for (int i = 0; i < 12; i++) mesh->color[i] = i % 3 ? 1.0f : grey;
     mesh->submeshes = test_zeros(sizeof *mesh->submeshes);

@@ -20,6 +20,7 @@
 #define LID_COLUMNS 11 /* about where the eye looks, from one corner to the other */
 #define LID_REACH 0.75 /* radii to the outermost */
 #define LID_ROWS 128   /* from one radius below to one above */
+#define BULGE 0.985    /* of the cosine between a normal and the ball's: less is a cornea */
 
 typedef struct eye_ball {
     const model *m;
@@ -346,8 +347,30 @@ static int find_ways(eye_ball *b)
     return vec_normalize(b->above) && vec_normalize(b->ahead);
 }
 
+/* The direction of a vertex from the ball's centre. 0: it is not in front. */
+static int in_front(const eye_ball *b, uint32_t v, double way[3])
+{
+    for (size_t c = 0; c < 3; c++) way[c] = (double)b->mesh->position[3 * (size_t)v + c] - b->sphere.centre[c];
+    return vec_normalize(way) && vec_dot(way, b->gaze) > 0.5;
+}
+
+/* Shaders bend a ball's normals into a cornea's: over a bulge of the mesh's own they would mirror a lamp twice. */
+static void level_bulge(const eye_ball *b, float *normal, const uint32_t *vertices, uint32_t count)
+{
+    double way[3], least = 1.0;
+    for (uint32_t i = 0; i < count; i++) {
+        const float *n = normal + 3 * (size_t)vertices[i];
+        if (!in_front(b, vertices[i], way)) continue;
+        least = fmin(least, way[0] * (double)n[0] + way[1] * (double)n[1] + way[2] * (double)n[2]);
+    }
+    for (uint32_t i = 0; i < count && least > 0.0 && least < BULGE; i++) {
+        if (!in_front(b, vertices[i], way)) continue;
+        for (size_t c = 0; c < 3; c++) normal[3 * (size_t)vertices[i] + c] = (float)way[c];
+    }
+}
+
 /* The islands that a part of the mesh is made of, each once. 0, or 1 when out of memory. */
-static int add_eyes(const model *m, const model_mesh *mesh, const model_submesh *part, const mesh_islands *islands,
+static int add_eyes(const model *m, model_mesh *mesh, const model_submesh *part, const mesh_islands *islands,
                     eye_mean *mean)
 {
     const uint32_t *island = islands->first;
@@ -360,6 +383,7 @@ static int add_eyes(const model *m, const model_mesh *mesh, const model_submesh 
         if (eye_ball_fit(mesh->position, islands->room, count, &b.sphere) || !find_ways(&b) || !find_iris(&b)) continue;
         /* for shaders y is up, or z if the gaze is along y, and the sign of a vertex's x is its side of the nose */
         if (b.above[fabs(b.gaze[1]) > 0.7 ? 2 : 1] > 0.8 && fabs(b.sphere.centre[0]) > b.sphere.radius) find_lids(&b);
+        level_bulge(&b, mesh->normal, islands->room, count);
         add_eye(&b, mean);
     }
     free(used);
@@ -390,7 +414,7 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
 {
     eye_mean mean = { 0 };
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        const model_mesh *mesh = &m->meshes[i];
+        model_mesh *mesh = &m->meshes[i];
         mesh_islands islands;
         int failed = islands_open(mesh, &islands);
         for (uint32_t s = 0; s < mesh->submesh_count && !failed; s++) {
