@@ -200,6 +200,24 @@ static void lids_meet_in_a_blink(void **state)
     assert_true(pairs_that_part(target_named("eyeBlinkRight"), NULL, 0.005, NULL) >= 9);
 }
 
+/* Lashes taper: their outermost two millimetres are at most five high; a blunt end was nine. */
+static void lashes_taper(void **state)
+{
+    float outermost = 0.0f, low = 1.0f, high = -1.0f;
+    (void)state;
+    for (int pass = 0; pass < 2; pass++) {
+        for (uint32_t v = 0; v < head->vertex_count; v++) {
+            const float *p = head->position + 3 * (size_t)v, *c = head->color + 4 * (size_t)v;
+            if (fabsf(c[0] - 0.022f) > 0.002f || fabsf(c[2] - 0.006f) > 0.002f || p[0] < 0.02f) continue;
+            if (pass == 0) outermost = fmaxf(outermost, p[0]);
+            if (pass == 0 || p[0] < outermost - 0.002f) continue;
+            low = fminf(low, p[1]), high = fmaxf(high, p[1]);
+        }
+    }
+    print_message("from %.4f to %.4f at %.4f\n", (double)low, (double)high, (double)outermost);
+    assert_true(high > low && high - low < 0.005f);
+}
+
 /* Its triangles are few enough for a phone's hero, and it has a dozen clips. */
 static void it_is_small_and_has_clips(void **state)
 {
@@ -209,9 +227,13 @@ static void it_is_small_and_has_clips(void **state)
 }
 
 static const struct CMUnitTest tests[] = {
-    cmocka_unit_test(targets_move_what_they_name), cmocka_unit_test(lips_meet_at_rest),
-    cmocka_unit_test(a_smile_parts_the_lips),      cmocka_unit_test(a_slight_smile_keeps_the_lips_shut),
-    cmocka_unit_test(lids_meet_in_a_blink),        cmocka_unit_test(it_is_small_and_has_clips),
+    cmocka_unit_test(targets_move_what_they_name),
+    cmocka_unit_test(lips_meet_at_rest),
+    cmocka_unit_test(a_smile_parts_the_lips),
+    cmocka_unit_test(a_slight_smile_keeps_the_lips_shut),
+    cmocka_unit_test(lids_meet_in_a_blink),
+    cmocka_unit_test(it_is_small_and_has_clips),
+    cmocka_unit_test(lashes_taper),
 };
 
 TEST_MAIN(tests, set_up, tear_down)
