@@ -2,6 +2,7 @@
 #include "core/base/assert_internal.h"
 #include "life/physics/ragdoll_rig_internal.h"
 #include "life/reach/bone_names_internal.h"
+#include "life/reach/feet_internal.h"
 #include "life/reach/retarget_internal.h"
 #include "noh/base.h"
 
@@ -10,11 +11,22 @@ typedef struct finding {
     noh_ragdoll_row rows[NOH_RAGDOLL_BODIES_MAX];
     uint32_t count;
     uint8_t used[NOH_RAGDOLL_BODIES_MAX];
+    uint32_t front; /* noh_front_of */
 } finding;
 
 static uint32_t above(const finding *f, uint32_t row)
 {
     return noh_ragdoll_row_above(f->source, f->rows, f->count, f->rows[row].joint);
+}
+
+/* Whether a joint is at the right of the pelvis, seen from the body. */
+static int is_right(const finding *f, uint32_t joint)
+{
+    float at[3], pelvis[3], rotation[4];
+    noh_ragdoll_bind(&f->source->joints, joint, at, rotation);
+    noh_ragdoll_bind(&f->source->joints, f->rows[0].joint, pelvis, rotation);
+    const uint32_t axis = f->front % 2u ? 2u : 0u; /* of a body that faces +x, the left is at -z */
+    return (at[axis] < pelvis[axis]) != (f->front == 1u || f->front == 2u);
 }
 
 /* A limb from the row of its end: upwards bend feet alone, and the joint above a hand bends forwards. Returns the row of
@@ -24,10 +36,8 @@ static uint32_t take_limb(finding *f, uint32_t end, noh_retarget_rig *rig)
     const int is_leg = f->rows[end].toward == NOH_RAGDOLL_UPWARD;
     const uint32_t middle = above(f, end), start = middle == NOH_NONE ? NOH_NONE : above(f, middle);
     const uint32_t toward = is_leg ? NOH_RAGDOLL_BACKWARD : NOH_RAGDOLL_FORWARD;
-    float at[3], rotation[4];
     if (start == NOH_NONE || start == 0 || !f->rows[middle].hinge || f->rows[middle].toward != toward) return NOH_NONE;
-    noh_ragdoll_bind(&f->source->joints, f->rows[start].joint, at, rotation);
-    uint16_t *bones = rig->bones + (at[0] < 0.0f ? NOH_BONE_RIGHT : 0) +
+    uint16_t *bones = rig->bones + (is_right(f, f->rows[start].joint) ? NOH_BONE_RIGHT : 0) +
                       (is_leg ? NOH_BONE_UPPER_LEG : NOH_BONE_UPPER_ARM);
     const uint32_t rows[3] = { start, middle, end };
     for (uint32_t i = 0; i < 3; i++) {
@@ -88,6 +98,7 @@ static noh_result find_by_rows(const noh_ragdoll_source *source, noh_retarget_ri
     f.source = source;
     const noh_result result = noh_ragdoll_find_rows(source, f.rows, &f.count, error);
     if (result) return result;
+    f.front = noh_front_of(source);
     for (uint32_t i = 1; i < f.count; i++) {
         const uint32_t start = take_limb(&f, i, rig);
         if (start != NOH_NONE && f.rows[i].toward != NOH_RAGDOLL_UPWARD) chest = above(&f, start);

@@ -131,6 +131,36 @@ static void all_agree_on_the_front(void **state)
     }
 }
 
+/* Limbs without names are left and right of the body, not of x. */
+static void limbs_without_names_have_their_sides(void **state)
+{
+    (void)state;
+    for (uint32_t front = 0; front < FRONTS; front++) {
+        noh_retarget_rig named, unnamed;
+        noh_ragdoll_source source;
+        turned t;
+        open_turned(&t, front);
+        memset(&source, 0, sizeof source);
+        source.pack = &t.cast.packs[0];
+        source.metres = 1.0f;
+        assert_int_equal(noh_pack_skeleton_at(source.pack, 0, &source.joints, NULL, NULL), NOH_OK);
+        assert_int_equal(noh_retarget_rig_make(&source, &named, NULL), NOH_OK);
+        for (uint32_t j = 0; j < source.joints.joint_count; j++) {
+            const char *name = noh_pack_joint_name(source.pack, 0, j);
+            const char *side = strrchr(name, '.'); /* "thigh.L" */
+            if (side) t.bytes[(const uint8_t *)side + 1 - t.bytes] = 'q';
+        }
+        assert_int_equal(noh_retarget_rig_make(&source, &unnamed, NULL), NOH_OK);
+        for (uint32_t side = 0; side < 2u; side++) {
+            const uint32_t leg = NOH_BONE_UPPER_LEG + side * NOH_BONE_RIGHT;
+            const uint32_t arm = NOH_BONE_UPPER_ARM + side * NOH_BONE_RIGHT;
+            assert_int_equal(unnamed.bones[leg], named.bones[leg]);
+            assert_int_equal(unnamed.bones[arm], named.bones[arm]);
+        }
+        close_turned(&t);
+    }
+}
+
 /* A gaze at a point of the body's left, and one at nothing. */
 static void a_gaze_is_of_its_own_front(void **state)
 {
@@ -247,7 +277,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_stands_whatever_its_front), cmocka_unit_test(all_agree_on_the_front),
         cmocka_unit_test(a_gaze_is_of_its_own_front),   cmocka_unit_test(a_push_fells_it_whatever_its_front),
-        cmocka_unit_test(a_face_is_of_its_own_front),
+        cmocka_unit_test(a_face_is_of_its_own_front),   cmocka_unit_test(limbs_without_names_have_their_sides),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
