@@ -98,10 +98,10 @@ says 'noh build MODEL --names FILE'
 
 # ---- joints ----
 
-LC_ALL=C sed 's/"name":"head"/"name":"kopf"/' "$build/demo/puppet.glb" >"$work/kopf.glb"
-check 'the head has another name' sh -c '! cmp -s "$1" "$2"' - "$build/demo/puppet.glb" "$work/kopf.glb"
-echo 'joint head kopf' >"$work/kopf.names"
-echo 'joint-head kopf' >"$work/kopf.recipe"
+LC_ALL=C sed 's/"name":"head"/"name":"tete"/' "$build/demo/puppet.glb" >"$work/tete.glb"
+check 'the head has another name' sh -c '! cmp -s "$1" "$2"' - "$build/demo/puppet.glb" "$work/tete.glb"
+echo 'joint head tete' >"$work/tete.names"
+echo 'joint-head tete' >"$work/tete.recipe"
 # looks FILE OPTIONS...: a picture of a face that looks to the side
 looks() {
     out=$1
@@ -111,14 +111,14 @@ looks() {
     expect 0 "a face that looks aside: $out"
 }
 looks "$work/head.png" "$build/demo/puppet.glb"
-looks "$work/kopf.png" "$work/kopf.glb"
-check 'a head of no known name does not turn' sh -c '! cmp -s "$1" "$2"' - "$work/head.png" "$work/kopf.png"
-looks "$work/names.png" "$work/kopf.glb" --names "$work/kopf.names"
+looks "$work/tete.png" "$work/tete.glb"
+check 'a head of no known name does not turn' sh -c '! cmp -s "$1" "$2"' - "$work/head.png" "$work/tete.png"
+looks "$work/names.png" "$work/tete.glb" --names "$work/tete.names"
 check 'one in --names does' cmp "$work/head.png" "$work/names.png"
-looks "$work/recipe.png" "$work/kopf.glb" --recipe "$work/kopf.recipe"
+looks "$work/recipe.png" "$work/tete.glb" --recipe "$work/tete.recipe"
 check 'and one in --recipe' cmp "$work/head.png" "$work/recipe.png"
-echo 'joint-head nobody' >"$work/kopf.recipe"
-noh build "$work/kopf.glb" -o "$work/looks.noh" --recipe "$work/kopf.recipe" --effort 1
+echo 'joint-head nobody' >"$work/tete.recipe"
+noh build "$work/tete.glb" -o "$work/looks.noh" --recipe "$work/tete.recipe" --effort 1
 check 'a joint that is not there is a warning' grep -q "no skeleton has the joint 'nobody'" "$work/out"
 
 # ---- units ----

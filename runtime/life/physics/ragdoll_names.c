@@ -51,16 +51,18 @@ static const struct word {
     const char *text;
     part means;
 } words[] = {
-    { "bag", NONE },          { "pad", NONE },        { "armor", NONE },        { "forearm", FOREARM },
-    { "lowerarm", FOREARM },  { "lowarm", FOREARM },  { "elbow", FOREARM },     { "upperarm", UPPER_ARM },
-    { "uparm", UPPER_ARM },   { "shldr", UPPER_ARM }, { "thigh", THIGH },       { "upperleg", THIGH },
-    { "upleg", THIGH },       { "lowerleg", SHIN },   { "lowleg", SHIN },       { "hippart", NONE },
-    { "shoulderpart", NONE }, { "shin", SHIN },       { "calf", SHIN },         { "knee", SHIN },
-    { "toe", NONE },          { "foot", FOOT },       { "ankle", FOOT },        { "finger", NONE },
-    { "thumb", NONE },        { "hand", HAND },       { "wrist", HAND },        { "headtop", NONE },
-    { "forehead", NONE },     { "head", HEAD },       { "neck", HEAD },         { "arm", UPPER_ARM },
-    { "radius", FOREARM },    { "leg", SHIN },        { "shoulder", SHOULDER }, { "hip", HIP },
-    { "femur", THIGH },       { "tibia", SHIN },      { "humerus", UPPER_ARM },
+    { "bag", NONE },          { "pad", NONE },           { "armor", NONE },         { "forearm", FOREARM },
+    { "lowerarm", FOREARM },  { "lowarm", FOREARM },     { "elbow", FOREARM },      { "upperarm", UPPER_ARM },
+    { "uparm", UPPER_ARM },   { "shldr", UPPER_ARM },    { "thigh", THIGH },        { "upperleg", THIGH },
+    { "upleg", THIGH },       { "lowerleg", SHIN },      { "lowleg", SHIN },        { "hippart", NONE },
+    { "shoulderpart", NONE }, { "shin", SHIN },          { "calf", SHIN },          { "knee", SHIN },
+    { "toe", NONE },          { "foot", FOOT },          { "ankle", FOOT },         { "finger", NONE },
+    { "thumb", NONE },        { "hand", HAND },          { "wrist", HAND },         { "headtop", NONE },
+    { "forehead", NONE },     { "head", HEAD },          { "neck", HEAD },          { "arm", UPPER_ARM },
+    { "radius", FOREARM },    { "leg", SHIN },           { "shoulder", SHOULDER },  { "hip", HIP },
+    { "femur", THIGH },       { "tibia", SHIN },         { "humerus", UPPER_ARM },  { "oberarm", UPPER_ARM },
+    { "unterarm", FOREARM },  { "oberschenkel", THIGH }, { "unterschenkel", SHIN }, { "fuss", FOOT },
+    { "hals", HEAD },         { "kopf", HEAD },
 };
 
 /* MikuMikuDance's bones, without their sides, in UTF-8. */

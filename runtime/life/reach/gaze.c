@@ -41,7 +41,7 @@ static int has_any(const char *name, const char *const *words)
 int noh_name_is_head(const char *name)
 {
     static const char *const no_head[] = { "headtop", "headend", "headnub", "forehead", "headlight", NULL };
-    return noh_name_has(name, "head") && !has_any(name, no_head);
+    return (noh_name_has(name, "head") || noh_name_has(name, "kopf")) && !has_any(name, no_head);
 }
 
 static uint32_t find_head(const noh_ragdoll_source *s)

@@ -135,6 +135,11 @@ static void joints_have_other_names(void **state)
         { "左目", "leftEye" },
         { "左親指０", "leftThumbMetacarpal" },
         { "右小指３", "rightLittleDistal" },
+        { "Oberarm_L", "leftUpperArm" },
+        { "UnterschenkelRechts", "rightLowerLeg" },
+        { "Hand_Links", "leftHand" },
+        { "Fuß_rechts", "rightFoot" },
+        { "Kopf", "head" },
         { "左足ＩＫ", NULL },
         { "左足D", NULL },
         { "右腕捩", NULL },
@@ -170,7 +175,7 @@ static void every_line_is_read(void **state)
 
 static void a_file_comes_first(void **state)
 {
-    static const char text[] = "# ours\ntarget aa Schnabel_Auf\ntarget mouthSmile* Grins_*\njoint head Kopf\n"
+    static const char text[] = "# ours\ntarget aa Schnabel_Auf\ntarget mouthSmile* Grins_*\njoint head Huvud\n"
                                "material plain tarnhaut\nmaterial skin leder\n";
     char means[NOH_NAME_BYTES_MAX];
     model_error error = { "", "" };
@@ -181,12 +186,12 @@ static void a_file_comes_first(void **state)
     assert_string_equal(means, "aa");
     assert_true(names_find(NAME_TARGET, "grins.R", means, NULL));
     assert_string_equal(means, "mouthSmileRight");
-    assert_true(names_find(NAME_JOINT, "Kopf", means, NULL));
+    assert_true(names_find(NAME_JOINT, "Huvud", means, NULL));
     assert_int_equal(surface_kind_of_name("altes Leder"), NOH_SURFACE_SKIN);
     assert_int_equal(surface_kind_of_name("Skin_Tarnhaut"), NOH_SURFACE_PLAIN);
     names_free();
     assert_int_equal(surface_kind_of_name("Skin_Tarnhaut"), NOH_SURFACE_SKIN);
-    assert_false(names_find(NAME_JOINT, "Kopf", means, NULL));
+    assert_false(names_find(NAME_JOINT, "Huvud", means, NULL));
     names_free();
 }
 

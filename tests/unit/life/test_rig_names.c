@@ -141,6 +141,11 @@ static const rig rigs[] = {
       "4 toenail -|1 RightUpLeg T|2 RightLeg K|3 RightFoot F|1 Spine S|2 Spine1 C|3 armor -|3 necklace -|3 headphones -|"
       "3 alarm -|3 Neck N|4 Head -|5 earring_l -|3 LeftShoulder -|4 LeftArm u|5 LeftForeArm e|6 LeftHand w|"
       "3 RightShoulder -|4 shoulderpad_r -|4 RightArm U|5 RightForeArm E|6 RightHand W" },
+    { "German",
+      "0 Becken P|1 OberschenkelLinks t|2 UnterschenkelLinks k|3 FussLinks f|1 OberschenkelRechts T|"
+      "2 UnterschenkelRechts K|3 FussRechts F|1 Wirbelsaeule S|2 Brust C|3 Hals N|4 Kopf -|3 SchulterLinks -|"
+      "4 OberarmLinks u|5 UnterarmLinks e|6 HandLinks w|3 Schulter_Rechts -|4 Oberarm_Rechts U|5 Unterarm_Rechts E|"
+      "6 Hand_Rechts W" },
     { "small letters alone",
       "0 hips P|1 leftupperleg t|2 leftlowerleg k|3 leftfoot f|1 rightupperleg T|2 rightlowerleg K|3 rightfoot F|"
       "1 spine S|2 chest C|3 neck N|4 head -|3 leftshoulder -|4 leftupperarm u|5 leftforearm e|6 lefthand w|"
