@@ -62,8 +62,8 @@ vec3 noh_bounced(vec3 albedo, float open)
 /* Schlick's reflectance at an angle, from what it is at normal incidence to what it is at grazing angles. */
 vec3 noh_fresnel(vec3 f0, float f90, float cosine)
 {
-    float away = 1.0 - cosine, away2 = away * away, part = away2 * away2 * away;
-    return f0 * (1.0 - part) + f90 * part;
+    float away = clamp(1.0 - cosine, 0.0, 1.0), away2 = away * away;
+    return f0 + (f90 - f0) * (away2 * away2 * away);
 }
 
 #ifndef NOH_HAIR
@@ -339,16 +339,16 @@ vec3 noh_light(noh_surface s)
     color += noh_lighting[0].rgb * ((1.0 - open) * vec3(0.045, 0.022, 0.019)); /* by the walls, whatever is painted dark */
 #endif
 #endif
-    vec3 shine = gloss * mirrored;
+    color += gloss * again * mirrored;
     if (noh_key_gloss > 0.0) {
         /* The half vector h is noh_key + s.view, divided by its length: its cosines need no vector. */
-        float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(2.0 * lv + 1e-6), nl = dot(mirror, noh_key);
+        float lv = 1.0 + dot(noh_key, s.view), shorter = inversesqrt(max(2.0 * lv, 1e-6)), nl = dot(mirror, noh_key);
         float nh = clamp((nl + across) * shorter, 0.0, 1.0);
         vec3 fresnel = noh_fresnel(f0, f90, lv * shorter);
         float glossed = noh_key_gloss * shadow * noh_key_glossed(nh, max(nl, 0.0), nv, roughness);
-        shine += fresnel * (noh_key_color * glossed);
+        color += fresnel * again * noh_key_color * glossed;
     }
-    return noh_expose(color + shine * again + s.emissive);
+    return noh_expose(color + s.emissive);
 }
 #endif
 #else
@@ -388,7 +388,8 @@ vec3 noh_light(noh_surface s)
 #ifdef NOH_PHONE
     vec3 fresnel = f0;
 #else
-    vec3 fresnel = noh_fresnel(f0, f90, (lv + 1.0) * shorter);
+    float away = 1.0 - (lv + 1.0) * shorter, away2 = away * away, part = away2 * away2 * away;
+    vec3 fresnel = f0 * (1.0 - part) + f90 * part;
 #endif
     vec3 even = 0.62 * diffuse + f0 * ((0.7 - 0.4 * roughness) * (0.15 + 0.85 * s.metallic));
 #ifndef NOH_PHONE
