@@ -22,8 +22,9 @@ const char *noh_gl_geometry_defines(const noh_gl_api *api);
 /* 1 if the context lists the extension, otherwise 0. name: in full, "GL_EXT_...". */
 int noh_gl_has_extension(const noh_gl_api *api, const char *name);
 
-/* errors  ARG the device is NULL or has no API or ledger: noh_gl_open fills them in (gl_open.c) */
-noh_result noh_gl_device_check(const noh_gl_device *device, noh_error *error);
+/* needs_caps: its caps, too, must be there
+ * errors  ARG the device is NULL or has no API, ledger or needed caps: noh_gl_open fills them in (gl_open.c) */
+noh_result noh_gl_device_check(const noh_gl_device *device, int needs_caps, noh_error *error);
 
 /* Desktop OpenGL: vertex shaders set the point size, as they always do in OpenGL ES. */
 #define NOH_GL_PROGRAM_POINT_SIZE 0x8642u

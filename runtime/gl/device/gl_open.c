@@ -24,8 +24,8 @@ noh_result noh_gl_open(noh_gl *gl, noh_gl_get_proc get, void *user, noh_error *e
     return NOH_OK;
 }
 
-noh_result noh_gl_device_check(const noh_gl_device *device, noh_error *error)
+noh_result noh_gl_device_check(const noh_gl_device *device, int needs_caps, noh_error *error)
 {
-    if (NOH_PAGE || (device && device->api && device->ledger)) return NOH_OK;
+    if (NOH_PAGE || (device && device->api && device->ledger && (device->caps || !needs_caps))) return NOH_OK;
     return noh_fail(error, NOH_ERR_ARG, "the device is empty: call noh_gl_open first", 0, 0);
 }

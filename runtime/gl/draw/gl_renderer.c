@@ -239,7 +239,7 @@ noh_result noh_gl_renderer_create(const noh_gl_device *device, const noh_gl_rend
     noh_gl_renderer_desc d;
     noh_result result;
     NOH_ASSERT(desc && out);
-    result = noh_gl_device_check(device, error);
+    result = noh_gl_device_check(device, 0, error);
     if (result) return result;
     d = *desc;
     d.lit = !desc->lit ? 0 : noh_gl_has_soft_shadows(device->caps) ? NOH_LIT_SOFT : 1;

@@ -148,7 +148,7 @@ noh_result noh_gl_morph_init_empty(void *memory, size_t bytes, const noh_gl_devi
     noh_arena arena;
     noh_result result;
     NOH_ASSERT(desc && morph);
-    result = noh_gl_device_check(device->caps ? device : NULL, error);
+    result = noh_gl_device_check(device, 1, error);
     if (!result) result = noh_gl_morph_plan_make(desc, device->caps, &plan, error);
     if (!result && plan.cpu_bytes > SIZE_MAX) {
         result = noh_fail(error, NOH_ERR_LIMIT, "the accumulator needs more memory than this processor can address", 0,

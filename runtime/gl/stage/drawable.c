@@ -82,7 +82,7 @@ noh_result noh_gl_drawable_create(const noh_gl_device *device, const noh_gl_draw
                                   noh_error *error)
 {
     NOH_ASSERT(out);
-    noh_result result = noh_gl_device_check(device, error);
+    noh_result result = noh_gl_device_check(device, 0, error);
     memset(out, 0, sizeof *out);
     if (result) return result;
     const noh_gl_api *gl = device->api;

@@ -1,4 +1,5 @@
 #include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "gl/draw/gl_draw_internal.h"
 #include "gl/draw/gl_renderer_internal.h"
 #include "stage/actors/decal_internal.h"
@@ -106,9 +107,10 @@ noh_result noh_stage_decals_create(noh_stage *stage, const noh_gl_device *device
                                       .user = out };
     noh_arena arena;
     void *shader;
-    NOH_ASSERT(stage && device && out);
+    NOH_ASSERT(stage && out);
     memset(out, 0, sizeof *out);
     noh_result result = noh_gl_stage_check(stage, error);
+    if (!result) result = noh_gl_device_check(device, 0, error);
     if (!result) result = noh_arena_open(&arena, memory, bytes, noh_stage_decals_size(stage), error);
     if (result) return result;
     out->stage = stage;

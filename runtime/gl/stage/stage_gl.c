@@ -571,9 +571,9 @@ static noh_result init(void *memory, size_t bytes, const void *device, const noh
     measure m = { &stage->desc, desc, stage->plan, NULL, noh_arena_over(memory, bytes), NULL, NULL, 0, 0, 0, 0, 0 };
     noh_stage_gl first;
     noh_result result;
-    first.device = *(const noh_gl_device *)device;
-    result = noh_gl_device_check(first.device.caps ? &first.device : NULL, error);
+    result = noh_gl_device_check(device, 1, error);
     if (result) return result;
+    first.device = *(const noh_gl_device *)device;
     m.caps = first.device.caps;
     m.gl = &first;
     result = visit(&m, error);

@@ -1,4 +1,5 @@
 #include "core/base/assert_internal.h"
+#include "gl/device/gl_api_internal.h"
 #include "life/physics/terrain_lod_internal.h"
 #include "noh/base.h"
 #include "noh/body.h"
@@ -84,15 +85,17 @@ noh_result noh_stage_terrain_create(const noh_gl_device *device, const noh_field
                                     const noh_stage_terrain_desc *desc, void *memory, size_t bytes,
                                     noh_stage_terrain *out, noh_error *error)
 {
-    NOH_ASSERT(device && field && out);
+    NOH_ASSERT(field && out);
     const uint32_t most = field->width > field->depth ? field->width : field->depth;
+    noh_result result = noh_gl_device_check(device, 0, error);
     memset(out, 0, sizeof *out);
+    if (result) return result;
     if (device->caps && most > device->caps->texture_size_max) {
         return noh_fail(error, NOH_ERR_LIMIT,
                         "the height field is wider than the largest texture: split it or lower its resolution",
                         device->caps->texture_size_max, most);
     }
-    noh_result result = noh_terrain_lod_init(memory, bytes, field, &out->lod, error);
+    result = noh_terrain_lod_init(memory, bytes, field, &out->lod, error);
     if (result) return result;
     if (desc) out->desc = *desc;
     fill_colours(&out->desc);
