@@ -2625,6 +2625,8 @@ static void bytes_say_what_came_in_place_of_a_file(void **state)
         assert_string_equal(kind->what, "a Git LFS pointer in place of the file");
         write_text(endings[i], "<!DOCTYPE html>\n<html>");
         assert_string_equal(file_kind_of(file_path)->what, "a web page in place of the file");
+        write_text(endings[i], i & 1u ? "\xef\xbb\xbf<HTML>" : "\n\n\r\n<!doctype HTML>");
+        assert_string_equal(file_kind_of(file_path)->what, "a web page in place of the file");
         assert_int_equal(remove(file_path), 0);
     }
 }

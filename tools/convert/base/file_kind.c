@@ -85,20 +85,38 @@ static const file_kind kinds[] = {
     { ".session", NULL, READER_NONE, "a recording of play", "noh lab replay PACK --play FILE reads it" },
     { NULL, "version https://git-lfs.", READER_NONE, "a Git LFS pointer in place of the file",
       "run git lfs pull in its repository" },
-    { NULL, "<!DOCTYPE html", READER_NONE, "a web page in place of the file", WEB_PAGE },
     { NULL, "<!doctype html", READER_NONE, "a web page in place of the file", WEB_PAGE },
     { NULL, "<html", READER_NONE, "a web page in place of the file", WEB_PAGE },
 };
 
 #define KIND_COUNT (sizeof kinds / sizeof kinds[0])
 
+static char small_letter(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c + 32) : c;
+}
+
 int file_has_ending(const char *path, const char *ending)
 {
     const size_t length = strlen(path), tail = strlen(ending);
     if (length < tail) return 0;
     for (size_t i = 0; i < tail; i++) {
-        const char c = path[length - tail + i];
-        if ((c >= 'A' && c <= 'Z' ? c + 32 : c) != ending[i]) return 0;
+        if (small_letter(path[length - tail + i]) != ending[i]) return 0;
+    }
+    return 1;
+}
+
+/* What came in place of a file is text: web pages begin with empty lines or a byte order mark, in any letters. */
+static int begins_as(const file_kind *kind, const char *bytes, size_t count)
+{
+    const int is_text = !kind->ending;
+    const size_t length = strlen(kind->begins);
+    size_t at = strncmp(kind->begins, "ftyp", 4) == 0 ? 4 : 0; /* after the length of its box */
+    while (is_text && at < count && bytes[at] && strchr("\xef\xbb\xbf \t\r\n", bytes[at])) at++;
+    if (count < at + length) return 0;
+    for (size_t i = 0; i < length; i++) {
+        const char c = bytes[at + i];
+        if ((is_text ? small_letter(c) : c) != kind->begins[i]) return 0;
     }
     return 1;
 }
@@ -106,10 +124,7 @@ int file_has_ending(const char *path, const char *ending)
 const file_kind *file_kind_of_bytes(const void *bytes, size_t count)
 {
     for (size_t i = 0; i < KIND_COUNT; i++) {
-        const size_t length = kinds[i].begins ? strlen(kinds[i].begins) : 0;
-        const size_t at = length && strncmp(kinds[i].begins, "ftyp", 4) == 0 ? 4 : 0; /* after the length of its box */
-        if (length && count >= at + length && memcmp((const char *)bytes + at, kinds[i].begins, length) == 0)
-            return &kinds[i];
+        if (kinds[i].begins && begins_as(&kinds[i], bytes, count)) return &kinds[i];
     }
     return NULL;
 }
