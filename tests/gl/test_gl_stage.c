@@ -632,10 +632,8 @@ static void every_call_without_a_gpu_is_refused(const cast *c, gpu *g)
     const noh_gl_device without_caps = { device.api, NULL, device.ledger, NULL, 0 };
     static const noh_gl_skin_desc skin_desc;
     static const noh_gl_morph_desc morph_desc;
-    static const noh_gl_variant_key key;
     static const noh_field field;
     static noh_stage_terrain terrain;
-    static noh_gl_variant variant;
     noh_gl_skin *skin;
     noh_gl_morph *morph;
     noh_stage_shader *shader;
@@ -656,7 +654,6 @@ static void every_call_without_a_gpu_is_refused(const cast *c, gpu *g)
     REFUSED(noh_gl_skin_init(NULL, 0, NULL, &skin_desc, &skin, &error), "noh_gl_open");
     REFUSED(noh_gl_morph_init(NULL, 0, NULL, &morph_desc, &morph, &error), "noh_gl_open");
     REFUSED(noh_stage_terrain_create(NULL, &field, NULL, NULL, 0, &terrain, &error), "noh_gl_open");
-    REFUSED(noh_gl_variant_create(NULL, key, NULL, NULL, 0, &variant, &error), "noh_gl_open");
 }
 
 /* Where noh_gl_open was forgotten, plan and stage say so; and a draw, where the stage has no gpu. */

@@ -439,9 +439,7 @@ noh_result noh_gl_variant_create(const noh_gl_device *device, noh_gl_variant_key
     noh_gl_variant v;
     noh_gl_program_desc desc;
     noh_result result;
-    NOH_ASSERT(out && (varyings || !varying_count));
-    result = noh_gl_device_check(device, 0, error);
-    if (result) return result;
+    NOH_ASSERT(device && device->api && out && (varyings || !varying_count));
     own = own ? own : &library;
     if (own->sampler_count > NOH_GL_OWN_SAMPLERS_MAX) {
         return noh_fail(error, NOH_ERR_LIMIT, "shader desc: sampler_count is above NOH_GL_OWN_SAMPLERS_MAX",
