@@ -95,7 +95,9 @@ struct noh_surface {
     float f90;       /* of non-metals, at grazing angles */
 #ifdef NOH_TOON
     vec3 shade;      /* linear colour where no light arrives */
-    vec3 masks;      /* shift of the edge; share of the rim */
+#endif
+#ifdef NOH_TOON_MASKS
+    vec3 masks;      /* r: shift of the edge, b: share of rim and matcap */
 #endif
 #ifdef NOH_HAIR
     vec3 strand;     /* unit, along the hair, perpendicular to the normal */
