@@ -714,7 +714,7 @@ static void a_toon_has_a_rim_and_a_matcap(void **state)
     scene_close(&s);
 }
 
-/* Its third texture moves the edge towards the light, and takes half of the rim and the matcap away. */
+/* Its third texture moves the edge towards the light, and takes half of the rim away. */
 static void a_toon_has_masks(void **state)
 {
     static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };

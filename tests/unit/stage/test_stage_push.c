@@ -165,7 +165,8 @@ static void push_from(float newton_seconds, uint32_t side, row *r)
     close_cast(&c);
 }
 
-/* No foot goes above the hips, and no head lands first. Without NOH_LONG every other push: of each kind at least one. */
+/* No foot goes above the hips, and no head lands first. Without NOH_LONG every other push, so
+ * that each assertion below still has one that it is about. */
 static void a_table_of_pushes(void **state)
 {
     static const float pushes[] = { 10.0f, 20.0f, 40.0f, 70.0f, 80.0f, 90.0f, 100.0f, 200.0f, 300.0f, 400.0f };
