@@ -13,7 +13,7 @@
 #define SPEECH "noh speak makes a clip of a recording"
 #define ARCHIVE "unpack it, and give noh the model in it"
 #define TEXT(option) "noh build MODEL " option " FILE reads it"
-#define WEB_PAGE "download the file itself: this is the page that shows or refuses it"
+#define WEB_PAGE "download the file itself, not the page that shows it"
 
 /* Rows with both a beginning and an ending are of one format; the first row that fits counts. */
 static const file_kind kinds[] = {
