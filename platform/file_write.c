@@ -146,8 +146,15 @@ static int write_file(const char *path, const void *data, size_t bytes)
     return code ? code : replace_file(resolved, mode, data, bytes);
 }
 
+static const char *reason(const char *path, int code)
+{
+    if (code == ENOENT && *path) return "its folder does not exist: make the folder first";
+    if (code == EISDIR) return "it is a folder: give the name of a file";
+    return strerror(code);
+}
+
 noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error)
 {
     int code = write_file(path, data, bytes);
-    return code ? noh_fail(error, NOH_ERR_DATA, strerror(code), (uint64_t)code, 0) : NOH_OK;
+    return code ? noh_fail(error, NOH_ERR_DATA, reason(path, code), (uint64_t)code, 0) : NOH_OK;
 }

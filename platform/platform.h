@@ -79,7 +79,7 @@ void noh_file_unmap(noh_file *file);
 /* Write a whole file or change nothing: the bytes go to a new file in the same folder, which is then renamed, so that a
  * reader sees either the old file or the new one. A symbolic link stays; its target is replaced. A device, a FIFO and
  * this process's own standard output (/dev/stdout) cannot be replaced and are written to directly.
- * errors  NOH_ERR_DATA the system refuses; `what` is its message, `where` its errno */
+ * errors  NOH_ERR_DATA the system refuses; `what` is its message, or what to do, `where` its errno */
 noh_result noh_file_write(const char *path, const void *data, size_t bytes, noh_error *error);
 
 /* Nanoseconds of a steady clock, from any start. */

@@ -38,7 +38,10 @@ expect 1 'an empty name'
 says 'No such file or directory'
 noh dump "$pack" -o "$folder/"
 expect 1 'a folder'
-says 'Is a directory'
+says 'it is a folder: give the name of a file'
+noh dump "$pack" -o "$folder/none/x.obj"
+expect 1 'a folder that is not there'
+says 'cannot write: its folder does not exist: make the folder first'
 
 # ---- an older file ----
 
