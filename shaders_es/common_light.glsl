@@ -383,6 +383,9 @@ vec3 noh_light(noh_surface s)
     square = dot(lamp, lamp);
 #endif
     float across = dot(mirror, s.view), nv = max(noh_seen(s, across), 1e-3), lv = dot(lamp, s.view);
+#ifdef NOH_EYE
+    lv = max(lv, -1.0); /* the lamp's vector may be longer than 1: reflectance would exceed 1 */
+#endif
     float shorter = inversesqrt(square + 1.000001 + 2.0 * lv); /* the half vector needs no vector, as above */
     float nh = max(dot(mirror, lamp) + across, 0.0) * shorter;
 #ifdef NOH_PHONE
