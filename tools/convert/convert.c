@@ -11,6 +11,7 @@
 #include "convert/clips/events_read.h"
 #include "convert/chunks/chunk_maker.h"
 #include "convert/clips/joint_order.h"
+#include "convert/light/hollow_paint.h"
 #include "convert/light/pack_transfer.h"
 #include "convert/mocap/clean.h"
 #include "convert/model/eye_paint.h"
@@ -372,6 +373,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
     if (teeth_paint(s->m)) return model_fail_memory(error);
     if (!options->keep_looks && (eye_paint(s->m) || eye_shade_clear(s->m) || lash_strips_hide(s->m)))
         return model_fail_memory(error);
+    if (!options->keep_looks && !options->transfer.order && hollow_paint(s->m)) return model_fail_memory(error);
     strands_find(s->m, options->report);
     return surface_shapes_find(s->m, options->report, error);
 }
