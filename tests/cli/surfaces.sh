@@ -111,6 +111,26 @@ for row in skin 'plain --surface Head=plain' 'plain --plain' 'skin --surface Hea
     check "head: $row" grep -q "material 'Head': $head" "$work/out"
 done
 
+# A pit in skin that no texture shades.
+awk 'BEGIN {
+    n = 25
+    print "usemtl Face_skin"
+    for (i = 0; i < n * n; i++) {
+        x = i % n - 12; y = int(i / n) - 12
+        print "v", x / 100, y / 100, x * x < 12.5 && y * y < 12.5 ? -0.18 : 0
+    }
+    for (i = 1; i <= n * (n - 1); i++) if (i % n) print "f", i, i + 1, i + n + 1, i + n
+}' >"$work/pit.obj"
+for row in 1 '0 --plain' '0 --transfer 4' '0 --surface Face_skin=skin'; do
+    # shellcheck disable=SC2086 # words
+    set -- $row
+    dark=$1
+    shift
+    noh build "$work/pit.obj" -o "$work/pit.noh" "$@" --warnings
+    expect 0 "build a pit $*"
+    check "hollows of skin: $row" test "$(cat "$work/out" "$work/err" | grep -c 'hollows of its skin')" = "$dark"
+done
+
 for name in named told; do
     noh render "$work/$name.noh" -o "$work/$name.png" --camera face --size 128x128
     expect 0 "render $name"

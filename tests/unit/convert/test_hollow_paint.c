@@ -79,12 +79,13 @@ static void what_a_target_opens_stays(void **state)
 static void other_surfaces_stay(void **state)
 {
     (void)state;
-    for (int kind = 0; kind < 4; kind++) {
+    for (int kind = 0; kind < 5; kind++) {
         model *m = nostril_of(0);
         if (kind == 0) m->materials[0].surface = NOH_SURFACE_PLAIN;
         if (kind == 1) m->materials[0].surface_given = 1;
         if (kind == 2) m->materials[0].base_color_texture = 0;
         if (kind == 3) m->meshes[0].color = test_zeros(4u * COUNT * sizeof(float)); /* black: an artist's */
+        if (kind == 4) m->meshes[0].joints = test_zeros(MODEL_INFLUENCES_MAX * COUNT * sizeof(uint16_t));
         assert_int_equal(hollow_paint(m), 0);
         assert_int_equal(m->warning_count, 0);
         assert_true(kind == 3 || !m->meshes[0].color);

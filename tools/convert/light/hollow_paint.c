@@ -153,7 +153,8 @@ static int paint_mesh(model *m, model_mesh *mesh, const light_rays *rays)
 {
     skin s = { .mesh = mesh };
     uint32_t dark = 0;
-    int failed = take_skin(m, &s) || (s.count && find_dark(&s, rays, &dark)) || (dark && paint(&s));
+    int failed = !mesh->joints && take_skin(m, &s);
+    if (!failed) failed = (s.count && find_dark(&s, rays, &dark)) || (dark && paint(&s));
     if (dark && !failed) {
         failed = model_warn(m,
                             "mesh '%s': no texture shades the hollows of its skin, such as nostrils, so their vertices "
