@@ -7,10 +7,10 @@
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
 #include "light_rays.h"
+#include "light_surface.h"
 #include "noh/format.h"
 
 #define RAYS 64u /* over the whole sphere */
-#define NEAR 12u /* as at light_surface.least: shares of the mean edge */
 #define SHUT 0.10f
 #define OPEN 0.40f /* shares of the light: darkest at one, unchanged at the other */
 
@@ -46,18 +46,6 @@ static void pose(skin *s, const model_target *target)
     for (uint32_t i = 0; i < 3u * s->count; i++) {
         posed(s->mesh->position, target ? target->position : NULL, s->corners[i], s->triangles + 3u * (size_t)i);
     }
-}
-
-static float mean_edge(const skin *s)
-{
-    double sum = 0.0;
-    for (uint32_t i = 0; i < 3u * s->count; i++) {
-        const float *a = s->triangles + 3u * (size_t)i,
-                    *b = s->triangles + 3u * (size_t)(i % 3u == 2u ? i - 2u : i + 1u);
-        const double x = (double)(a[0] - b[0]), y = (double)(a[1] - b[1]), z = (double)(a[2] - b[2]);
-        sum += sqrt(x * x + y * y + z * z);
-    }
-    return s->count ? (float)(sum / (3.0 * s->count)) : 0.0f;
 }
 
 /* The share of even light that reaches a vertex. */
@@ -98,7 +86,7 @@ static uint32_t light(skin *s, const light_rays *rays, const model_target *targe
 static int find_dark(skin *s, const light_rays *rays, uint32_t *dark)
 {
     pose(s, NULL);
-    s->least = mean_edge(s) / NEAR;
+    s->least = light_least(s->mesh->position, s->corners, s->count);
     if (ray_tree_make(s->triangles, s->count, &s->tree)) return 1;
     *dark = light(s, rays, NULL);
     for (uint32_t t = 0; t < s->mesh->target_count && *dark; t++) {

@@ -98,17 +98,16 @@ static int place_others(light_surface *s, const noh_pack *pack, const noh_node *
     return failed;
 }
 
-/* The mean length of the mesh's own edges. */
-static float mean_edge(const light_surface *s)
+float light_least(const float *positions, const uint32_t *corners, uint32_t count)
 {
     double sum = 0.0;
-    for (uint32_t i = 0; i < 3u * s->own_count; i++) {
-        const float *a = s->mesh.positions + 3u * (size_t)s->corners[i];
-        const float *b = s->mesh.positions + 3u * (size_t)s->corners[i % 3u == 2u ? i - 2u : i + 1u];
+    for (uint32_t i = 0; i < 3u * count; i++) {
+        const float *a = positions + 3u * (size_t)corners[i];
+        const float *b = positions + 3u * (size_t)corners[i % 3u == 2u ? i - 2u : i + 1u];
         const double x = (double)(a[0] - b[0]), y = (double)(a[1] - b[1]), z = (double)(a[2] - b[2]);
         sum += sqrt(x * x + y * y + z * z);
     }
-    return s->own_count ? (float)(sum / (3.0 * s->own_count)) : 0.0f;
+    return count ? (float)(sum / (3.0 * count)) / 12.0f : 0.0f;
 }
 
 static float squared_between(const float *a, const float *b)
@@ -186,7 +185,7 @@ int light_surface_open(const noh_pack *pack, uint32_t mesh, light_surface *out, 
         return model_fail(error, out->mesh.name, "out of memory");
     }
     (void)shading_triangles(&out->mesh, out->corners);
-    out->least = mean_edge(out) / 12.0f;
+    out->least = light_least(out->mesh.positions, out->corners, out->own_count);
     if (place_others(out, pack, self, error)) return 1;
     return light_surface_pose(out, NULL, error);
 }

@@ -31,4 +31,7 @@ int light_surface_open(const noh_pack *pack, uint32_t mesh, light_surface *out, 
 int light_surface_pose(light_surface *s, const float *weights, model_error *error);
 void light_surface_close(light_surface *s);
 
+/* light_surface.least for triangles [count][3] of vertices. */
+float light_least(const float *positions, const uint32_t *corners, uint32_t count);
+
 #endif
