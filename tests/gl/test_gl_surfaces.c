@@ -671,89 +671,88 @@ static model_texture cap_picture(uint8_t rgba[CAP * CAP * 4])
     return cap;
 }
 
-/* A ball in light from the eye, against VRMC_materials_mtoon 1.0: a shade of its own, a rim, and a matcap that is read
- * at the normal, downwards. */
-static void a_toon_has_a_rim_and_a_matcap(void **state)
+/* Draw a ball of a toon with one picture in light from the eye. Returns the largest difference of a linear channel from
+ * `should`, of the normal. */
+static double toon_error(const model_material *toon, const model_texture *picture,
+                         double (*should)(const double normal[3], int channel))
 {
-    static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
-    static uint8_t rgba[CAP * CAP * 4];
-    const model_texture cap = cap_picture(rgba);
-    model_material toon = scene_material(values);
+    static const float front[3] = { 0.0f, 0.0f, 1.0f };
     noh_lighting lighting;
     double worst = 0.0;
     size_t count;
     scene s;
-    (void)state;
-    toon.surface = NOH_SURFACE_TOON;
-    toon.toon_shade = 1;
-    for (int c = 0; c < 3; c++) toon.surface_values[c] = 0.1f * (float)c;
-    toon.surface_values[3] = -0.6f;
-    toon.surface_more[0] = 0.9f;
-    toon.surface_more[1] = 65536.0f * 204.0f; /* blue, 0.64 */
-    toon.surface_more[2] = 3.0f;
-    toon.surface_more[3] = 0.1f;
-    toon.more_textures[NOH_TOON_MATCAP] = 0;
-    uint8_t *pack = scene_pack(&toon, &cap, &count);
+    uint8_t *pack = scene_pack(toon, picture, &count);
     scene_open_pack(&s, pack, count, &scene_black, 0, NULL);
     key_alone(front, &lighting);
     uint8_t *drawn = scene_draw(&s, SPHERE, scene_identity, &lighting);
     for (uint32_t i = 0; i < SIDE * SIDE; i++) {
         const double x = pixel_at(i % SIDE), y = -pixel_at(i / SIDE), r2 = x * x + y * y;
         if (r2 > 0.8) continue;
-        const double z = sqrt(1.0 - r2), lit = fmin(fmax((z - 0.6 + 0.1) / 0.2, 0.0), 1.0);
-        const double read[3] = { 127.5 + 127.5 * x, 127.5 - 127.5 * y, 0.0 }, rim[3] = { 0.0, 0.0, 0.64 };
-        for (int c = 0; c < 3; c++) {
-            const double tone = 0.1 * c + (0.3 - 0.1 * c) * lit + rim[c] * pow(fmin(1.1 - z, 1.0), 3.0);
-            const double should = 0.9 * (tone + (c < 2 ? decoded((uint8_t)read[c]) : 0.0));
-            worst = fmax(worst, fabs(decoded(drawn[4 * i + (uint32_t)c]) - fmin(should, 1.0)));
-        }
+        const double normal[3] = { x, y, sqrt(1.0 - r2) };
+        for (int c = 0; c < 3; c++) worst = fmax(worst, fabs(decoded(drawn[4 * i + (uint32_t)c]) - should(normal, c)));
     }
     print_message("off by %.4f at most\n", worst);
-    assert_true(worst < 0.03);
     free(drawn);
     scene_close(&s);
+    return worst;
+}
+
+/* A toon with a hard edge and a blue rim of 0.64. */
+static model_material toon_material(void)
+{
+    static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f };
+    model_material toon = scene_material(values);
+    toon.surface = NOH_SURFACE_TOON;
+    toon.surface_more[0] = 0.9f;
+    toon.surface_more[1] = 65536.0f * 204.0f;
+    toon.surface_more[2] = 3.0f;
+    return toon;
+}
+
+static double with_matcap(const double normal[3], int c)
+{
+    const double lit = fmin(fmax((normal[2] - 0.6 + 0.1) / 0.2, 0.0), 1.0);
+    const double read = c < 2 ? decoded((uint8_t)(127.5 + (c ? -127.5 : 127.5) * normal[c])) : 0.0;
+    const double rim = c == 2 ? 0.64 * pow(fmin(1.1 - normal[2], 1.0), 3.0) : 0.0;
+    return fmin(0.9 * (0.1 * c + (0.3 - 0.1 * c) * lit + rim + read), 1.0);
+}
+
+/* Against VRMC_materials_mtoon 1.0: a shade of its own, a rim, and a matcap that is read at the normal, downwards. */
+static void a_toon_has_a_rim_and_a_matcap(void **state)
+{
+    static uint8_t rgba[CAP * CAP * 4];
+    const model_texture cap = cap_picture(rgba);
+    model_material toon = toon_material();
+    (void)state;
+    toon.toon_shade = 1;
+    for (int c = 0; c < 3; c++) toon.surface_values[c] = 0.1f * (float)c;
+    toon.surface_values[3] = -0.6f;
+    toon.surface_more[3] = 0.1f;
+    toon.more_textures[NOH_TOON_MATCAP] = 0;
+    assert_true(toon_error(&toon, &cap, with_matcap) < 0.03);
+}
+
+static double with_masks(const double normal[3], int c)
+{
+    const double lit = fmin(fmax((normal[2] - 64.0 / 127.0 + 0.1) / 0.2, 0.0), 1.0);
+    const double shade = c < 2 ? 0.15 : 0.0, rim = c == 2 ? 0.64 * pow(1.0 - normal[2], 3.0) * 128.0 / 255.0 : 0.0;
+    return 0.9 * (shade + (0.3 - shade) * lit + rim);
 }
 
 /* Its third texture moves the edge towards the light, and takes half of the rim away. */
 static void a_toon_has_masks(void **state)
 {
-    static const float values[4] = { 0.3f, 1.0f, 0.0f, 0.0f }, front[3] = { 0.0f, 0.0f, 1.0f };
     static uint8_t rgba[16 * 16 * 4];
-    const model_texture mask = { .rgba = rgba, .width = 16, .height = 16, .wrap_s = 10497, .wrap_t = 10497 };
-    model_material toon = scene_material(values);
-    noh_lighting lighting;
-    double worst = 0.0;
-    size_t count;
-    scene s;
+    const model_texture mask = {
+        .rgba = rgba, .width = 16, .height = 16, .wrap_s = 10497, .wrap_t = 10497, .use = MODEL_TEXTURE_DATA
+    };
+    model_material toon = toon_material();
     (void)state;
     for (uint32_t i = 0; i < 16 * 16; i++) memcpy(rgba + 4 * i, (uint8_t[4]){ 64, 255, 128, 255 }, 4);
-    toon.surface = NOH_SURFACE_TOON;
     toon.toon_masks = 1;
     toon.surface_values[0] = toon.surface_values[1] = 0.5f;
-    toon.surface_more[0] = 0.9f;
-    toon.surface_more[1] = 65536.0f * 204.0f; /* blue, 0.64 */
-    toon.surface_more[2] = 3.0f;
     toon.more_textures[NOH_TOON_WIDTH] = 0;
-    model_texture data = mask;
-    data.use = MODEL_TEXTURE_DATA;
-    uint8_t *pack = scene_pack(&toon, &data, &count);
-    scene_open_pack(&s, pack, count, &scene_black, 0, NULL);
-    key_alone(front, &lighting);
-    uint8_t *drawn = scene_draw(&s, SPHERE, scene_identity, &lighting);
-    for (uint32_t i = 0; i < SIDE * SIDE; i++) {
-        const double x = pixel_at(i % SIDE), y = -pixel_at(i / SIDE), r2 = x * x + y * y;
-        if (r2 > 0.8) continue;
-        const double z = sqrt(1.0 - r2), lit = fmin(fmax((z - 64.0 / 127.0 + 0.1) / 0.2, 0.0), 1.0);
-        for (int c = 0; c < 3; c++) {
-            const double shade = c < 2 ? 0.15 : 0.0, rim = c == 2 ? 0.64 * pow(1.0 - z, 3.0) * 128.0 / 255.0 : 0.0;
-            const double should = 0.9 * (shade + (0.3 - shade) * lit + rim);
-            worst = fmax(worst, fabs(decoded(drawn[4 * i + (uint32_t)c]) - should));
-        }
-    }
-    print_message("off by %.4f at most\n", worst);
-    assert_true(worst < 0.03);
-    free(drawn);
-    scene_close(&s);
+    assert_true(toon_error(&toon, &mask, with_masks) < 0.03);
 }
 
 /* A ball of radius 0.5 under an outline of 0.1 in the world, or a twentieth of the picture's height, also in a mirror:
