@@ -391,6 +391,7 @@ vec3 noh_light(noh_surface s)
 #ifdef NOH_PHONE
     vec3 fresnel = f0;
 #else
+    /* noh_fresnel as two products: here they take less, in lit light they cost registers */
     float away = 1.0 - (lv + 1.0) * shorter, away2 = away * away, part = away2 * away2 * away;
     vec3 fresnel = f0 * (1.0 - part) + f90 * part;
 #endif

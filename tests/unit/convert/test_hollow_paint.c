@@ -13,7 +13,8 @@
 #define COUNT (SIDE * SIDE)
 #define MIDDLE (COUNT / 2u)
 
-/* A plate of 24 units in the plane z = 0, with a pit in the middle: 6 units wide, 18 deep. A target raises its floor. */
+/* A plate of 24 units in the plane z = 0, with a pit in the middle: 6 units wide, 18 deep. A target raises its
+ * floor. */
 static model *nostril_of(int opens)
 {
     model *m = model_new();

@@ -1,5 +1,5 @@
-/* gltf_mtoon.cpp: toon materials of VRM files (MToon): VRMC_materials_mtoon 1.0, and MToon of VRM 0.0, as UniVRM converts
- * it. */
+/* gltf_mtoon.cpp: toon materials of VRM files (MToon): VRMC_materials_mtoon 1.0, and MToon of VRM 0.0, as UniVRM
+ * converts it. */
 #include "gltf_internal.h"
 
 #include <cmath>
