@@ -3,10 +3,11 @@
 # what other models get; eyes that are not found.
 . "$(dirname "$0")/lib.sh"
 
-# A sheet of skin with two balls in front of it: of HEIGHT times their width, with both lids and the jaw moved.
+# A sheet with two balls in front of it: of HEIGHT times their width, with both lids and the jaw moved. Its material is not
+# skin, whose hollows become dark unless --plain is given.
 sheet() { # HEIGHT LEFT RIGHT JAW
     awk -v height="$1" -v left="$2" -v right="$3" -v jaw="$4" 'BEGIN {
-        print "mtllib face.mtl\nusemtl skin"
+        print "mtllib face.mtl\nusemtl paper"
         for (y = 0; y < 9; y++) for (x = 0; x < 9; x++) {
             px = (x - 4) * 0.02; py = (y - 4) * 0.025; pz = 0
             if (py > 0.02) pz = px > 0 ? left : px < 0 ? right : 0
@@ -38,7 +39,7 @@ joints() { grep -q "skin 'face': 3 joints" "$work/told"; }
 levels() { grep -c '^  level ' "$work/told"; }
 told() { "$build/noh" info "$work/face.noh" >"$work/told"; }
 
-printf 'newmtl skin\nKd 1 0.8 0.7\n' >"$work/face.mtl"
+printf 'newmtl paper\nKd 1 0.8 0.7\n' >"$work/face.mtl"
 targets 1
 face
 expect 0 'a face'
@@ -60,8 +61,8 @@ told
 check '--plain with an option has that' joints
 
 # A picture takes longer than levels.
-noh render "$build/demo/puppet.noh" -o "$work/skin.png" --size 512x512
-printf 'newmtl skin\nmap_Kd skin.png\n' >"$work/face.mtl"
+noh render "$build/demo/puppet.noh" -o "$work/paper.png" --size 512x512
+printf 'newmtl paper\nmap_Kd paper.png\n' >"$work/face.mtl"
 face
 check 'with a texture it gets levels' grep -q '^LOD: 3 levels by --lod-fast, [1-9][0-9]* % more work' "$work/out"
 told
@@ -75,7 +76,7 @@ told
 check 'or none' test "$(levels)" = 0
 
 # Eyes that are no balls: a warning where nothing else turns them, and the face without joints.
-printf 'newmtl skin\nKd 1 0.8 0.7\n' >"$work/face.mtl"
+printf 'newmtl paper\nKd 1 0.8 0.7\n' >"$work/face.mtl"
 targets 0.4
 face
 expect 0 'a face with flat eyes'
