@@ -1695,8 +1695,8 @@ static void animations_without_names(void **state)
 static void animations_of_one_name_are_numbered(void **state)
 {
     (void)state;
-    static const char *const names[4] = { "a_2", "a", "a", "b" }, *const expected[5] = { "a", "a_2", "a_3", "a_4",
-                                                                                         "b" };
+    static const char *const names[4] = { "a_2", "a", "a", "b" };
+    static const char *const expected[5] = { "a", "a_2", "a_3", "a_4", "b" };
     scene *s = animated(two_times, two_values, sizeof two_values, "", F32, 2, "", WEIGHTS_OF_N);
     s->rest[strlen(s->rest) - 1] = 0;
     for (int i = 0; i < 4; ++i)
@@ -1924,15 +1924,17 @@ static void mtoon_has_textures(void **state)
 #define TOON(rest)                                                                                              \
     "{\"pbrMetallicRoughness\":{\"baseColorTexture\":{\"index\":0}},\"extensions\":{\"VRMC_materials_mtoon\":{" \
     "\"shadeColorFactor\":[0.5,0.5,1]" rest "}}}"
-    APPEND(
-        s->rest,
-        ",\"materials\":[" TOON(
-            ",\"shadeMultiplyTexture\":{\"index\":1},\"matcapTexture\":{\"index\":0},"
-            "\"matcapFactor\":[0,1,1],\"outlineWidthMode\":\"screenCoordinates\","
-            "\"outlineWidthFactor\":0.004,\"outlineWidthMultiplyTexture\":{\"index\":1}") "," TOON(",\"shadeMultiplyTexture\":{\"index\":0}") "," TOON(",\"rimMultiplyTexture\":{\"index\":0}") "],"
-                                                                                                                                                                                                "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
-                                                                                                                                                                                                "{\"uri\":\"data:image/png;base64,%s\"}]",
-        png_2x1, png_2x1);
+    APPEND(s->rest, "%s", ",\"materials\":[");
+    APPEND(s->rest, "%s,",
+           TOON(",\"shadeMultiplyTexture\":{\"index\":1},\"matcapTexture\":{\"index\":0},"
+                "\"matcapFactor\":[0,1,1],\"outlineWidthMode\":\"screenCoordinates\","
+                "\"outlineWidthFactor\":0.004,\"outlineWidthMultiplyTexture\":{\"index\":1}"));
+    APPEND(s->rest, "%s,", TOON(",\"shadeMultiplyTexture\":{\"index\":0}"));
+    APPEND(s->rest, "%s]", TOON(",\"rimMultiplyTexture\":{\"index\":0}"));
+    APPEND(s->rest,
+           ",\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
+           "{\"uri\":\"data:image/png;base64,%s\"}]",
+           png_2x1, png_2x1);
 #undef TOON
     model *m = load(s);
     const uint8_t matcap[8] = { 0, 0, 0, 255, 0, 128, 255, 64 };
@@ -1954,14 +1956,14 @@ static void mtoon_has_masks(void **state)
     scene *s = vrm_scene("\"VRMC_vrm\":{}");
     (void)state;
 #define TOON(rest) "{\"extensions\":{\"VRMC_materials_mtoon\":{\"parametricRimColorFactor\":[1,1,1]," rest "}}}"
-    APPEND(
-        s->rest,
-        ",\"materials\":[" TOON(
-            "\"rimMultiplyTexture\":{\"index\":0},\"shadingShiftTexture\":{\"index\":0,"
-            "\"scale\":-0.5}") "," TOON("\"shadingShiftTexture\":{\"index\":0,\"scale\":0}") "," TOON("\"shadingShiftTexture\":{\"index\":0},\"outlineWidthMode\":\"worldCoordinates\","
-                                                                                                      "\"outlineWidthFactor\":0.1,\"outlineWidthMultiplyTexture\":{\"index\":0}") "],"
-                                                                                                                                                                                  "\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]",
-        png_2x1);
+    APPEND(s->rest, "%s", ",\"materials\":[");
+    APPEND(s->rest, "%s,",
+           TOON("\"rimMultiplyTexture\":{\"index\":0},\"shadingShiftTexture\":{\"index\":0,\"scale\":-0.5}"));
+    APPEND(s->rest, "%s,", TOON("\"shadingShiftTexture\":{\"index\":0,\"scale\":0}"));
+    APPEND(s->rest, "%s]",
+           TOON("\"shadingShiftTexture\":{\"index\":0},\"outlineWidthMode\":\"worldCoordinates\","
+                "\"outlineWidthFactor\":0.1,\"outlineWidthMultiplyTexture\":{\"index\":0}"));
+    APPEND(s->rest, ",\"textures\":[{\"source\":0}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"}]", png_2x1);
 #undef TOON
     model *m = load(s);
     const uint8_t rim[8] = { 65, 255, 54, 255, 128, 255, 58, 255 }, width[8] = { 255, 0, 255, 255, 128, 128, 255, 255 };
@@ -2069,15 +2071,21 @@ static void specular_maps_are_packed(void **state)
     (void)state;
     scene *s = triangle("", ",\"material\":0");
 #define SPECULAR(members) "{\"extensions\":{\"KHR_materials_specular\":{" members "}}"
+    APPEND(s->rest, "%s", ",\"materials\":[");
+    APPEND(s->rest, "%s},", SPECULAR("\"specularFactor\":0.5,\"specularTexture\":{\"index\":0}"));
+    APPEND(s->rest, "%s},", SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularColorFactor\":[2,1,30]"));
+    APPEND(s->rest, "%s},", SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":0}"));
     APPEND(
-        s->rest,
-        ",\"materials\":[" SPECULAR("\"specularFactor\":0.5,\"specularTexture\":{\"index\":0}") "}," SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularColorFactor\":[2,1,30]") "}," SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":0}") "}," SPECULAR(
+        s->rest, "%s,",
+        SPECULAR(
             "\"specularTexture\":{\"index\":0}") ",\"occlusionTexture\":{\"index\":0},"
-                                                 "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}}," SPECULAR("\"specularFactor\":0.5,\"specularColorFactor\":[1,1,100]") "}," SPECULAR(
-                                                     "\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":1}") "}],"
-                                                                                                                                 "\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
-                                                                                                                                 "{\"uri\":\"nowhere.png\"}]",
-        png_2x1);
+                                                 "\"pbrMetallicRoughness\":{\"metallicRoughnessTexture\":{\"index\":0}}}");
+    APPEND(s->rest, "%s},", SPECULAR("\"specularFactor\":0.5,\"specularColorFactor\":[1,1,100]"));
+    APPEND(s->rest, "%s}]", SPECULAR("\"specularColorTexture\":{\"index\":0},\"specularTexture\":{\"index\":1}"));
+    APPEND(s->rest,
+           ",\"textures\":[{\"source\":0},{\"source\":1}],\"images\":[{\"uri\":\"data:image/png;base64,%s\"},"
+           "{\"uri\":\"nowhere.png\"}]",
+           png_2x1);
 #undef SPECULAR
     model *m = load(s);
     const model_material *a = m->materials;
