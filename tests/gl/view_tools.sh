@@ -80,6 +80,11 @@ HAND
 code=$?
 expect 1 'a pipe instead of a script'
 says 'not a regular file'
+rm "$work/own.presets" && printf 'frames 1\n\0' >"$work/own.presets"
+(cd "$work" && timeout 60 "$build/noh" view "$mask" --script own.presets) >"$work/out" 2>"$work/err"
+code=$?
+expect 1 'zero bytes in a script'
+says 'is not a text: it contains zero bytes'
 rm "$work/own.presets"
 
 # ---- over the mesh ----

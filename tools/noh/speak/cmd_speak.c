@@ -1,3 +1,4 @@
+#define _POSIX_C_SOURCE 200809L /* strdup */
 /* cmd_speak.c: text to mouth shapes, and to a clip for a face. */
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,6 +9,7 @@
 #include "cli/options.h"
 #include "cli/report_stream.h"
 #include "cli/verbs.h"
+#include "file/text_file.h"
 #include "alignment.h"
 #include "phone_shapes.h"
 #include "hearing.h"
@@ -182,34 +184,10 @@ static void print_text(const speak_args *a, const spoken *s)
 
 /* ---- the text ---- */
 
-static char *copy(const char *bytes, size_t count)
+static int read_words(const char *path, char **text)
 {
-    char *text = malloc(count + 1u);
-    if (text) {
-        memcpy(text, bytes, count);
-        text[count] = 0;
-    }
-    return text;
-}
-
-static int read_text_file(const char *path, char **out)
-{
-    noh_error error = { NOH_OK, "", 0, 0 };
-    noh_file file;
-    int status = 0;
-    if (noh_file_map(path, &file, &error)) return tool_fail(path, "cannot be read: %s", error.what);
-    if (!file.bytes) {
-        status = tool_fail(path, "is empty: write the words to speak");
-    } else if (file.bytes > TEXT_BYTES_MAX) {
-        status = tool_fail(path, "is longer than %u bytes: split it", TEXT_BYTES_MAX);
-    } else if (memchr(file.data, 0, file.bytes)) {
-        status = tool_fail(path, "is not a text: it contains zero bytes");
-    } else {
-        *out = copy(file.data, file.bytes);
-        status = *out ? 0 : tool_fail(path, "out of memory");
-    }
-    noh_file_unmap(&file);
-    return status;
+    const int status = text_file_read(path, 0, TEXT_BYTES_MAX, text);
+    return status || (*text)[0] ? status : tool_fail(path, "is empty: write the words to speak");
 }
 
 static int is_sound_file(const char *name)
@@ -239,9 +217,9 @@ static int take_text(const speak_args *a, spoken *s)
         return tool_usage("speak: --wav has no effect with --labels, which have no sound");
     }
     if (s->heard) text = "";
-    if (a->text_file) return read_text_file(a->text_file, &s->text);
+    if (a->text_file) return read_words(a->text_file, &s->text);
     if (strlen(text) > TEXT_BYTES_MAX) return tool_fail("speak", "the text is longer than %u bytes", TEXT_BYTES_MAX);
-    s->text = copy(text, strlen(text));
+    s->text = strdup(text);
     return s->text ? 0 : tool_fail("speak", "out of memory");
 }
 
@@ -428,8 +406,9 @@ static const option options[] = {
       .kind = OPTION_INPUT,
       .at = offsetof(speak_args, face),
       .value = "PACK",
-      .what = "the face that speaks: its targets need names of ARKit, VRM or facial units; rows `phone` of its recipe give "
-              "the mouth shapes of a language's phones",
+      .what =
+          "the face that speaks: its targets need names of ARKit, VRM or facial units; rows `phone` of its recipe give "
+          "the mouth shapes of a language's phones",
       .example = "face.noh" },
     { .name = "--name",
       .kind = OPTION_TEXT,

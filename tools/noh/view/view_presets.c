@@ -1,6 +1,5 @@
 #include "view/view_presets.h"
 
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +7,8 @@
 #include "cli/message.h"
 #include "noh/base.h"
 #include "noh/face.h"
+#include "platform.h"
+#include "file/text_file.h"
 #include "file/weights_text.h"
 
 /* ---- targets ---- */
@@ -170,31 +171,10 @@ static int add_recipes(view_presets *p, const view_model *m)
 
 #define TEXT_BYTES_MAX (1u << 22)
 
-/* *out stays NULL where there is no such file. noh_file_map refuses folders and pipes. */
-static int read_text(const char *path, char **out)
-{
-    noh_file file;
-    noh_error error;
-    const noh_result result = noh_file_map(path, &file, &error);
-    int status = 0;
-    if (result == NOH_ERR_NOT_FOUND) return 0;
-    if (result) return tool_fail(path, "cannot be read: %s", error.what);
-    if (file.bytes > TEXT_BYTES_MAX) {
-        status = tool_fail(path, "the file has more than %u bytes", TEXT_BYTES_MAX);
-    } else if (!(*out = malloc(file.bytes + 1u))) {
-        status = tool_fail(path, "out of memory");
-    } else {
-        if (file.bytes) memcpy(*out, file.data, file.bytes);
-        (*out)[file.bytes] = 0;
-    }
-    noh_file_unmap(&file);
-    return status;
-}
-
 static int add_own(view_presets *p)
 {
     char *text = NULL;
-    int status = read_text(p->path, &text), begun = 0;
+    int status = text_file_read(p->path, 1, TEXT_BYTES_MAX, &text), begun = 0;
     weights_reader reader = { text, 0 };
     weights_item item;
     weights_kind kind;
@@ -228,31 +208,26 @@ void view_presets_free(view_presets *p)
     memset(p, 0, sizeof *p);
 }
 
-/* All or nothing: written to a temporary file in the same folder, which then replaces the file. */
 static int write_own(const view_presets *p)
 {
-    char beside[1200], line[NOH_NAME_BYTES_MAX + 40u];
-    FILE *file;
-    int failed;
-    snprintf(beside, sizeof beside, "%s.part", p->path);
-    file = fopen(beside, "wb");
-    if (!file) return tool_fail(beside, "cannot be written: %s", strerror(errno));
+    const size_t line = NOH_NAME_BYTES_MAX + 40u, room = (p->weight_count + 2u * p->count + 1u) * line;
+    char *text = malloc(room);
+    size_t bytes = 0;
+    noh_error error;
+    int status = 0;
+    if (!text) return tool_fail("presets", "out of memory");
     for (uint32_t i = 0; i < p->count; i++) {
-        if (!p->list[i].own) continue;
-        fprintf(file, "[%s]\n", p->list[i].name);
-        for (uint32_t w = 0; w < p->list[i].count; w++) {
-            const view_preset_weight *weight = &p->weights[p->list[i].first + w];
-            if (weights_line(line, sizeof line, weight->name, weight->value)) fputs(line, file);
+        const view_preset *preset = &p->list[i];
+        if (!preset->own) continue;
+        bytes += (size_t)snprintf(text + bytes, line, "%s[%s]\n", bytes ? "\n" : "", preset->name);
+        for (uint32_t w = 0; w < preset->count; w++) {
+            const view_preset_weight *weight = &p->weights[preset->first + w];
+            bytes += weights_line(text + bytes, line, weight->name, weight->value);
         }
-        fputc('\n', file);
     }
-    failed = ferror(file);
-    if (fclose(file) || failed || rename(beside, p->path)) {
-        const int reason = errno;
-        (void)remove(beside);
-        return tool_fail(p->path, "cannot be written: %s", strerror(reason));
-    }
-    return 0;
+    if (noh_file_write(p->path, text, bytes, &error)) status = tool_fail(p->path, "cannot be written: %s", error.what);
+    free(text);
+    return status;
 }
 
 int view_presets_keep(view_presets *p, const view_model *m, const char *name)

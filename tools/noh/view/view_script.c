@@ -9,8 +9,10 @@
 
 #include "cli/message.h"
 #include "draw/silhouette.h"
+#include "file/text_file.h"
 
 #define QUEUE_MAX 512u
+#define TEXT_BYTES_MAX (1u << 20)
 #define WORDS_MAX 8
 
 /* The events before one frame. */
@@ -37,39 +39,27 @@ struct view_script {
 
 /* ---- opening ---- */
 
-/* noh_file_map refuses folders and pipes. */
-static int read_file(const char *path, char *out, size_t room)
+static int read_input(char **text)
 {
-    noh_file file;
-    noh_error error;
-    int status = 0;
-    if (noh_file_map(path, &file, &error)) return tool_fail(path, "cannot be read: %s", error.what);
-    if (file.bytes > room) {
-        status = tool_fail(path, "the file has more than %zu bytes", room);
-    } else if (file.bytes) {
-        memcpy(out, file.data, file.bytes);
-    }
-    noh_file_unmap(&file);
-    return status;
+    *text = calloc(TEXT_BYTES_MAX, 1);
+    if (!*text) return tool_fail("-", "out of memory");
+    (void)fread(*text, 1, TEXT_BYTES_MAX - 1u, stdin);
+    return 0;
 }
 
 view_script *view_script_open(const char *path)
 {
     view_script *s = calloc(1, sizeof *s);
-    const size_t room = 1u << 20;
-    if (!s || !(s->text = calloc(room, 1))) {
-        tool_fail(path, "out of memory");
+    int status = s ? 0 : tool_fail(path, "out of memory");
+    if (!status) {
+        snprintf(s->path, sizeof s->path, "%s", path);
+        status = strcmp(path, "-") == 0 ? read_input(&s->text) : text_file_read(path, 0, TEXT_BYTES_MAX, &s->text);
+    }
+    if (status) {
         view_script_close(s);
         return NULL;
     }
-    snprintf(s->path, sizeof s->path, "%s", path);
     s->next = s->text;
-    if (strcmp(path, "-") == 0) {
-        (void)fread(s->text, 1, room - 1u, stdin);
-    } else if (read_file(path, s->text, room - 1u)) {
-        view_script_close(s);
-        return NULL;
-    }
     return s;
 }
 
