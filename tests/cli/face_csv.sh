@@ -96,7 +96,7 @@ refuses() { # NAME TEXT
     expect 1 "$1 is refused"
     says "$2"
 }
-printf 'a,b\n1,2\n' >"$work/shop.csv"
+printf 'price,count\n1,2\n' >"$work/shop.csv"
 refuses shop 'no column is named as a shape of ARKit'
 printf 'EyeBlinkLeft\n0\n' >"$work/timeless.csv"
 refuses timeless 'no column is named Timecode or Time'

@@ -78,8 +78,26 @@ static void targets_have_other_names(void **state)
         { "Face.M_F00_000_00_Fcl_EYE_Close_R", NULL },
         { "Fcl_ALL_Sorrow", "sadness-upper" },
         { "あ", "aa" },
-        { "eyeBlink", NULL },
-        { "smile", NULL },
+        { "まばたき", "blink" },
+        { "eyeBlink", "blink" },
+        { "Fcl_EYE_Close", "blink" },
+        { "blendShape1.MTH_A", "aa" },
+        { "vrc_v_aa", "aa" },
+        { "vrc.blink_left", "eyeBlinkLeft" },
+        { "Blink_Right", "eyeBlinkRight" },
+        { "EyeClosedLeft", "eyeBlinkLeft" },
+        { "eyesClosedR", "eyeBlinkRight" },
+        { "eyesClosed", "blink" },
+        { "CTRL_expressions_browRaiseInL", "browInnerUp" },
+        { "CTRL_expressions_mouthFunnelUL", "mouthFunnel" },
+        { "lipCornerPullerR", "mouthSmileRight" },
+        { "lipFunnelerLB", "mouthFunnel" },
+        { "MouthCornerPullLeft", "mouthSmileLeft" },
+        { "Mouth_Sad_Left", "mouthFrownLeft" },
+        { "UpperLipUp_Left", "mouthUpperUpLeft" },
+        { "Joy", "happy" },
+        { "mouthSmile", "smile" },
+        { "grin", NULL },
         { "L", NULL },
         { "", NULL },
         { ":", NULL },
@@ -275,6 +293,48 @@ static void one_shape_of_two_names_counts_once(void **state)
     recipe_free(recipe);
 }
 
+/* Names of one file: words that all of them begin with are no part of them; one target may blink both eyes; names of
+ * channels are taken as they are. */
+static void names_of_a_file_are_read_together(void **state)
+{
+    static const moved shapes[] = {
+        { "F.M_00_Fcl_EYE_Close", { 0, 0, 1, 1, 0, 0 } },
+        { "F.M_00_Fcl_MTH_A", { 0, 0, 0, 0, 1, 0 } },
+        { "F.M_00_E", { 0, 0, 0, 0, 0, 1 } },
+        { "F.M_00_grin", { 1, 0, 0, 0, 0, 0 } },
+    };
+    static const moved sides[] = {
+        { "blink", { 0, 0, 1, 1, 0, 0 } },         { "eyeBlink_L", { 0, 0, 1, 0, 0, 0 } },
+        { "eyeBlink_R", { 0, 0, 0, 1, 0, 0 } },    { "PP", { 0, 0, 0, 0, 1, 0 } },
+        { "jawOpen_smile", { 0, 0, 0, 0, 0, 1 } }, /* a corrective */
+    };
+    recipe_text *recipe = recipe_new();
+    model_target targets[TEST_COUNT(sides)];
+    model_mesh mesh;
+    model m;
+    uint32_t count;
+    (void)state;
+    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
+    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+    assert_true(weight_of(recipe, "blink-left", "F.M_00_Fcl_EYE_Close") == 1.0f);
+    assert_true(weight_of(recipe, "blink-right", "F.M_00_Fcl_EYE_Close") == 1.0f);
+    assert_true(weight_of(recipe, "aa", "F.M_00_Fcl_MTH_A") == 1.0f);
+    assert_true(weight_of(recipe, "E", "F.M_00_E") == 1.0f);
+    assert_int_equal(count, 4);
+    recipe_free(recipe);
+    recipe = recipe_new();
+    add_shapes(&m, &mesh, targets, sides, TEST_COUNT(sides));
+    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+    assert_true(weight_of(recipe, "blink-left", "eyeBlink_L") == 1.0f);
+    assert_true(weight_of(recipe, "blink-right", "eyeBlink_R") == 1.0f);
+    assert_true(weight_of(recipe, "PP", "PP") == 1.0f);
+    for (uint32_t i = 0; i < recipe->count; i++) {
+        assert_string_not_equal(recipe->rows[i].target, "blink");
+        assert_string_not_equal(recipe->rows[i].target, "jawOpen_smile");
+    }
+    recipe_free(recipe);
+}
+
 /* Of targets that move the same way the smallest is used, but no detail of another; a small one holds no chain. */
 static void details_stand_for_nothing(void **state)
 {
@@ -382,6 +442,7 @@ int main(void)
         cmocka_unit_test(joints_of_the_face_get_rows),
         cmocka_unit_test(wrong_lines_are_named),
         cmocka_unit_test(one_shape_of_two_names_counts_once),
+        cmocka_unit_test(names_of_a_file_are_read_together),
         cmocka_unit_test(whole_faces_take_their_parts),
         cmocka_unit_test(details_stand_for_nothing),
         cmocka_unit_test(rows_of_artists_stay),

@@ -147,17 +147,50 @@ static int is_listed(const known *k, const char *name)
     return 0;
 }
 
+/* A separator: what stands before it may be no part of a target's own name. */
+static int is_separator(char c)
+{
+    return c == '_' || c == '.' || c == '-' || c == ' ';
+}
+
+/* The bytes that all names of a mesh's targets begin with. */
+static size_t shared_bytes(const model_mesh *mesh)
+{
+    size_t shared = mesh->target_count > 1u ? strlen(mesh->targets[0].name) : 0u;
+    for (uint32_t t = 1; t < mesh->target_count; t++) {
+        size_t same = 0;
+        while (same < shared && mesh->targets[t].name[same] == mesh->targets[0].name[same]) same++;
+        shared = same;
+    }
+    return shared;
+}
+
+/* What a name means; where it has no meaning, what it means without words that all of the mesh's names begin with. */
+static int find_meaning(const char *name, size_t shared, char means[NOH_NAME_BYTES_MAX])
+{
+    if (names_find(NAME_TARGET, name, means, NULL)) return 1;
+    for (size_t at = 0; at < shared; at++) {
+        if (is_separator(name[at]) && names_find(NAME_TARGET, name + at + 1u, means, NULL)) return 1;
+    }
+    return 0;
+}
+
 static int list_known(known *k, const model *m)
 {
     uint32_t meaning[NOH_TARGETS_MAX];
+    uint8_t found[NOH_TARGETS_MAX];
     for (uint32_t i = 0; i < m->mesh_count; i++) {
-        for (uint32_t t = 0; t < m->meshes[i].target_count && k->count < NOH_TARGETS_MAX; t++) {
-            if (!is_listed(k, m->meshes[i].targets[t].name)) k->names[k->count++] = m->meshes[i].targets[t].name;
+        const model_mesh *mesh = &m->meshes[i];
+        const size_t shared = shared_bytes(mesh);
+        for (uint32_t t = 0; t < mesh->target_count && k->count < NOH_TARGETS_MAX; t++) {
+            if (is_listed(k, mesh->targets[t].name)) continue;
+            k->names[k->count] = mesh->targets[t].name;
+            found[k->count] = (uint8_t)find_meaning(k->names[k->count], shared, k->text[k->count]);
+            k->count++;
         }
     }
     for (uint32_t i = 0; i < k->count; i++) {
-        const int found = names_find(NAME_TARGET, k->names[i], k->text[i], NULL);
-        k->means[i] = found && !is_listed(k, k->text[i]) ? k->text[i] : k->names[i];
+        k->means[i] = found[i] && !is_listed(k, k->text[i]) ? k->text[i] : k->names[i];
         for (meaning[i] = 0; strcmp(k->means[meaning[i]], k->means[i]) != 0;) meaning[i]++;
     }
     return targets_find_held(m, k->names, meaning, k->count, k->held);
@@ -181,17 +214,29 @@ static float covered(const noh_face_source *source, uint32_t channel)
     return is_own ? (float)source->found_count / (float)source->row_count : 0.0f;
 }
 
+/* Targets of both sides, for channels that nothing else of a file shows. */
+static const struct {
+    uint32_t channel;
+    const char *meant;
+} of_both[] = { { NOH_CHANNEL_BLINK_LEFT, "blink" },
+                { NOH_CHANNEL_BLINK_RIGHT, "blink" },
+                { NOH_CHANNEL_MOUTH + NOH_EMOTION_JOY, "smile" },
+                { NOH_CHANNEL_MOUTH + NOH_EMOTION_SADNESS, "frown" } };
+
 static int add_channel(recipe_text *recipe, const known *k, uint32_t channel)
 {
     const recipe_row row = { (char *)"", (char *)noh_face_channel_name(channel), 0.0f, 0 };
     noh_face_source now, then;
     if (has_row(recipe, recipe->count, &row)) return 0;
-    for (uint32_t i = 0; i < k->count; i++) {
-        if (k->means[i] == k->text[i] && strcmp(k->means[i], row.channel) == 0)
-            return add_meant(recipe, k, row.channel, channel, 1.0f);
-    }
     noh_face_recipe_source(NULL, 0, k->names, k->count, channel, &now);
     noh_face_recipe_source(NULL, 0, k->means, k->count, channel, &then);
+    for (uint32_t i = 0; i < k->count; i++) {
+        const int is_taken = k->means[i] != k->text[i] && now.recipe == &noh_face_recipe_vrm; /* which has aa, too */
+        if (!is_taken && strcmp(k->means[i], row.channel) == 0) return add_meant(recipe, k, row.channel, channel, 1.0f);
+    }
+    for (size_t i = 0; !(covered(&then, channel) > 0.0f) && i < sizeof of_both / sizeof of_both[0]; i++) {
+        if (of_both[i].channel == channel) return add_meant(recipe, k, of_both[i].meant, channel, 1.0f);
+    }
     for (uint32_t i = 0; covered(&then, channel) > covered(&now, channel) && i < then.recipe->row_count; i++) {
         const noh_face_row *from = &then.recipe->rows[i];
         if (from->channel == channel && add_meant(recipe, k, from->target, channel, from->weight)) return 1;

@@ -133,10 +133,11 @@ const char *const help_formats_text[] = {
     "   reference FRAME",
     "   leftHand Bone.013 hand_l",
     "# names (noh build --names FILE)",
-    "What other programs call targets, joints and materials. noh knows the names of ARKit, Oculus (viseme_*), VRoid, Character Creator, Daz, "
-    "MPFB, Mixamo, Unreal and Unity; lines of a file come before them. One per line, words separated by blanks, names with blanks in double "
-    "quotes; # begins a comment. Case, separators, what stands before a colon, and how left and right are written do not matter; * in "
-    "the names stands for left and right:",
+    "What other programs call targets, joints and materials. noh knows the names of ARKit, VRM, facial action units, Oculus (viseme_*), "
+    "VRChat, VRoid, MikuMikuDance, Character Creator, Daz, MetaHuman, Fuse, MPFB, Mixamo, Unreal and Unity; lines of a file come before "
+    "them. One per line, words separated by blanks, names with blanks in double quotes; # begins a comment. Case, separators, what "
+    "stands before a colon, words that all targets of a mesh begin with, and how left and right are written do not matter; * in the names "
+    "stands for left and right:",
     "   target WHAT NAME...                         WHAT: a channel of a recipe, or one of ARKit's 52 targets",
     "   joint WHAT NAME...                          WHAT: a bone of a person by VRM's name, such as *UpperArm, *Eye, head",
     "   material KIND WORD...                       KIND: skin, eye, teeth, hair, toon or plain; beside-eye: no eye, though a word",
