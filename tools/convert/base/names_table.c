@@ -77,22 +77,32 @@ const char *const names_table[] = {
     /* Joints that are no bone of a person: those are the library's (life/reach/bone_names.c). */
     "joint *Eye FACIAL_*_Eye Face_*_Eye eye_*_socket *目",
     "joint jaw lowerJaw JawRoot",
-    /* Fingers of MikuMikuDance: the library has its other bones. */
-    "joint *ThumbMetacarpal *親指０ *親指0",
-    "joint *ThumbProximal *親指１ *親指1",
-    "joint *ThumbDistal *親指２ *親指2",
-    "joint *IndexProximal *人指１ *人指1",
-    "joint *IndexIntermediate *人指２ *人指2",
-    "joint *IndexDistal *人指３ *人指3",
-    "joint *MiddleProximal *中指１ *中指1",
-    "joint *MiddleIntermediate *中指２ *中指2",
-    "joint *MiddleDistal *中指３ *中指3",
-    "joint *RingProximal *薬指１ *薬指1",
-    "joint *RingIntermediate *薬指２ *薬指2",
-    "joint *RingDistal *薬指３ *薬指3",
-    "joint *LittleProximal *小指１ *小指1",
-    "joint *LittleIntermediate *小指２ *小指2",
-    "joint *LittleDistal *小指３ *小指3",
+    /* Fingers of MikuMikuDance, whose other bones the library has, and of AdvancedSkeleton. */
+    "joint *ThumbMetacarpal *親指０ *親指0 *ThumbFinger1",
+    "joint *ThumbProximal *親指１ *親指1 *ThumbFinger2",
+    "joint *ThumbDistal *親指２ *親指2 *ThumbFinger3",
+    "joint *IndexProximal *人指１ *人指1 *IndexFinger1",
+    "joint *IndexIntermediate *人指２ *人指2 *IndexFinger2",
+    "joint *IndexDistal *人指３ *人指3 *IndexFinger3",
+    "joint *MiddleProximal *中指１ *中指1 *MiddleFinger1",
+    "joint *MiddleIntermediate *中指２ *中指2 *MiddleFinger2",
+    "joint *MiddleDistal *中指３ *中指3 *MiddleFinger3",
+    "joint *RingProximal *薬指１ *薬指1 *RingFinger1",
+    "joint *RingIntermediate *薬指２ *薬指2 *RingFinger2",
+    "joint *RingDistal *薬指３ *薬指3 *RingFinger3",
+    "joint *LittleProximal *小指１ *小指1 *PinkyFinger1",
+    "joint *LittleIntermediate *小指２ *小指2 *PinkyFinger2",
+    "joint *LittleDistal *小指３ *小指3 *PinkyFinger3",
+    /* AdvancedSkeleton (Scapula_L), Character Animation Toolkit (CATRigLArmPalm), OptiTrack, Roblox. */
+    "joint spine Ab",
+    "joint chest UpperTorso Torso",
+    "joint *Shoulder *Scapula *ArmCollarbone",
+    "joint *UpperArm *ArmUpperarm",
+    "joint *LowerArm *ArmForearm",
+    "joint *Hand *ArmPalm",
+    "joint *UpperLeg *LegThigh",
+    "joint *LowerLeg *LegCalf",
+    "joint *Foot *LegAnkle",
     /* German, whose sides have words of their own. */
     "joint hips Becken",
     "joint spine Wirbelsäule Wirbelsaeule",
@@ -119,9 +129,10 @@ const char *const names_table[] = {
     "joint *Foot *Fuss *Fuß",
     "joint leftFoot FussLinks FußLinks",
     "joint rightFoot FussRechts FußRechts",
-    /* What else stands in front of names, or behind them. */
+    /* What else stands in front of names, or behind them: M marks the middle (AdvancedSkeleton), or every joint (Second
+     * Life's mKneeLeft), F a finger (Rigify). */
     "strip facs_bs facs_jnt facs_cbs facs_ctrl facs body_bs head_bs eCTRL head_eCTRL div2",
-    "strip head_facs_bs blendShape1 blendShape vrc CTRL_expressions head_lod0_mesh",
+    "strip head_facs_bs blendShape1 blendShape vrc CTRL_expressions head_lod0_mesh CATRig m f",
     /* Materials by the words of their names, in small letters; *PART is found anywhere, for languages that put no spaces
      * between words. beside-eye: no eye, though a word says so: lashes, lids, occlusion shells, tear lines, glasses.
      * lashes: also beside-eye. occlusion-shell, tear-shell: what stands in front of an eye and is seen through.
