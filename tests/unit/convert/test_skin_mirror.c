@@ -1,4 +1,5 @@
-/* test_skin_mirror.c: what joints mirror faces outward, with the tangent frames that the file's own matrices give. */
+/* test_skin_mirror.c: what joints mirror faces outward, with the tangent frames that the file's own matrices give; what
+ * joints shrink is told. */
 #include "support/octahedra.h"
 
 #include "convert/model/affine.h"
@@ -146,8 +147,33 @@ static void what_joints_mirror_faces_outward(void **state)
     }
 }
 
+/* A joint that shrinks what it was bound to is told; one of another size from the start is not, nor a hidden one. */
+static void joints_that_shrink_are_told(void **state)
+{
+    static const rig sizes[] = {
+        { NODES("", ",\"scale\":[0.01,0.01,0.01]", ""), { 1, 1 }, 1 },
+        { NODES("", "", ",\"scale\":[1e-9,1e-9,1e-9]"), { 1, 1 }, 0 },
+        { NODES("", "", ",\"scale\":[0,0,0]"), { 1, 1 }, 0 },
+        { NODES(",\"scale\":[0.01,0.01,0.01]", "", ""), { 1, 1 }, 0 },
+        { NODES("", ",\"scale\":[0.1,0.1,0.1]", ""), { 1, 1 }, 0 },
+    };
+    static octahedra o;
+    (void)state;
+    for (uint32_t i = 0; i < TEST_COUNT(sizes); i++) {
+        source s = read_rig(&sizes[i], &o);
+        int warned = 0;
+        for (uint32_t w = 0; w < s.m->warning_count; w++) {
+            warned |= strstr(s.m->warnings[w], "at rest joint 'a' and 0 more show what follows them 100 times") != NULL;
+        }
+        print_message("# rig %u\n", (unsigned)i);
+        assert_int_equal(warned, sizes[i].warns);
+        source_free(&s);
+    }
+}
+
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_joints_mirror_faces_outward),
+    cmocka_unit_test(joints_that_shrink_are_told),
 };
 
 TEST_MAIN(tests, NULL, NULL)

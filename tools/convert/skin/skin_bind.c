@@ -1,11 +1,13 @@
 #include "skins.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "noh/base.h"
 #include "convert/clips/model_clips.h"
 #include "mesh_join.h"
+#include "convert/model/affine.h"
 #include "convert/model/model_build.h"
 #include "skin_mirror.h"
 #include "skin_rigid.h"
@@ -117,6 +119,62 @@ static int limit_influences(model *m, model_mesh *mesh, uint32_t limit)
                : 0;
 }
 
+/* ---- sizes at rest ---- */
+
+#define SMALLER 20.0
+#define HIDDEN 1e6 /* times smaller: on purpose */
+
+/* How many times larger a joint shows what follows it than it was bound. */
+static double joint_size(const model *m, const model_skin *skin, uint32_t joint)
+{
+    double bind[16];
+    affine_of_floats(skin->inverse_bind + 16 * (size_t)joint, bind);
+    return cbrt(fabs(affine_determinant(m->nodes[skin->joints[joint]].world) * affine_determinant(bind)));
+}
+
+/* Joints that vertices follow. */
+static void mark_followed(const model *m, uint32_t skin, uint8_t *followed)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const model_mesh *mesh = &m->meshes[i];
+        if (!mesh->bound || mesh->skin != skin) continue;
+        for (size_t k = 0; k < (size_t)mesh->vertex_count * MODEL_INFLUENCES_MAX; k++) {
+            if (mesh->joint_weights[k] > 0.0f) followed[mesh->joints[k]] = 1;
+        }
+    }
+}
+
+static int warn_of_sizes(model *m, uint32_t index)
+{
+    const model_skin *skin = &m->skins[index];
+    uint8_t *followed = model_zeros(skin->joint_count, 1);
+    double largest = 0.0, first_size = 0.0;
+    uint32_t small = 0, first = 0;
+    if (!followed) return 1;
+    mark_followed(m, index, followed);
+    for (uint32_t j = 0; j < skin->joint_count; j++) {
+        if (followed[j]) largest = fmax(largest, joint_size(m, skin, j));
+    }
+    for (uint32_t j = 0; j < skin->joint_count; j++) {
+        const double size = joint_size(m, skin, j);
+        if (!followed[j] || size * SMALLER > largest || size * HIDDEN < largest || small++) continue;
+        first = j;
+        first_size = size;
+    }
+    free(followed);
+    return small && model_warn(m,
+                               "skin '%.40s': at rest joint '%.40s' and %u more show what follows them %.3g times "
+                               "smaller than it was bound, so it is hardly seen (export the skeleton in its bind pose)",
+                               skin->name, m->nodes[skin->joints[first]].name, small - 1u, largest / first_size);
+}
+
+static int warn_of_skins(model *m)
+{
+    int failed = 0;
+    for (uint32_t s = 0; s < m->skin_count && !failed; s++) failed = warn_of_sizes(m, s);
+    return failed;
+}
+
 /* ---- dual quaternions ---- */
 
 static int mark_dual_quaternion(model *m, const char *name, model_error *error)
@@ -138,7 +196,7 @@ int skins_bind(model *m, model_clips *made, const skin_options *options, model_e
 {
     const uint32_t limit = options->influences ? options->influences : NOH_INFLUENCES_MAX;
     if (bind_skeletons(m, made) || bind_meshes(m) || skin_rigid_meshes(m, made, options->keep_parts, options->report) ||
-        skins_mirror(m)) {
+        skins_mirror(m) || warn_of_skins(m)) {
         return model_fail_memory(error);
     }
     for (uint32_t i = 0; i < m->mesh_count; i++) {
