@@ -234,7 +234,6 @@ noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --blend kick
 expect 2 'a blend and a transition is one'
 noh sheet "$work/leg.noh" -o "$work/x.png" --clip walk --to kick --transition jump
 expect 2 'so is an unknown transition'
-finish
 
 # Clips of one humanoid on another: by names, by a file, and what a file gets wrong.
 if [ -d "${NOH_ASSETS:-}/clips" ]; then
@@ -243,10 +242,17 @@ if [ -d "${NOH_ASSETS:-}/clips" ]; then
     expect 0 'a walk of a robot on a knight'
     check 'says how it came over' grep -q "^retargeted 'RobotExpressive__Walking': 1[0-9] bones, sizes x 0.2" "$work/out"
     check 'no foot slides' grep -q 'feet slide 0.0[0-9] %' "$work/out"
+    noh build "$clips/Knight__Idle.rcl" "$clips/RobotExpressive__Walking.rcl" -o "$work/unasked.noh"
+    expect 0 'without the option'
+    check 'says that the skeleton is another' grep -q 'another skeleton, so its clips are retargeted' "$work/out"
+    check 'and makes the same' cmp "$work/two.noh" "$work/unasked.noh"
+    noh build "$clips/Knight__Idle.rcl" "$clips/Fox__Walk.rcl" -o "$work/x.noh"
+    expect 1 'a fox on a knight'
     noh info "$work/two.noh"
     check 'both clips move the knight' test "$(grep -c '^clip ' "$work/out")" -eq 2
     printf 'hips Hips hips\nleftArm a b\n' >"$work/bones.txt"
     noh build "$clips/Knight__Idle.rcl" "$clips/RobotExpressive__Walking.rcl" --retarget "$work/bones.txt" -o "$work/x.noh"
     expect 1 'a file of bones that names an unknown bone'
-    check 'names line and word' grep -q "line 2: 'leftArm' is no bone" "$work/err"
+    check 'names line and word' grep -q "'leftArm' is no bone: .*bones.txt, line 2)" "$work/err"
 fi
+finish

@@ -25,6 +25,7 @@
 #include "convert/mocap/clean.h"
 #include "convert/model/two_stream.h"
 #include "convert/obj/obj_read.h"
+#include "convert/retarget/bones.h"
 #include "convert/retarget/retarget_set.h"
 #include "convert/model/surface_kind.h"
 #include "convert/skin/eye_split.h"
@@ -260,7 +261,7 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, raw_s
             (void)snprintf(here, sizeof here, "%s", joint_name(other, j));
             return model_fail(error, "",
                               "its skeleton differs from %.80s: joint %u is '%s' here and '%.40s' there;%s "
-                              "--rename FILE maps names, --retarget auto moves clips between humanoids",
+                              "--rename FILE maps names, --retarget FILE says which joints are a person's bones",
                               base_path, j, here, there, partial_advice(set, base));
         }
         if (other->joints[j].parent != base->joints[j].parent) {
@@ -432,23 +433,38 @@ static int join_clip(source *base, const char *base_path, raw_set *from, raw_cli
     return move_clip(clip, to, error);
 }
 
+/* The first of the base's skeletons that has joints. NULL: none has. */
+static const raw_skeleton *first_skeleton(const source *base)
+{
+    for (uint32_t i = 0; i < base->set_count; i++) {
+        if (base->sets[i]->skeleton.joint_count) return &base->sets[i]->skeleton;
+    }
+    return NULL;
+}
+
 /* Clips of one humanoid on the first of the base's skeletons. */
 static int retarget_joints(const source *base, raw_set *from, const joint_match_options *options, model_error *error)
 {
     const char *map = options->retarget && strcmp(options->retarget, "auto") != 0 ? options->retarget : NULL;
-    for (uint32_t i = 0; i < base->set_count && from->skeleton.joint_count; i++) {
-        const raw_skeleton *to = &base->sets[i]->skeleton;
-        if (!to->joint_count) continue;
-        return retarget_same(&from->skeleton, to) ? 0 : retarget_set(from, to, map, options->report, error);
-    }
-    return 0;
+    const raw_skeleton *to = from->skeleton.joint_count ? first_skeleton(base) : NULL;
+    if (!to || retarget_same(&from->skeleton, to)) return 0;
+    return retarget_set(from, to, map, options->report, error);
 }
 
-/* Give a set the joints of the first of the base's skeletons that they can be matched with. */
+static int is_person(const raw_skeleton *skeleton)
+{
+    uint16_t bones[NOH_BONES];
+    bones_find(skeleton, bones);
+    return bones_are_a_person(bones);
+}
+
+/* Give a set the joints of the first of the base's skeletons that they can be matched with; a person that matches none
+ * is retargeted, unless the caller says how its joints are matched. */
 static int match_joints(source *base, raw_set *from, const char *path, const joint_match_options *options,
                         model_error *error)
 {
     joint_match match = JOINTS_DIFFER;
+    const raw_skeleton *to;
     for (uint32_t i = 0; i < base->set_count; i++) {
         if (raw_skeleton_hash(&base->sets[i]->skeleton) == raw_skeleton_hash(&from->skeleton)) return 0;
     }
@@ -460,7 +476,11 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
         free(report);
         if (failed) return model_fail_memory(error);
     }
-    return match == JOINTS_FAILED;
+    if (match != JOINTS_DIFFER || options->partial || options->names) return match == JOINTS_FAILED;
+    to = first_skeleton(base);
+    if (!to || !is_person(&from->skeleton) || !is_person(to)) return 0;
+    if (options->report) fprintf(options->report, "%s: another skeleton, so its clips are retargeted\n", path);
+    return retarget_joints(base, from, options, error);
 }
 
 /* ---- warnings ---- */

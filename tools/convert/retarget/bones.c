@@ -38,6 +38,16 @@ void bones_find(const raw_skeleton *skeleton, uint16_t *bones)
     noh_bones_find_trunk(parents, bones);
 }
 
+int bones_are_a_person(const uint16_t *bones)
+{
+    static const uint32_t limbs[] = { NOH_BONE_UPPER_ARM, NOH_BONE_LOWER_ARM, NOH_BONE_UPPER_LEG, NOH_BONE_LOWER_LEG };
+    int all = bones[NOH_BONE_HIPS] != NOH_JOINT_ROOT;
+    for (size_t i = 0; i < sizeof limbs / sizeof limbs[0]; i++) {
+        all &= bones[limbs[i]] != NOH_JOINT_ROOT && bones[limbs[i] + NOH_BONE_RIGHT] != NOH_JOINT_ROOT;
+    }
+    return all;
+}
+
 /* ---- a file ---- */
 
 static void set_bone(const raw_skeleton *s, text_word name, uint16_t *bone)

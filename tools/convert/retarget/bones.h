@@ -10,6 +10,9 @@
 /* Fill bones[NOH_BONES] with joints, or NOH_JOINT_ROOT. */
 void bones_find(const raw_skeleton *skeleton, uint16_t *bones);
 
+/* Whether hips and both arms and legs are known. */
+int bones_are_a_person(const uint16_t *bones);
+
 /* The bone of a name as VRM has it (leftUpperArm), or "root"; NOH_BONES: none. */
 uint32_t bone_named(const char *name);
 

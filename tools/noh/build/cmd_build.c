@@ -993,7 +993,7 @@ static const option options[] = {
       .at = offsetof(build_args, clips.retarget),
       .value = "auto|FILE",
       .what =
-          "move clips of other humanoids to the model's: bones by their names, feet on the ground, hands as far out; or also by a text file of lines BONE THEIRS OURS (VRM's names of bones) and 'reference FRAME', the frame that stands upright where the bind pose does not",
+          "move clips of all other humanoids to the model's, as without the option those whose joints differ: bones by their names, feet on the ground, hands as far out; or also by a text file of lines BONE THEIRS OURS (VRM's names of bones) and 'reference FRAME', the frame that stands upright where the bind pose does not",
       .excludes = "--rename",
       .example = "auto" },
     { .name = "--unit-cm",
