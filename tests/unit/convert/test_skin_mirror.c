@@ -1,5 +1,5 @@
 /* test_skin_mirror.c: what joints mirror faces outward, with the tangent frames that the file's own matrices give; what
- * joints shrink is told. */
+ * joints shrink has a warning. */
 #include "support/octahedra.h"
 
 #include "convert/model/affine.h"
@@ -147,8 +147,8 @@ static void what_joints_mirror_faces_outward(void **state)
     }
 }
 
-/* A joint that shrinks what it was bound to is told; one of another size from the start is not, nor a hidden one. */
-static void joints_that_shrink_are_told(void **state)
+/* A joint that shrinks what it was bound to has a warning; one of another size from the start is not, nor a hidden one. */
+static void joints_that_shrink_have_a_warning(void **state)
 {
     static const rig sizes[] = {
         { NODES("", ",\"scale\":[0.01,0.01,0.01]", ""), { 1, 1 }, 1 },
@@ -173,7 +173,7 @@ static void joints_that_shrink_are_told(void **state)
 
 static const struct CMUnitTest tests[] = {
     cmocka_unit_test(what_joints_mirror_faces_outward),
-    cmocka_unit_test(joints_that_shrink_are_told),
+    cmocka_unit_test(joints_that_shrink_have_a_warning),
 };
 
 TEST_MAIN(tests, NULL, NULL)
