@@ -164,31 +164,28 @@ static noh_gl_renderer renderer_of(const tube *t, const tube_kind *k, noh_gl_pas
 }
 
 /* The depth that a pass leaves, to be freed. */
-static uint32_t *depth_by(const tube *t, const tube_kind *k, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
+static uint32_t *depth_by(const tube *t, noh_gl_renderer *r, draw_kind kind, const noh_gl_lod *lods, uint32_t count,
                           int pass)
 {
     depth_frame f;
     uint32_t *bits;
     frame_open(&f);
-    {
-        noh_gl_renderer r = renderer_of(t, k, pass == NOH_DRAW_DEPTH ? NOH_PASSES_DEPTH : NOH_PASSES_COLOR, &f.ledger);
-        noh_gl_draw_begin(&r, &tube_camera);
-        for (uint32_t i = 0; i < count; i++) {
-            tube_draw(&r, t, &t->gl, kind, &lods[i], pass);
-        }
-        noh_gl_draw_end(&r);
-        if (pass == NOH_DRAW_DEPTH) expect_untouched_color();
-        noh_gl_renderer_delete(&r);
+    noh_gl_draw_begin(r, &tube_camera);
+    for (uint32_t i = 0; i < count; i++) {
+        tube_draw(r, t, &t->gl, kind, &lods[i], pass);
     }
+    noh_gl_draw_end(r);
+    if (pass == NOH_DRAW_DEPTH) expect_untouched_color();
     bits = frame_bits(&f);
     frame_close(&f);
     return bits;
 }
 
-static void expect_same(const tube *t, const tube_kind *k, draw_kind kind, const noh_gl_lod *lods, uint32_t count)
+/* By a renderer of colours and one of depth. */
+static void expect_same(const tube *t, noh_gl_renderer *r, draw_kind kind, const noh_gl_lod *lods, uint32_t count)
 {
-    uint32_t *color = depth_by(t, k, kind, lods, count, NOH_DRAW_OPAQUE);
-    uint32_t *depth = depth_by(t, k, kind, lods, count, NOH_DRAW_DEPTH);
+    uint32_t *color = depth_by(t, &r[0], kind, lods, count, NOH_DRAW_OPAQUE);
+    uint32_t *depth = depth_by(t, &r[1], kind, lods, count, NOH_DRAW_DEPTH);
     assert_true(covered(color) > SIDE * SIDE / 20u);
     assert_memory_equal(depth, color, SIDE * SIDE * 4u);
     free(color);
@@ -201,6 +198,8 @@ static void check(const tube_kind *k)
     const skin_cylinder c = { 24, 33, 9, 4, 3, 1, 2.0f, 0.35f };
     const noh_gl_lod fades[2] = { { 1, 0.0f, 0.4f }, { 0, 0.4f, 1.0f } }, wholes[2] = { { 0, 0, 1 }, { 1, 0, 1 } };
     noh_gl_caps caps = fixture_gpu()->caps;
+    noh_gl_ledger ledger = { 0 };
+    noh_gl_renderer r[2]; /* for all draws: ANGLE compiles a renderer's programs in a quarter of a second */
     skin_options options;
     fixture_levels levels;
     noh_pack pack;
@@ -225,12 +224,16 @@ static void check(const tube_kind *k)
                    : k->is_uint == NOH_LAYERS_DIRECT ? NOH_MORPH_DIRECT
                                                      : NOH_MORPH_CPU,
                    0, &caps);
+    r[0] = renderer_of(&t, k, NOH_PASSES_COLOR, &ledger);
+    r[1] = renderer_of(&t, k, NOH_PASSES_DEPTH, &ledger);
     for (int kind = RIGID; kind <= (k->uniform ? FEWER : CROWD); kind++) {
         for (uint32_t level = 0; level < 2; level++) {
-            expect_same(&t, k, (draw_kind)kind, &wholes[level], 1);
+            expect_same(&t, r, (draw_kind)kind, &wholes[level], 1);
         }
-        expect_same(&t, k, (draw_kind)kind, fades, 2);
+        expect_same(&t, r, (draw_kind)kind, fades, 2);
     }
+    for (int i = 0; i < 2; i++) noh_gl_renderer_delete(&r[i]);
+    assert_int_equal(ledger.programs, 0);
     tube_close(&t);
     fixture_levels_close(&levels);
     free(bytes);
