@@ -45,7 +45,7 @@ static int check_args(crowd_args *a)
     a->options.view = a->debug ? NOH_VIEW_LOD : NOH_VIEW_LIT;
     a->options.pixels = (float)a->pixels;
     a->options.spots = 1;
-    a->options.complexions = 1;
+    a->options.people = 1;
     a->options.plain = a->plain;
     a->options.width = a->size[0];
     a->options.height = a->size[1];

@@ -84,7 +84,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->desc.lod.pixels = o->pixels;
     c->desc.height_px = o->height;
     c->desc.update_budget_ns = o->budget_ns;
-    c->desc.user_values = o->complexions ? crowd_user_values(&file->pack) : 0;
+    c->desc.user_values = o->people ? crowd_user_values(&file->pack) : 0;
     c->desc.gpu = &noh_stage_on_gl;
 }
 
@@ -101,7 +101,34 @@ static float spread(uint32_t n, uint32_t step)
     return (float)((n * step) >> 8) / 16777216.0f;
 }
 
-static noh_place place_of(uint32_t body)
+float crowd_share(uint32_t person, uint32_t which)
+{
+    uint32_t x = (person + 1u) * 2654435769u + which * 2246822519u;
+    x = (x ^ (x >> 15)) * 2246822519u;
+    x = (x ^ (x >> 13)) * 3266489917u;
+    return (float)((x ^ (x >> 16)) >> 8) / 16777216.0f;
+}
+
+float crowd_size(uint32_t person)
+{
+    return 0.94f + 0.12f * crowd_share(person, 8);
+}
+
+noh_appearance crowd_look(uint32_t person)
+{
+    static const uint8_t robes[][3] = { { 255, 255, 255 }, { 255, 208, 188 }, { 205, 220, 255 }, { 236, 244, 208 },
+                                        { 255, 238, 188 }, { 228, 208, 255 }, { 186, 186, 192 }, { 255, 204, 220 } };
+    const uint8_t *robe = robes[(uint32_t)(crowd_share(person, 0) * 8.0f)];
+    const float shade = 0.6f + 0.4f * crowd_share(person, 1);
+    noh_appearance look;
+    memset(&look, 0, sizeof look);
+    for (int i = 0; i < 3; i++) look.tint[i] = (uint8_t)(shade * (float)robe[i]);
+    look.tint[3] = 255;
+    noh_complexion_random(person, 1.0f, look.user);
+    return look;
+}
+
+static noh_place place_of(uint32_t body, int people)
 {
     const float distance_m = NEAREST_M + (CROWD_FIELD_M - NEAREST_M) * sqrtf(spread(body + 1u, SPREAD_X));
     const float angle = (2.0f * spread(body + 1u, SPREAD_Y) - 1.0f) * HALF_ANGLE_RAD;
@@ -109,7 +136,7 @@ static noh_place place_of(uint32_t body)
     const float half_turn = 3.1415927f * spread(body + 1u, SPREAD_LINE);
     const noh_place place = { { distance_m * sinf(angle), 0.0f, side * distance_m * cosf(angle) },
                               { 0.0f, sinf(half_turn), 0.0f, cosf(half_turn) },
-                              1.0f };
+                              people ? crowd_size(body) : 1.0f };
     return place;
 }
 
@@ -148,13 +175,14 @@ static noh_result play(crowd *c, noh_actor actor, uint32_t body, uint32_t layer,
 
 static noh_result enter(crowd *c, uint32_t body, noh_error *error)
 {
-    const noh_place place = place_of(body);
+    const noh_place place = place_of(body, c->options.people);
     const noh_clip_set *set = NULL;
-    noh_appearance look = { 0 };
     noh_actor *actor = &c->actors[body];
     noh_result result = noh_stage_spawn(c->stage, 0, &place, actor, error);
-    if (c->desc.user_values) noh_complexion_random(body, 1.0f, look.user);
-    if (!result) result = noh_actor_set_appearance(c->stage, *actor, &look, error);
+    if (!result && c->options.people) {
+        const noh_appearance look = crowd_look(body);
+        result = noh_actor_set_appearance(c->stage, *actor, &look, error);
+    }
     if (!result) {
         (void)noh_actor_controller(c->stage, *actor, &set);
         result = play(c, *actor, body, BODY, nth_clip(set, body, 1), set, error);

@@ -31,13 +31,20 @@ typedef struct crowd_options {
     uint32_t width, height;            /* of the view, pixels; default (0) 1280 x 720 */
     uint32_t near_count, middle_count; /* as in noh_kind_desc */
     noh_debug_view view;
-    int spots;       /* 1: soft spots under the bodies */
-    int complexions; /* 1: each body has a complexion of its own, in packs with skin */
+    int spots;  /* 1: soft spots under the bodies */
+    int people; /* 1: each body has a size, clothes and, in packs with skin, a complexion of its own */
 } crowd_options;
 
 typedef struct crowd_events {
     uint64_t count, sum; /* sum of hashes of body, key and time: equal for the same events in any order */
 } crowd_events;
+
+/* A number of 0 to 1 for a person, another for each `which`. */
+float crowd_share(uint32_t person, uint32_t which);
+/* Of all of a person, 1 +- 6 %. */
+float crowd_size(uint32_t person);
+/* A person's colours: a pale tint for the materials that take one, and a complexion. */
+noh_appearance crowd_look(uint32_t person);
 
 /* NOH_USER_COMPLEXION for a pack with skin, 0 for others: of noh_stage_desc.user_values. */
 int crowd_user_values(const noh_pack *pack);

@@ -81,29 +81,6 @@ static int open_walkers(place_scene *s)
     return 0;
 }
 
-/* A number of 0 to 1 for a person, another for each `which`. */
-static float share_of(uint32_t person, uint32_t which)
-{
-    uint32_t x = (person + 1u) * 2654435769u + which * 2246822519u;
-    x = (x ^ (x >> 15)) * 2246822519u;
-    x = (x ^ (x >> 13)) * 3266489917u;
-    return (float)((x ^ (x >> 16)) >> 8) / 16777216.0f;
-}
-
-static noh_appearance look_of(uint32_t person)
-{
-    static const uint8_t robes[][3] = { { 255, 255, 255 }, { 255, 208, 188 }, { 205, 220, 255 }, { 236, 244, 208 },
-                                        { 255, 238, 188 }, { 228, 208, 255 }, { 186, 186, 192 }, { 255, 204, 220 } };
-    const uint8_t *robe = robes[(uint32_t)(share_of(person, 0) * 8.0f)];
-    const float shade = 0.6f + 0.4f * share_of(person, 1);
-    noh_appearance look;
-    memset(&look, 0, sizeof look);
-    for (int i = 0; i < 3; i++) look.tint[i] = (uint8_t)(shade * (float)robe[i]);
-    look.tint[3] = 255;
-    noh_complexion_random(person, 1.0f, look.user);
-    return look;
-}
-
 float place_scene_height(const place_file *place, const float at[2])
 {
     float height = 0.0f;
@@ -114,11 +91,11 @@ float place_scene_height(const place_file *place, const float at[2])
 static int enter(place_scene *s, uint32_t person)
 {
     static const char *const faces[] = { "smile", "surprise", "frown", "anger" };
-    const noh_appearance look = look_of(person);
+    const noh_appearance look = crowd_look(person);
     const float *at = place_life_agent(s->life, person)->position;
-    noh_place place = { .rotation = { 0.0f, 0.0f, 0.0f, 1.0f }, .scale = 1.0f };
-    const float turn = 6.2831853f * share_of(person, 2), heading[2] = { sinf(turn), cosf(turn) };
-    const uint32_t face = share_of(person, 3) < 0.7f ? 0u : (uint32_t)(4.0f * share_of(person, 4));
+    noh_place place = { .rotation = { 0.0f, 0.0f, 0.0f, 1.0f }, .scale = crowd_size(person) };
+    const float turn = 6.2831853f * crowd_share(person, 2), heading[2] = { sinf(turn), cosf(turn) };
+    const uint32_t face = crowd_share(person, 3) < 0.7f ? 0u : (uint32_t)(4.0f * crowd_share(person, 4));
     const uint32_t shown = noh_stage_find(s->stage, PLACE_PEOPLE, NOH_NAME_FLOAT, faces[face]);
     noh_error error = { NOH_OK, "", 0, 0 };
     noh_actor *a = &s->actors[person];
@@ -128,7 +105,7 @@ static int enter(place_scene *s, uint32_t person)
         noh_walkers_add(s->walkers, person, s->stage, *a, person, heading, &error)) {
         return tool_fail_error(s->file->path, &error);
     }
-    if (shown != NOH_NONE) (void)noh_actor_hold_float(s->stage, *a, shown, share_of(person, 5), 1.0f, NULL);
+    if (shown != NOH_NONE) (void)noh_actor_hold_float(s->stage, *a, shown, crowd_share(person, 5), 1.0f, NULL);
     return 0;
 }
 
@@ -233,8 +210,8 @@ static void play_clip(const place_scene *s, uint32_t person, uint32_t clip, noh_
     play.fade_ticks = 24000;
     play.loop = loop;
     if (loop == NOH_LOOP_REPEAT) {
-        play.speed = (int32_t)(65536.0f * (0.8f + 0.4f * share_of(person, 6)));
-        play.start_ticks = (int64_t)(480000.0f * share_of(person, 7));
+        play.speed = (int32_t)(65536.0f * (0.8f + 0.4f * crowd_share(person, 6)));
+        play.start_ticks = (int64_t)(480000.0f * crowd_share(person, 7));
     }
     (void)noh_actor_play(s->stage, s->actors[person], PLACE_ACT, s->place->clips[clip - 1u], &play, NULL);
 }
