@@ -62,7 +62,7 @@ function accessor(g, data, componentType, type) {
     g.json.bufferViews.push({ buffer: 0, byteOffset: g.bin.length, byteLength: values.length });
     g.bin = Buffer.concat([g.bin, values]);
     g.json.buffers[0].byteLength = g.bin.length;
-    const per = { VEC4: 4, MAT4: 16 }[type];
+    const per = { VEC3: 3, VEC4: 4, MAT4: 16 }[type];
     g.json.accessors.push({ bufferView: g.json.bufferViews.length - 1, componentType, type, count: data.length / per });
     return g.json.accessors.length - 1;
 }
@@ -135,6 +135,20 @@ function split(json, names) {
     Object.assign(json.nodes[whole], { name: names[0], mesh: 0 });
 }
 
+// A shell in front of the eyes: their surface, farther from the middle of each, with a material of its own.
+function addShell(g, eyeMaterial, name, far) {
+    const mesh = g.json.meshes[0], eye = mesh.primitives.find(p => p.material === eyeMaterial);
+    const at = positions(g, eye.attributes.POSITION), sides = [at.filter(v => v[0] > 0), at.filter(v => v[0] <= 0)];
+    const middle = sides.map(list => [0, 1, 2].map(k => list.reduce((s, v) => s + v[k], 0) / list.length));
+    const moved = new Float32Array(3 * at.length);
+    at.forEach((v, i) => moved.set(v.map((x, k) => x + far * (x - middle[v[0] > 0 ? 0 : 1][k])), 3 * i));
+    const POSITION = accessor(g, moved, 5126, 'VEC3');
+    const axis = k => at.map((_, i) => moved[3 * i + k]), axes = [0, 1, 2].map(axis);
+    Object.assign(g.json.accessors[POSITION], { min: axes.map(a => Math.min(...a)), max: axes.map(a => Math.max(...a)) });
+    g.json.materials.push({ name, pbrMetallicRoughness: { baseColorFactor: [1, 1, 1, 1] } });
+    mesh.primitives.push({ ...eye, attributes: { ...eye.attributes, POSITION }, material: g.json.materials.length - 1 });
+}
+
 // ---- makers ----
 
 const from = process.argv[2], out = process.argv[3];
@@ -161,6 +175,10 @@ make('vroid', g => {
     g.json.materials.forEach(m => { m.name = `N00_000_00_${m.name}_00_${m.name.toUpperCase()} (Instance)`; });
 });
 make('ict', g => {
+    const eyes = material(g.json, 'eyes');
     renameTargets(g.json, n => isArkit(n) && sides(n));
+    addShell(g, eyes, 'M_EyeOcclusion', 0.02);
+    addShell(g, eyes, 'M_EyeBlend', 0.04);
+    addShell(g, eyes, 'M_Lacrimal', 0.06);
     g.json.nodes.forEach(n => { if (n.mesh !== undefined) n.scale = [100, 100, 100]; });
 });
