@@ -479,8 +479,14 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
     if (match != JOINTS_DIFFER || options->partial || options->names) return match == JOINTS_FAILED;
     to = first_skeleton(base);
     if (!to || !is_person(&from->skeleton) || !is_person(to)) return 0;
-    if (options->report) fprintf(options->report, "%s: another skeleton, so its clips are retargeted\n", path);
-    return retarget_joints(base, from, options, error);
+    if (retarget_joints(base, from, options, error)) return 1;
+    return model_warn(
+               base->m,
+               "%s: its skeleton is another one, so its clips were retargeted, which moves the bones of a person "
+               "alone (--partial moves all joints that both have; --retarget auto agrees)",
+               path)
+               ? model_fail_memory(error)
+               : 0;
 }
 
 /* ---- warnings ---- */
