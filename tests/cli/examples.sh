@@ -74,7 +74,7 @@ else
     expect 0 'states plays the graph of the pack'
     check 'it stands, walks, hurries, bows' sh -c 'test "$(sed -n "s/.* s  //p" "$1" | tr "\n" " ")" = "acts foot_right foot_left foot_right foot_left foot_right foot_left bowing bow "' - "$work/out"
     check 'and comes two metres far' grep -q '^2\.1. m' "$work/out"
-    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 50000' - "$work/states.png"
+    check 'and it saves a picture' sh -c 'test "$(wc -c <"$1")" -gt 20000' - "$work/states.png"
     run states "$build/mask.noh"
     expect 1 'a pack without a graph is refused'
     check 'by name' grep -q 'graphs of a kind' "$work/err"

@@ -87,7 +87,7 @@ long() {
         for (i = 0; i < 349; i++) print "JOINT j" i "\n{\nOFFSET 0 1 0\nCHANNELS 0"
         print "End Site\n{\nOFFSET 0 1 0\n}"
         for (i = 0; i < 350; i++) print "}"
-        print "MOTION\nFrames: " frames "\nFrame Time: 0.01"
+        print "MOTION\nFrames: " frames "\nFrame Time: 0.001"
         for (i = 0; i < frames; i++) print i % 7, 0, 0
     }' >"$work/long.bvh"
 }

@@ -31,7 +31,7 @@ int main(int argc, char **argv)
     const noh_kind_desc kind = {
         .mesh = &pack, .actor_count = 1, .root_axes = NOH_ROOT_GROUND, .graphs = noh_graph_module("*")
     };
-    const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = 720, .gpu = &noh_stage_on_gl };
+    const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = 360, .gpu = &noh_stage_on_gl };
     const char *out = argc == 4 && !strcmp(argv[2], "-o") ? argv[3] : NULL, *graph, *was = "", *is;
     uint32_t speed, bow, bows;
     float now = 0.0f;
@@ -53,7 +53,7 @@ int main(int argc, char **argv)
     bows = noh_stage_find(stage, 0, NOH_NAME_MACHINE, "bows");
     if (noh_stage_spawn(stage, 0, NULL, &actor, &e) || noh_actor_play_graph(stage, actor, 0, graph, NULL, &e))
         return start_fail(&gl, "actor", &e);
-    target_make(&gl.api, 960, 720, 0, &picture);
+    target_make(&gl.api, 480, 360, 0, &picture);
     for (int i = 0; i < 400; i++) {
         noh_stage_view view;
         now += (speed_at(i) - now) * 0.08f; /* accelerate smoothly */
@@ -62,7 +62,7 @@ int main(int argc, char **argv)
             return start_fail(&gl, "parameter", &e);
         (void)noh_actor_place(stage, actor, &place, NULL);
         place.position[1] += 0.78f;
-        noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 960, 720);
+        noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 480, 360);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, on_key, NULL, &e))
             return start_fail(&gl, "frame", &e);
         target_clear(&gl.api, &picture); /* after the frame, which draws into the library's textures */

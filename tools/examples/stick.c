@@ -33,7 +33,7 @@ int main(int argc, char **argv)
     static const noh_world world = { .planes = &floor_plane, .plane_count = 1 };
     noh_modifier on_ground;
     noh_kind_desc kind = { .mesh = &pack, .clips = &clips, .actor_count = 1, .inertia = 1 };
-    const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = 720, .gpu = &noh_stage_on_gl };
+    const noh_stage_desc desc = { .kinds = &kind, .kind_count = 1, .height_px = 360, .gpu = &noh_stage_on_gl };
     const char *out = argc == 5 && !strcmp(argv[3], "-o") ? argv[4] : NULL;
     noh_ragdoll_source source = { .pack = &pack, .metres = 1.0f };
     noh_match_goal goal = { { 0 }, { 0 }, NULL };
@@ -57,7 +57,7 @@ int main(int argc, char **argv)
     if (!memory || noh_stage_init(memory, (size_t)plan.cpu_bytes, &gl.device, &desc, &plan, &stage, &e))
         return start_fail(&gl, "stage", &e);
     if (noh_stage_spawn(stage, 0, NULL, &actor, &e)) return start_fail(&gl, "actor", &e);
-    target_make(&gl.api, 960, 720, 0, &picture);
+    target_make(&gl.api, 480, 360, 0, &picture);
     for (int i = 0; i < 480; i++) {
         const float *push = pushes[i / 120];
         noh_stage_view view;
@@ -66,7 +66,7 @@ int main(int argc, char **argv)
         if (i % 120 == 0 && noh_actor_match(stage, actor, &goal, &e)) return start_fail(&gl, "match", &e);
         memcpy(&place, &before, sizeof place);
         place.position[1] += 0.78f;
-        noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 960, 720);
+        noh_view_orbit(&view, place.position, 0.9f, 0.1f, 3.0f, 480, 360);
         if (noh_stage_frame(stage, NOH_TICKS_PER_SECOND / 60, &view, NULL, NULL, &e))
             return start_fail(&gl, "frame", &e);
         target_clear(&gl.api, &picture);
