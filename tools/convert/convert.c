@@ -375,7 +375,7 @@ static int make_surfaces(const convert_options *options, source *s, model_error 
         return model_fail_memory(error);
     if (!options->keep_looks && !options->transfer.order && hollow_paint(s->m)) return model_fail_memory(error);
     strands_find(s->m, options->report);
-    return surface_shapes_find(s->m, options->report, error);
+    return surface_shapes_find(s->m, options->keep_looks, options->report, error);
 }
 
 static int join_all(const char *const *inputs, int count, int base, const convert_options *options, source *all,

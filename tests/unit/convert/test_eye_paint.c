@@ -86,7 +86,7 @@ static void blank_eyes_get_an_iris(void **state)
         assert_true(ring < 3 || green > 200);                                                           /* the white */
         assert_true(ring == 0 || (uv[0] > 0.5f) == (v % SIDES < 4u || v % SIDES > 12u) || v % 4u == 0); /* x is right */
     }
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     assert_true(m->materials[0].surface_values[2] > 0.0f && fabsf(m->materials[0].surface_values[3] - 0.42f) < 0.03f);
     model_free(m);
 }
@@ -107,7 +107,7 @@ static void eyes_without_coordinates_get_an_iris(void **state)
         const uint8_t green = green_at(m, mesh->uv[2u * v] * 0.999f, mesh->uv[2u * v + 1u] * 0.999f);
         assert_true(v % BALL / SIDES == 0 ? green < 40 : v % BALL / SIDES < 3 || green > 200);
     }
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     assert_true(fabsf(m->materials[0].surface_values[3] - 0.42f) < 0.03f);
     model_free(m);
 }
@@ -229,7 +229,7 @@ static void skinned_meshes_stand_upright(void **state)
             for (int c = 0; c < 3; c++) assert_true(fabs(before[c] - after[c]) < 1e-9);
         }
         assert_int_equal(eye_paint(upright), 0);
-        assert_int_equal(surface_shapes_find(upright, NULL, &error), 0);
+        assert_int_equal(surface_shapes_find(upright, 0, NULL, &error), 0);
         const float *gaze = upright->materials[0].surface_values; /* the world's z */
         assert_true(skinned ? gaze[2] > 0.9f * RADIUS * 0.4f : gaze[1] < -0.9f * RADIUS * 0.4f);
         model_free(m);
@@ -249,7 +249,7 @@ static void joints_shrink_an_iris(void **state)
             model_error error;
             for (int i = 0; i < 12; i++) m->nodes[0].world[i] *= is_shrunk ? 0.01 : 1.0;
             assert_int_equal(eye_paint(m), 0);
-            assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+            assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
             length[is_shrunk] = fabs((double)gaze[1]);
             assert_true(length[is_shrunk] > 0.0);
             model_free(m);

@@ -388,7 +388,7 @@ static void check_irises_and_lids(model *m, int front)
 {
     const float *values = m->materials[0].surface_values, *more = m->materials[0].surface_more;
     model_error error;
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     print_message("an iris of %.3f, %.3f is right\n", (double)values[3], IRIS);
     assert_true(fabs((double)values[3] - IRIS) <= 0.03);
     assert_true(fabs(fabs((double)values[front]) - 0.012 * IRIS) < 0.0004);
@@ -423,14 +423,52 @@ static void irises_are_found_where_eyes_look(void **state)
     const float *values = m->materials[0].surface_values;
     model_error error;
     (void)state;
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     assert_true(fabs(atan2((double)values[0], (double)values[2]) - 0.3) < 0.03);
     for (int k = 0; k < 6; k++) assert_true(m->materials[0].surface_more[k] == 0.0f);
     model_free(m);
     m = face_of(squint, 2, 0);
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     assert_true(fabsf(m->materials[0].surface_values[0]) < 0.0002f);
     model_free(m);
+}
+
+/* A white spot of 24 degrees, on the right of both irises, or on the white: of vertices that have been painted. */
+static void paint_spot(model_mesh *mesh, double right)
+{
+    for (uint32_t v = 0; v < 2u * BALL; v++) {
+        const float *p = mesh->position + 3 * (size_t)v;
+        const double x = (double)p[0] - (v < BALL ? 0.03 : -0.03) - 0.012 * right, y = (double)p[1] - 0.1,
+                     z = (double)p[2];
+        for (size_t c = 0; c < 3 && z > 0.0 && sqrt(x * x + y * y) < 0.0025; c++) mesh->color[4 * (size_t)v + c] = 1.0f;
+    }
+}
+
+/* An eye with a painted highlight mirrors no second one, unless its surface is given or looks are kept. A spot on the
+ * white, or on an iris that is pale, is no highlight. */
+static void a_painted_highlight_is_the_only_one(void **state)
+{
+    static const struct {
+        double right, dark;
+        int keep_looks, given, dull;
+    } cases[] = { { 0.2, 0.1, 0, 0, 1 },
+                  { 0.2, 0.1, 1, 0, 0 },
+                  { 0.2, 0.1, 0, 1, 0 },
+                  { 0.75, 0.1, 0, 0, 0 },
+                  { 0.2, 0.4, 0, 0, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        const eye_spec pair[2] = { { 0.03, 0.0, cases[i].dark }, { -0.03, 0.0, cases[i].dark } };
+        model *m = face_of(pair, 2, 0);
+        model_error error;
+        paint_spot(m->meshes, cases[i].right);
+        m->materials[0].surface_given = (uint8_t)cases[i].given;
+        for (int c = 0; c < 3; c++) m->materials[0].f0[c] = 0.04f;
+        assert_int_equal(surface_shapes_find(m, cases[i].keep_looks, NULL, &error), 0);
+        assert_true((m->materials[0].f0[0] == 0.0f) == cases[i].dull);
+        assert_int_equal(m->warning_count, cases[i].dull);
+        model_free(m);
+    }
 }
 
 /* The normals of an eye at x = 0.03: a bulge of 1 bends them as a cornea does. Returns the farthest from the ball's. */
@@ -461,7 +499,7 @@ static void a_cornea_does_not_mirror_twice(void **state)
         model *m = face_of(one, 1, 0);
         model_error error;
         const double bent = bend_normals(m->meshes, i ? 1.0 : 0.1, 1);
-        assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+        assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
         const double left = bend_normals(m->meshes, 0.0, 0);
         print_message("normals bent by %.3f: %.3f is left\n", bent, left);
         assert_true(i ? bent > 0.2 && left < 0.01 : left == bent);
@@ -476,7 +514,7 @@ static void a_ball_without_an_iris_has_none(void **state)
     model *m = face_of(blank, 2, 1);
     model_error error;
     (void)state;
-    assert_int_equal(surface_shapes_find(m, NULL, &error), 0);
+    assert_int_equal(surface_shapes_find(m, 0, NULL, &error), 0);
     for (int k = 0; k < 4; k++) assert_true(m->materials[0].surface_values[k] == 0.0f);
     model_free(m);
 }
@@ -571,6 +609,7 @@ int main(void)
         cmocka_unit_test(reflectance_follows_the_surface),
         cmocka_unit_test(irises_and_lids_are_found),
         cmocka_unit_test(irises_are_found_where_eyes_look),
+        cmocka_unit_test(a_painted_highlight_is_the_only_one),
         cmocka_unit_test(a_ball_without_an_iris_has_none),
         cmocka_unit_test(a_cornea_does_not_mirror_twice),
         cmocka_unit_test(shells_of_eyes_do_not_hide_them),

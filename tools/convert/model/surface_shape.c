@@ -16,7 +16,12 @@
 #define GRID 8      /* points along a triangle's edge at which its colour is taken */
 #define IRIS_MIN 10 /* rings: the narrowest iris, and the widest */
 #define IRIS_MAX 36
-#define IRIS_STEP 6    /* rings on either side of the rim that are compared */
+#define IRIS_STEP 6      /* rings on either side of the rim that are compared */
+#define GLINT_WHITE 0.55 /* luminance of a painted highlight, at least, and GLINT_DARK of the iris around it, at most */
+#define GLINT_DARK 0.3
+#define GLINT_LEAST 0.006 /* shares of the iris, within GLINT_RIM of its radius */
+#define GLINT_MOST 0.25
+#define GLINT_RIM 0.85
 #define LID_COLUMNS 11 /* about where the eye looks, from one corner to the other */
 #define LID_REACH 0.75 /* radii to the outermost */
 #define LID_ROWS 128   /* from one radius below to one above */
@@ -208,6 +213,33 @@ static int find_iris(eye_ball *b)
     return 1;
 }
 
+/* ---- painted highlights ---- */
+
+typedef struct glint {
+    const double *axis;
+    double within;            /* cosine */
+    double white, rest, luma; /* areas; of the rest, a sum */
+} glint;
+
+static void add_glint(const double direction[3], double luma, double area, void *user)
+{
+    glint *g = user;
+    if (vec_dot(direction, g->axis) < g->within) return;
+    g->white += luma > GLINT_WHITE ? area : 0.0;
+    g->rest += luma > GLINT_WHITE ? 0.0 : area;
+    g->luma += luma > GLINT_WHITE ? 0.0 : area * luma;
+}
+
+/* A small white spot on a dark iris. */
+static int has_glint(const eye_ball *b)
+{
+    const double edge = GLINT_RIM * b->iris;
+    glint g = { .axis = b->gaze, .within = sqrt(1.0 - edge * edge) };
+    visit_ball(b, add_glint, &g);
+    const double area = g.white + g.rest;
+    return g.white > GLINT_LEAST * area && g.white < GLINT_MOST * area && g.luma < GLINT_DARK * g.rest;
+}
+
 /* ---- the lids ---- */
 
 typedef struct lid_edges {
@@ -319,13 +351,14 @@ static void find_lids(eye_ball *b)
 
 /* Sums over the eyes of a material. */
 typedef struct eye_mean {
-    uint32_t count, with_lids;
+    uint32_t count, with_lids, with_glint;
     double gaze[3], iris, radius, lids[6];
 } eye_mean;
 
 static void add_eye(const eye_ball *b, eye_mean *mean)
 {
     mean->count++;
+    mean->with_glint += has_glint(b) != 0;
     mean->iris += b->iris;
     mean->radius += b->iris * b->sphere.radius * b->scale;
     for (int c = 0; c < 3; c++) mean->gaze[c] += b->gaze[c];
@@ -410,7 +443,20 @@ static void set_eye(model_material *material, eye_mean *mean, FILE *report)
     }
 }
 
-static int find_eyes(model *m, uint32_t material, FILE *report)
+/* With a highlight of their own eyes have no second one, of a lamp or a window: they mirror nothing. 0, or 1 when out of
+ * memory. */
+static int dull_eye(model *m, model_material *material, const eye_mean *mean)
+{
+    if (2u * mean->with_glint <= mean->count || material->surface_given) return 0;
+    for (int c = 0; c < 3; c++) material->f0[c] = 0.0f;
+    material->f90_loss = 1.0f;
+    return model_warn(m,
+                      "material '%s': a highlight is painted on its eyes, so they mirror no light; to keep that, use "
+                      "--surface '%s=eye'",
+                      material->name, material->name);
+}
+
+static int find_eyes(model *m, uint32_t material, int keep_looks, FILE *report)
 {
     eye_mean mean = { 0 };
     for (uint32_t i = 0; i < m->mesh_count; i++) {
@@ -424,14 +470,14 @@ static int find_eyes(model *m, uint32_t material, FILE *report)
         if (failed) return 1;
     }
     set_eye(&m->materials[material], &mean, report);
-    return 0;
+    return keep_looks ? 0 : dull_eye(m, &m->materials[material], &mean);
 }
 
-int surface_shapes_find(model *m, FILE *report, model_error *error)
+int surface_shapes_find(model *m, int keep_looks, FILE *report, model_error *error)
 {
     for (uint32_t i = 0; i < m->material_count; i++) {
         model_material *material = &m->materials[i];
-        if (material->surface == NOH_SURFACE_EYE && find_eyes(m, i, report)) {
+        if (material->surface == NOH_SURFACE_EYE && find_eyes(m, i, keep_looks, report)) {
             return model_fail(error, material->name, "out of memory");
         }
     }

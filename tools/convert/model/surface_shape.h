@@ -11,9 +11,11 @@
  * along +z. An iris is darker than the white around it, in the texture times the vertex colours; the two eyes of one
  * material share one mean. Lids are the edges of opaque skin in front of an eyeball. Values that are not found stay
  * zero, as for a painted eye. Teeth, and skin between them, are the darker, the farther
- * behind the foremost. Values of eyes are rounded to 2^-12.
+ * behind the foremost. Values of eyes are rounded to 2^-12. An iris with a painted highlight mirrors nothing, with a
+ * warning, unless the surface is given.
+ * keep_looks  1: the highlight stays, and so does the mirror
  * report  a line for each eye; NULL: quiet
  * errors  1: out of memory */
-int surface_shapes_find(model *m, FILE *report, model_error *error);
+int surface_shapes_find(model *m, int keep_looks, FILE *report, model_error *error);
 
 #endif
