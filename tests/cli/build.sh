@@ -124,4 +124,32 @@ noh build "$work/corner.gltf" -o "$work/corner.noh" --whole-textures
 expect 0 'build --whole-textures'
 noh info "$work/corner.noh"
 check 'keeps all of it' grep -q ': 64 x 64, ' "$work/out"
+
+# ---- a cutoff that cuts nothing ----
+
+# 64 x 64 texels, red and solid on the left, clear on the right.
+{
+    printf '\211PNG\r\n\032\n\0\0\0\015IHDR\0\0\0\100\0\0\0\100\1\3\0\0\0\220\247\343\235'
+    printf '\0\0\0\6PLTE\310\40\20\20\40\310\0\0\0\0\0\0\0\2tRNS\377\0\0\0\0\0\0\0\2\113IDAT\170\1\1\100\2\277\375'
+    for _ in 0 1 2 3 4 5 6 7; do
+        for _ in 0 1 2 3 4 5 6 7; do printf '\0\0\0\0\0\377\377\377\377'; done
+    done
+    printf '\0\0\0\0\0\0\0\0\0\0\0\0IEND\256B\140\202'
+} >"$work/half.png"
+sed 's/corner.png/half.png/; s/"pbrMetallicRoughness"/"alphaMode": "MASK", &/' "$work/corner.gltf" >"$work/solid.gltf"
+sed 's/"asset"/"extensionsUsed": ["KHR_texture_transform"], &/
+s/"index": 0}/"index": 0, "extensions": {"KHR_texture_transform": {"scale": [4, 4]}}}/' "$work/solid.gltf" >"$work/cut.gltf"
+for name in solid cut; do
+    noh build "$work/$name.gltf" -o "$work/$name.noh"
+    expect 0 "build of a material with a cutoff: $name"
+    noh info "$work/$name.noh"
+    cp "$work/out" "$work/$name.info"
+    noh render "$work/$name.noh" -o "$work/$name.png" --size 64x64
+    noh build "$work/$name.gltf" -o "$work/whole.noh" --whole-textures --quiet
+    noh render "$work/whole.noh" -o "$work/whole.png" --size 64x64
+    check 'its picture is of the whole texture with its cutoff' cmp "$work/$name.png" "$work/whole.png"
+done
+check 'a material that reads solid texels alone is opaque' grep -q "^material .*, opaque" "$work/solid.info"
+check 'and has blocks without alpha' grep -q 'ETC2 RGB [0-9]' "$work/solid.info"
+check 'one that is moved to clear texels is not' grep -q "^material .*, mask" "$work/cut.info"
 finish

@@ -28,6 +28,7 @@
 #include "convert/pack/stage_warn.h"
 #include "convert/skin/skin_mirror.h"
 #include "convert/texture/texture_astc.h"
+#include "convert/texture/texture_solid.h"
 #include "convert/texture/texture_trim.h"
 #include "noh/base.h"
 #include "noh/format.h"
@@ -256,7 +257,6 @@ static int make_wrinkles(const source *s, const recipe_text *recipe, const conve
 
 static int set_textures(const source *s, const convert_options *options, model_error *error)
 {
-    texture_cut_mark(s->m);
     for (uint32_t i = 0; i < s->m->texture_count; i++) {
         s->m->textures[i].blocks = options->blocks;
         s->m->textures[i].size_max = options->texture_max;
@@ -267,9 +267,17 @@ static int set_textures(const source *s, const convert_options *options, model_e
 /* Once the levels are known, since a level's triangles read the textures too. */
 static int trim_textures(model *m, const mesh_levels *levels, const convert_options *options, model_error *error)
 {
-    texture_trimmed done;
-    if (options->whole_textures || options->only == CONVERT_CLIPS) return 0;
-    if (texture_trim(m, levels, &done)) return model_fail_memory(error);
+    texture_trimmed done = { 0, 0, 0 };
+    uint32_t solid = 0;
+    const int keeps = options->whole_textures || options->only == CONVERT_CLIPS;
+    if (!keeps && (texture_solid(m, levels, &solid) || texture_trim(m, levels, &done))) return model_fail_memory(error);
+    texture_cut_mark(m);
+    if (options->report && solid) {
+        fprintf(options->report,
+                "%u of %u materials became opaque: their triangles read no texel below their cutoff (--whole-textures "
+                "keeps cutoffs)\n",
+                solid, m->material_count);
+    }
     if (options->report && done.count) {
         fprintf(options->report,
                 "%u of %u textures trimmed to what triangles read: %.0f%% of their texels are left "

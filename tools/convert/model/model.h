@@ -38,6 +38,7 @@ typedef struct model_texture {
     model_texture_use use;
     uint8_t alpha_is_data; /* a value of its own, which is kept and changes no colour */
     uint8_t with_alpha;    /* a material cuts or blends by its alpha: where that is 0, colours do not count */
+    uint8_t alpha_unread;  /* it is not stored, and only tells which colours count (texture_solid.h) */
     float alpha_cutoff;    /* of a material that cuts by it: mip levels cover as much; else 0 */
     uint8_t cut_alone;     /* 1: everything that reads it cuts by that, so alphas of 0 and 1 do (texture_cut.h) */
     uint8_t blocks;        /* MODEL_BLOCKS_*: how it is compressed */

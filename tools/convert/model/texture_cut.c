@@ -3,8 +3,7 @@
 #define CUTOFF_LEAST 0.25f
 #define CUTOFF_MOST 0.75f
 
-/* Whether vertices of a material have an alpha that is not 1. */
-static int has_clear_vertices(const model *m, uint32_t material)
+int texture_cut_vertices(const model *m, uint32_t material)
 {
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
@@ -22,7 +21,7 @@ static int cuts(const model *m, uint32_t material, const model_texture *t)
 {
     const model_material *of = &m->materials[material];
     return of->alpha == MODEL_ALPHA_MASK && of->alpha_cutoff >= t->alpha_cutoff &&
-           of->alpha_cutoff <= t->alpha_cutoff && of->base_color[3] >= 1.0f && !has_clear_vertices(m, material);
+           of->alpha_cutoff <= t->alpha_cutoff && of->base_color[3] >= 1.0f && !texture_cut_vertices(m, material);
 }
 
 void texture_cut_mark(model *m)

@@ -9,4 +9,7 @@
  * that. A filtered bit is cut along a line that is off by the cutoff's distance from 0.5, in texels. */
 void texture_cut_mark(model *m);
 
+/* Whether vertices of a material have an alpha that is not 1. */
+int texture_cut_vertices(const model *m, uint32_t material);
+
 #endif

@@ -234,7 +234,7 @@ static void close_image(const model_texture *t, const image *level, const int32_
 
 static int keeps_alpha(const model_texture *t, const uint8_t *bytes, size_t count)
 {
-    if (t->use == MODEL_TEXTURE_NORMAL) return 0;
+    if (t->use == MODEL_TEXTURE_NORMAL || t->alpha_unread) return 0;
     if (t->use == MODEL_TEXTURE_COLOR && !t->with_alpha && !t->alpha_is_data) return 0; /* glTF ignores such alphas */
     for (size_t i = 0; i < count; i++) {
         if (bytes[i * 4 + 3] != 255) return 1;
@@ -245,7 +245,7 @@ static int keeps_alpha(const model_texture *t, const uint8_t *bytes, size_t coun
 /* Whether it is stored in ASTC. The runtime reads alphas that cut or blend for picking, and decodes ETC2 alone. */
 static int is_astc(const model_texture *t)
 {
-    return t->blocks == MODEL_BLOCKS_ASTC && !t->with_alpha;
+    return t->blocks == MODEL_BLOCKS_ASTC && (!t->with_alpha || t->alpha_unread);
 }
 
 /* Larger blocks of normal maps show as facets in highlights, whatever their error is. */

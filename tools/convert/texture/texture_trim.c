@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "level_corners.h"
 #include "noh/base.h"
 #include "noh/format.h"
 #include "noh/low_core.h"
@@ -69,25 +70,9 @@ static void join_maps(trim *t)
     }
 }
 
-/* The triangles of a submesh on a level. */
-typedef struct corners {
-    const uint32_t *vertices;
-    uint32_t count;
-} corners;
-
-static uint32_t level_count(const trim *t, uint32_t mesh)
+static const mesh_levels *levels_of(const trim *t, uint32_t mesh)
 {
-    return t->levels && t->levels[mesh].count > 1u ? t->levels[mesh].count : 1u;
-}
-
-static corners corners_of(const trim *t, uint32_t mesh, uint32_t level, uint32_t submesh)
-{
-    const model_mesh *of = &t->m->meshes[mesh];
-    if (level) {
-        const lod_view view = mesh_levels_view(&t->levels[mesh], level);
-        return (corners){ view.indices + view.first[submesh], view.count[submesh] };
-    }
-    return (corners){ of->indices + of->submeshes[submesh].first_index, of->submeshes[submesh].index_count };
+    return t->levels ? &t->levels[mesh] : NULL;
 }
 
 /* Materials that have a vertex in common. */
@@ -99,8 +84,8 @@ static int join_vertices(trim *t, uint32_t mesh)
     memset(owner, 0xff, (size_t)of->vertex_count * sizeof *owner);
     for (uint32_t s = 0; s < of->submesh_count; s++) {
         const uint32_t material = of->submeshes[s].material;
-        for (uint32_t level = 0; material != MODEL_NONE && level < level_count(t, mesh); level++) {
-            const corners c = corners_of(t, mesh, level, s);
+        for (uint32_t level = 0; material != MODEL_NONE && level < level_count_of(levels_of(t, mesh)); level++) {
+            const level_corners c = level_corners_of(of, levels_of(t, mesh), level, s);
             for (uint32_t i = 0; i < c.count; i++) {
                 uint32_t *had = &owner[c.vertices[i]];
                 if (*had != MODEL_NONE && *had != material) join(t, *had, material);
@@ -206,18 +191,10 @@ static void use_triangle(trim_group *g, const float *uv, const uint32_t *corner)
     }
 }
 
-static int moves_uv(const model_mesh *mesh)
-{
-    for (uint32_t i = 0; i < mesh->target_count; i++) {
-        if (mesh->targets[i].uv) return 1;
-    }
-    return 0;
-}
-
 static void use_mesh(trim *t, uint32_t mesh)
 {
     const model_mesh *of = &t->m->meshes[mesh];
-    const int is_still = of->uv && !moves_uv(of);
+    const int is_still = of->uv && !level_moves_uv(of);
     for (uint32_t s = 0; s < of->submesh_count; s++) {
         const uint32_t material = of->submeshes[s].material;
         if (material == MODEL_NONE) continue;
@@ -227,8 +204,8 @@ static void use_mesh(trim *t, uint32_t mesh)
             keep_whole(t, material);
             continue;
         }
-        for (uint32_t level = 0; level < level_count(t, mesh); level++) {
-            const corners c = corners_of(t, mesh, level, s);
+        for (uint32_t level = 0; level < level_count_of(levels_of(t, mesh)); level++) {
+            const level_corners c = level_corners_of(of, levels_of(t, mesh), level, s);
             for (uint32_t i = 0; i + 2u < c.count; i += 3u) {
                 use_triangle(&t->groups[find(t, material)], of->uv, c.vertices + i);
             }
@@ -273,7 +250,7 @@ static float moved(float at, uint32_t cells, uint64_t kept)
     return (float)(turn + (in - gone) / bits_of(kept));
 }
 
-static void move_corners(const trim_group *g, corners c, float *uv, uint8_t *done)
+static void move_corners(const trim_group *g, level_corners c, float *uv, uint8_t *done)
 {
     for (uint32_t i = 0; i < c.count; i++) {
         const uint32_t v = c.vertices[i];
@@ -291,8 +268,10 @@ static void move_mesh(const trim *t, uint32_t mesh, uint8_t *done)
     for (uint32_t s = 0; s < of->submesh_count; s++) {
         const uint32_t material = of->submeshes[s].material;
         if (material == MODEL_NONE || !of->uv) continue;
-        for (uint32_t level = 0; level < level_count(t, mesh); level++) { /* some have vertices of their own */
-            move_corners(&t->groups[find(t, material)], corners_of(t, mesh, level, s), of->uv, done);
+        for (uint32_t level = 0; level < level_count_of(levels_of(t, mesh));
+             level++) { /* some have vertices of their own */
+            move_corners(&t->groups[find(t, material)], level_corners_of(of, levels_of(t, mesh), level, s), of->uv,
+                         done);
         }
     }
 }

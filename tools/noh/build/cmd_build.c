@@ -657,7 +657,7 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, textures.whole),
       .what =
-          "keep texture rows and columns that no triangle reads, and the file's texture coordinates: for textures that a game paints or that other packs supply",
+          "keep texture rows and columns that no triangle reads, cutoffs that cut nothing, and the file's texture coordinates: for textures that a game paints or that other packs supply",
       .excludes = "--only=anim" },
     { .name = "--influences",
       .kind = OPTION_NUMBER,
