@@ -10,16 +10,19 @@
 #include "light_surface.h"
 #include "noh/format.h"
 
-#define RAYS 64u /* over the whole sphere */
+#define RAYS 64u  /* over the whole sphere */
+#define HELD 0.9f /* of a vertex's weights: one joint moves it alone */
+#define NOT_HELD UINT32_MAX
 #define SHUT 0.10f
 #define OPEN 0.40f /* shares of the light: darkest at one, unchanged at the other */
 
 /* Light that skin has reflected several times is red. */
 static const float deep[3] = { 0.15f, 0.08f, 0.07f };
 
-/* The skin of a mesh. */
+/* The skin of a mesh, or what one joint moves alone of it: no pose opens its hollows. */
 typedef struct skin {
     model_mesh *mesh;
+    uint32_t held_by;  /* joint; without joints 0 */
     uint32_t *corners; /* [count][3] */
     uint32_t count;
     float *triangles; /* [count][9] in the pose */
@@ -33,6 +36,13 @@ static int is_skin(const model *m, const model_mesh *mesh, const model_submesh *
     const model_material *of = part->material == MODEL_NONE ? NULL : &m->materials[part->material];
     return of && of->surface == NOH_SURFACE_SKIN && !of->surface_given && of->alpha == MODEL_ALPHA_OPAQUE &&
            of->base_color_texture == MODEL_NONE && surface_is_white(mesh, part);
+}
+
+static uint32_t holder_of(const model_mesh *mesh, uint32_t v)
+{
+    const size_t first = (size_t)v * MODEL_INFLUENCES_MAX;
+    if (!mesh->joints) return 0;
+    return mesh->joint_weights[first] >= HELD ? mesh->joints[first] : NOT_HELD;
 }
 
 /* The place of a vertex, or its normal, in the pose of a target; NULL: at rest. */
@@ -76,7 +86,7 @@ static uint32_t light(skin *s, const light_rays *rays, const model_target *targe
 {
     uint32_t dark = 0;
     for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
-        if (s->open[v] >= OPEN) continue;
+        if (s->open[v] >= OPEN || holder_of(s->mesh, v) != s->held_by) continue;
         s->open[v] = fmaxf(s->open[v], light_at(s, rays, target, v));
         dark += s->open[v] < OPEN;
     }
@@ -97,7 +107,7 @@ static int find_dark(skin *s, const light_rays *rays, uint32_t *dark)
     return 0;
 }
 
-static int take_skin(const model *m, skin *s)
+static int room_for_skin(skin *s)
 {
     const model_mesh *mesh = s->mesh;
     s->corners = model_zeros(mesh->index_count, sizeof *s->corners);
@@ -105,16 +115,25 @@ static int take_skin(const model *m, skin *s)
     s->open = model_zeros(mesh->vertex_count, sizeof *s->open);
     if (!s->corners || !s->triangles || !s->open) return 1;
     for (uint32_t v = 0; v < mesh->vertex_count; v++) s->open[v] = 1.0f;
+    return 0;
+}
+
+static void take_skin(const model *m, skin *s)
+{
+    const model_mesh *mesh = s->mesh;
+    s->count = 0;
     for (uint32_t i = 0; i < mesh->submesh_count; i++) {
         const model_submesh *part = &mesh->submeshes[i];
         if (!is_skin(m, mesh, part)) continue;
-        for (uint32_t k = 0; k < part->index_count; k++) {
-            s->corners[3u * s->count + k] = mesh->indices[part->first_index + k];
-            s->open[mesh->indices[part->first_index + k]] = 0.0f;
+        for (uint32_t k = 0; k + 2u < part->index_count; k += 3u) {
+            const uint32_t *corner = mesh->indices + part->first_index + k;
+            uint32_t held = 0;
+            for (uint32_t c = 0; c < 3u; c++) held += holder_of(mesh, corner[c]) == s->held_by;
+            if (held < 3u) continue;
+            for (uint32_t c = 0; c < 3u; c++) s->open[corner[c]] = 0.0f;
+            memcpy(s->corners + 3u * (size_t)s->count++, corner, 3 * sizeof *corner);
         }
-        s->count += part->index_count / 3u;
     }
-    return 0;
 }
 
 static float shade_of(float open)
@@ -141,15 +160,21 @@ static int paint_mesh(model *m, model_mesh *mesh, const light_rays *rays)
 {
     skin s = { .mesh = mesh };
     uint32_t dark = 0;
-    int failed = !mesh->joints && take_skin(m, &s);
-    if (!failed) failed = (s.count && find_dark(&s, rays, &dark)) || (dark && paint(&s));
+    int failed = room_for_skin(&s);
+    for (; s.held_by < (mesh->joints ? mesh->joint_limit : 1u) && !failed; s.held_by++) {
+        uint32_t more = 0;
+        take_skin(m, &s);
+        failed = s.count && find_dark(&s, rays, &more);
+        ray_tree_free(&s.tree);
+        dark += more;
+    }
+    failed = failed || (dark && paint(&s));
     if (dark && !failed) {
         failed = model_warn(m,
                             "mesh '%s': no texture shades the hollows of its skin, such as nostrils, so their vertices "
                             "became dark (--surface MATERIAL=skin keeps them)",
                             mesh->name);
     }
-    ray_tree_free(&s.tree);
     free(s.corners);
     free(s.triangles);
     free(s.open);
