@@ -47,8 +47,8 @@ V3 lash_place(const Seed *seed, const Pose *pose)
     V3 edge = skin_place(p, pose), out = v3_unit(v3_sub(edge, eyeball(side)));
     double shut = pose->blink[side], taper = seed->s <= 0 || seed->s >= 1 ? 0 : 1;
     double length = mix(0.0018, 0.0062, smooth(0.1, 0.8, seed->s)) * smooth(0, 0.25, seed->s) *
-                    mix(1, 0.55, smooth(0.75, 1, seed->s));
-    V3 lift = v3_unit(v3(side_sign(side) * (0.2 * seed->s + 0.7 * seed->s * seed->s), mix(0.75, -0.35, shut), 0.55));
+                    mix(1, 0.15, smooth(0.5, 1, seed->s));
+    V3 lift = v3_unit(v3(side_sign(side) * (0.2 * seed->s + 0.5 * seed->s * seed->s), mix(0.75, -0.35, shut), 0.55));
     double reach = cos(seed->t) > 0 ? cos(seed->t) : 0.12 * cos(seed->t);
     V3 at = v3_add(edge, v3_scale(out, 0.0004));
     at = v3_add(at, v3_scale(lift, length * reach * reach));
