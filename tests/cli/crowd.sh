@@ -141,6 +141,10 @@ if [ -f "$assets/khronos/RobotExpressive.glb" ]; then
     noh crowd "$work/robot.noh" -o "$work/robot.png" --instances 30 --time 0.1 --size 160x90 # a skin that lists joints twice
     expect 0 'a crowd of robots'
     check 'all of its bytes were planned' awk '/planned:/ { gsub(/[,;]/, ""); if ($2 != $8 || $5 != $10) exit 1; found = 1 } END { exit !found }' "$work/out"
+    noh crowd "$work/robot.noh" -o "$work/lamp.png" --instances 30 --time 0.1 --size 160x90 --light none
+    check 'and is in a light by default' sh -c '! cmp -s "$1/robot.png" "$1/lamp.png"' - "$work"
+    noh crowd "$work/robot.noh" -o "$work/none.png" --light fog
+    expect 2 'a light that is not there'
     "$build/noh" build "$assets/khronos/RobotExpressive.glb" -o "$work/plain.noh" --quiet --tint Main=off --tint Grey=off --tint Black=off
     noh crowd "$work/plain.noh" -o "$work/plain.png" --instances 30 --time 0.1 --size 160x90
     check 'each robot has a tint of its own where a material takes one' sh -c '! cmp -s "$1/robot.png" "$1/plain.png"' - "$work"

@@ -46,6 +46,7 @@ static int check_args(crowd_args *a)
     a->options.pixels = (float)a->pixels;
     a->options.spots = 1;
     a->options.people = 1;
+    a->options.light = &a->light;
     a->options.plain = a->plain;
     a->options.width = a->size[0];
     a->options.height = a->size[1];
@@ -389,7 +390,7 @@ static const option options[] = {
       .what = "with --place FILE -o: N pictures of --size side by side, S (0.5) seconds apart, the first at --time",
       .example = "4,0.4",
       .needs = "--place" },
-    OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .needs = "--place"),
+    OPTION_LIGHT_NAME(crowd_args, light.light, "auto", .excludes = "--test"),
     { .name = "--agents",
       .kind = OPTION_NUMBER,
       .at = offsetof(crowd_args, agents),

@@ -85,6 +85,7 @@ static void fill_desc(crowd *c, const pack_file *file)
     c->desc.height_px = o->height;
     c->desc.update_budget_ns = o->budget_ns;
     c->desc.user_values = o->people ? crowd_user_values(&file->pack) : 0;
+    c->desc.light = c->light.name ? &c->light.desc : NULL;
     c->desc.gpu = &noh_stage_on_gl;
 }
 
@@ -216,6 +217,24 @@ static noh_result open_spots(crowd *c, const noh_gl_device *device, noh_error *e
     return result ? result : noh_stage_blob_create(device, &c->blob, error);
 }
 
+/* Far bodies have no shadow but their spots: a map of all the field would be coarse. */
+static int open_light(crowd *c, const pack_file *file)
+{
+    light_options light = { .light = NULL };
+    if (c->options.light) light = *c->options.light;
+    light.shadow = "off";
+    return lighting_wanted(&light, &file->pack, c->options.view == NOH_VIEW_LIT) ? lighting_open(&c->light, &light) : 0;
+}
+
+static noh_result open_backdrop(crowd *c, gpu *g, noh_error *error)
+{
+    char log[4096] = "";
+    const noh_gl_device device = { &g->gl, &g->caps, &c->behind, log, sizeof log };
+    if (!c->light.name) return NOH_OK;
+    noh_stage_set_lighting(c->stage, &c->light.told);
+    return noh_backdrop_create(&device, 0, &c->backdrop, error);
+}
+
 static noh_result open_stage(crowd *c, gpu *g, noh_error *error)
 {
     char log[4096] = "";
@@ -233,6 +252,7 @@ static noh_result open_stage(crowd *c, gpu *g, noh_error *error)
     } else {
         result = open_shader(c, log, sizeof log, error);
         if (!result) result = open_spots(c, &device, error);
+        if (!result) result = open_backdrop(c, g, error);
     }
     if (result) fputs(log, stderr);
     return result;
@@ -246,6 +266,7 @@ int crowd_open(crowd *c, gpu *g, const pack_file *file, const crowd_options *opt
     memset(c, 0, sizeof *c);
     status = fill_options(c, options);
     if (!status) status = find_skeleton(c, file);
+    if (!status) status = open_light(c, file);
     if (status) {
         return status;
     }
@@ -258,7 +279,7 @@ int crowd_open(crowd *c, gpu *g, const pack_file *file, const crowd_options *opt
         return tool_fail_error(file->path, &error);
     }
     if (c->options.view == NOH_VIEW_LIT)
-        status = drawn_hair_open(&c->hair, g, &c->ledger, 0);
+        status = drawn_hair_open(&c->hair, g, &c->ledger, c->light.name != NULL);
     else
         c->hair.is_there = 0;
     if (status) crowd_close(c);
@@ -270,6 +291,8 @@ void crowd_close(crowd *c)
     drawn_hair_close(&c->hair);
     if (c->shader) noh_stage_shader_delete(c->shader);
     noh_stage_blob_delete(&c->blob);
+    noh_backdrop_delete(&c->backdrop);
+    lighting_close(&c->light);
     if (c->stage) noh_stage_delete(c->stage);
     free(c->shader_memory);
     free(c->memory);
@@ -317,6 +340,8 @@ static void draw_spots(crowd *c)
 
 void crowd_draw(crowd *c)
 {
+    if (c->light.name)
+        noh_backdrop_draw(&c->backdrop, NOH_BACKDROP_LIGHT, noh_stage_light_of(c->stage), &c->light.told, &c->seen);
     if (c->blob.drawable.gl) draw_spots(c);
     (void)noh_stage_draw(c->stage, NOH_PASS_COLOR, 0, c->shader, NULL); /* a frame with a view was before */
     drawn_hair_update(&c->hair);

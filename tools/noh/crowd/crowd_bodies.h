@@ -16,6 +16,7 @@
 #include "file/pack_file.h"
 #include "gpu/gpu.h"
 #include "draw/drawn_hair.h"
+#include "draw/lighting.h"
 #include "noh/gl_device.h"
 #include "noh/marks.h"
 #include "noh/noh.h"
@@ -31,8 +32,9 @@ typedef struct crowd_options {
     uint32_t width, height;            /* of the view, pixels; default (0) 1280 x 720 */
     uint32_t near_count, middle_count; /* as in noh_kind_desc */
     noh_debug_view view;
-    int spots;  /* 1: soft spots under the bodies */
-    int people; /* 1: each body has a size, clothes and, in packs with skin, a complexion of its own */
+    const light_options *light; /* of view lit; "none" or default (NULL) one plain lamp */
+    int spots;                  /* 1: soft spots under the bodies */
+    int people;                 /* 1: each body has a size, clothes and, in packs with skin, a complexion of its own */
 } crowd_options;
 
 typedef struct crowd_events {
@@ -56,7 +58,10 @@ typedef struct crowd {
     noh_stage_desc desc;
     noh_stage_plan plan;
     drawn_hair hair;
-    noh_gl_ledger ledger; /* of all below */
+    noh_gl_ledger ledger; /* of all below but the backdrop */
+    lighting light;       /* of options.light; name NULL: none */
+    noh_backdrop backdrop;
+    noh_gl_ledger behind; /* of the backdrop */
     noh_stage *stage;
     noh_stage_shader *shader; /* NULL: the library's, lit */
     void *memory, *shader_memory;
