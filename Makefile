@@ -227,4 +227,4 @@ include tools/mk/install.mk
 clean:
 	rm -rf $(BUILD)
 
--include $(shell find $(BUILD) -path $(BUILD)/phones -prune -o -name '*.d' -print 2>/dev/null)
+-include $(shell find $(BUILD) -path $(BUILD)/phones -prune -o -path $(BUILD)/bare -prune -o -name '*.d' -print 2>/dev/null)
