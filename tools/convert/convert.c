@@ -132,6 +132,19 @@ static int encode_mesh(const model *m, uint32_t index, const convert_options *op
     return 0;
 }
 
+static void warn_hurried(FILE *warnings, const model *m, const mesh_levels *levels)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        const lod *l = levels[i].built;
+        if (l && l->measured < l->collapse_count) {
+            fprintf(warnings,
+                    "warning: LOD levels of mesh '%s' take too long to measure: %u of %u collapses were chosen as by "
+                    "--lod-fast, with larger errors; fewer targets, or fewer triangles, are measured to the end\n",
+                    m->meshes[i].name, l->collapse_count - l->measured, l->collapse_count);
+        }
+    }
+}
+
 static int encode_meshes(const source *s, model *m, const convert_options *options, encoded *e, model_error *error)
 {
     lod_settings levels = options->lod;
@@ -139,6 +152,7 @@ static int encode_meshes(const source *s, model *m, const convert_options *optio
     if (options->choose_levels) choices_levels(m, s->sets, s->set_count, &levels, options->report);
     levels.progress = options->progress;
     failed = model_levels_make(m, &levels, e->levels, error);
+    if (!failed && convert_warnings(options)) warn_hurried(convert_warnings(options), m, e->levels);
     for (uint32_t i = 0; i < m->mesh_count && !failed; i++) {
         failed = encode_mesh(m, i, options, e, error);
     }

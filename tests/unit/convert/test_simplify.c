@@ -638,6 +638,26 @@ static void size_does_not_matter(void **state)
     }
 }
 
+/* What is measured before the limit is chosen as without one; the rest still reaches the level. */
+static void work_has_a_limit(void **state)
+{
+    (void)state;
+    sheet s = sheet_new(24, 1, 1);
+    const float ratio = 0.1f;
+    lod_options o = { .level_count = 1, .ratios = &ratio };
+    wrinkle(&s, 5);
+    lod *whole = build(&s.mesh, &o);
+    o.work_max = 250000;
+    lod *part = build(&s.mesh, &o);
+    assert_int_equal(whole->measured, whole->collapse_count);
+    assert_in_range(part->measured, 1, part->collapse_count - 1u);
+    assert_memory_equal(part->collapses, whole->collapses, part->measured * sizeof *part->collapses);
+    assert_true(part->levels[0].index_count <= s.mesh.index_count / 10u + 6u);
+    lod_free(whole);
+    lod_free(part);
+    sheet_free(&s);
+}
+
 static void refuse(const model_mesh *mesh, const lod_options *o, const char *word)
 {
     model_error error = { "", "" };
@@ -772,6 +792,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(one_triangle_stays),
         cmocka_unit_test(closed_body_stays_closed),
         cmocka_unit_test(size_does_not_matter),
+        cmocka_unit_test(work_has_a_limit),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(distances_are_known_ones),
         cmocka_unit_test(frames_bend_a_tube),

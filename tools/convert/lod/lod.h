@@ -55,6 +55,7 @@ typedef struct lod_options {
     void (*progress)(void *user, uint32_t done,
                      uint32_t total); /* called now and then with the triangles removed; NULL: none */
     void *user;
+    uint64_t work_max; /* distances that LOD_QUALITY measures before it continues as LOD_FAST; 0: any number */
 } lod_options;
 
 /* One vertex is removed; its triangles use another one. The vertices of one point (several at a seam) stand next to
@@ -83,7 +84,8 @@ typedef struct lod {
     uint32_t *gone; /* [triangles of the mesh] after how many collapses of the list each is gone; LOD_STAYS: none */
     uint32_t stuck; /* points that no collapse was ever allowed for, of `points` */
     uint32_t points;
-    uint32_t least; /* triangles that hair cards keep in any case */
+    uint32_t least;    /* triangles that hair cards keep in any case */
+    uint32_t measured; /* collapses before work_max was reached; of collapse_count */
     lod_level levels[LOD_LEVELS_MAX];
 } lod;
 

@@ -135,6 +135,16 @@ static int measure_contact(builder *b, uint32_t point, double *best)
     return 0;
 }
 
+/* The work depends on the shapes of targets, and is known only while it is done: beyond the limit, nothing more is
+ * measured. */
+static void limit_work(builder *b)
+{
+    if (b->track && b->options.work_max && lod_track_work(b->track) > b->options.work_max) {
+        lod_track_free(b->track);
+        b->track = NULL;
+    }
+}
+
 /* Find a point's best collapse and queue it. Returns 1 when out of memory. */
 static int queue_point(builder *b, uint32_t point)
 {
@@ -143,6 +153,7 @@ static int queue_point(builder *b, uint32_t point)
     double best = HUGE_VAL;
     uint32_t count;
     float length = 0.0f;
+    limit_work(b);
     if (b->state[point] == QUEUED) {
         lod_queue_drop(&b->queue, point);
     }
@@ -193,6 +204,7 @@ static int record(builder *b, const lod_move *m)
     for (uint32_t i = 0; i < m->gone_count; i++) {
         l->gone[m->gone[i] / 3u] = l->collapse_count;
     }
+    l->measured = b->track || b->options.mode == LOD_FAST ? l->collapse_count : l->measured;
     b->steps++;
     b->live -= m->gone_count;
     if (b->options.progress && b->steps % PROGRESS_STEP == 0) {

@@ -246,6 +246,8 @@ lod_track *lod_track_make(lod_surface *s);
 void lod_track_free(lod_track *t);
 /* Open one fan: find its attached samples, and the poses in which it moves. Returns 1 when out of memory. */
 int lod_track_open(lod_track *t, const lod_fan *fan);
+/* How many distances were measured so far. */
+uint64_t lod_track_work(const lod_track *t);
 /* The mesh's triangles whose centroids are attached to the open fan. */
 const uint32_t *lod_track_triangles(const lod_track *t, uint32_t *count);
 /* The cost of a move: the largest weighted squared distance, over the fan's poses, between the samples and the surface

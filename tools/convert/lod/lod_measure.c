@@ -118,18 +118,20 @@ static void match_points(const float *triangles, const uint32_t *nearest, const 
 }
 
 /* Squared distances of points to the places noted. */
-static void match_distances(const float *triangles, const lod_match *match, const float *const at[3], uint32_t count,
-                            float *squared)
+static void match_distances(lod_track *t, const float *triangles, const lod_match *match, const float *const at[3],
+                            uint32_t count, float *squared)
 {
+    t->work += count;
     for (uint32_t i = 0; i < count; i++) {
         squared[i] = lod_distance_from(triangles + (size_t)match[i].triangle * 9u, match[i].weight, at[0][i], at[1][i],
                                        at[2][i]);
     }
 }
 
-static void all_distances(const float *triangles, uint32_t triangle_count, const float *const at[3], uint32_t padded,
-                          float *squared, uint32_t *nearest)
+static void all_distances(lod_track *t, const float *triangles, uint32_t triangle_count, const float *const at[3],
+                          uint32_t padded, float *squared, uint32_t *nearest)
 {
+    t->work += (uint64_t)triangle_count * padded;
     lod_track_fill(squared, padded);
     for (uint32_t i = 0; i < triangle_count; i++) {
         const float *triangle = triangles + (size_t)i * 9u;
@@ -149,14 +151,14 @@ static double pose_cost(lod_track *t, posed_move *p, double bound, int note)
     const float *const back[3] = { p->at[0], p->at[1], p->at[2] };
     uint32_t nearest[LOD_REVERSE_MAX] = { 0 };
     float squared[LOD_REVERSE_MAX], worst, reverse;
-    all_distances(p->triangles, p->count, from, t->padded, t->squared, note ? t->owner : NULL);
+    all_distances(t, p->triangles, p->count, from, t->padded, t->squared, note ? t->owner : NULL);
     worst = largest_of_samples(t, p->pose);
     worst = p->turned > worst ? p->turned : worst;
     if (worst >= bound) {
         return worst;
     }
     sample_triangles(p);
-    all_distances(p->view->triangles, t->triangle_count, back, p->padded, squared, note ? nearest : NULL);
+    all_distances(t, p->view->triangles, t->triangle_count, back, p->padded, squared, note ? nearest : NULL);
     reverse = t->triangle_count ? largest(squared, p->samples) : 0.0f;
     if (note) {
         match_points(p->triangles, t->owner, from, t->count, t->match);
@@ -175,7 +177,7 @@ static int is_within(lod_track *t, posed_move *p, double limit)
     if (p->turned > limit) {
         return 0;
     }
-    match_distances(p->triangles, t->match, from, t->count, t->squared);
+    match_distances(t, p->triangles, t->match, from, t->count, t->squared);
     if (largest_of_samples(t, p->pose) > limit) {
         return 0;
     }
@@ -183,7 +185,7 @@ static int is_within(lod_track *t, posed_move *p, double limit)
         return 1;
     }
     sample_triangles(p);
-    match_distances(p->view->triangles, t->back, back, p->samples, squared);
+    match_distances(t, p->view->triangles, t->back, back, p->samples, squared);
     return largest(squared, p->samples) <= limit;
 }
 
@@ -240,6 +242,6 @@ double lod_track_least(lod_track *t, const lod_move *m)
     for (uint32_t i = 0; i < m->kept_count; i++) {
         lod_move_triangle(t->surface, m->kept[i], m->to, 0, triangles + i * 9u);
     }
-    all_distances(triangles, m->kept_count, from, t->padded, t->squared, NULL);
+    all_distances(t, triangles, m->kept_count, from, t->padded, t->squared, NULL);
     return counted(t->surface, 0, largest(t->squared, t->count));
 }

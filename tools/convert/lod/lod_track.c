@@ -165,6 +165,11 @@ int lod_track_open(lod_track *t, const lod_fan *fan)
     return 0;
 }
 
+uint64_t lod_track_work(const lod_track *t)
+{
+    return t->work;
+}
+
 const uint32_t *lod_track_triangles(const lod_track *t, uint32_t *count)
 {
     *count = t->triangle_count;
@@ -232,6 +237,7 @@ static void offer_owner(lod_track *t, const lod_move *m, uint32_t which)
         float triangle[9];
         lod_move_triangle(t->surface, m->kept[which], m->to, t->pose[i], triangle);
         lod_track_fill(t->squared, t->padded);
+        t->work += t->padded;
         lod_distance_triangle(triangle, v->samples, v->samples + t->capacity, v->samples + 2u * t->capacity, t->padded,
                               t->squared);
         for (uint32_t k = 0; k < t->count; k++) {

@@ -39,6 +39,7 @@ struct lod_track {
     uint64_t *set;                    /* [words] poses in which the fan or its samples move */
     uint32_t *pose;                   /* [pose_count] those poses as a list; the one that decided last comes first */
     uint32_t pose_count, stamp;
+    uint64_t work;        /* distances measured so far */
     lod_pose_view *views; /* [poses.count] */
     float *block;         /* of all views */
 };
