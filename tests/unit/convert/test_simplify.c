@@ -669,6 +669,33 @@ static void refuse(const model_mesh *mesh, const lod_options *o, const char *wor
     }
 }
 
+static void memory_has_a_limit(void **state)
+{
+    (void)state;
+    enum { VERTICES = 1000000, TARGETS = 20 };
+    float *position = test_zeros(3u * VERTICES * sizeof *position);
+    uint32_t indices[3] = { 0, 1, 2 };
+    model_submesh part = { .index_count = 3 };
+    model_target targets[TARGETS] = { { .position = position } };
+    const lod_options o = { 0 };
+    const model_mesh mesh = { .vertex_count = VERTICES,
+                              .position = position,
+                              .index_count = 3,
+                              .indices = indices,
+                              .submesh_count = 1,
+                              .submeshes = &part,
+                              .target_count = TARGETS,
+                              .targets = targets };
+    for (uint32_t t = 0; t < TARGETS; t++) {
+        targets[t] = targets[0];
+    }
+    for (uint32_t i = 0; i < 3u * VERTICES; i++) {
+        position[i] = 1.0f;
+    }
+    refuse(&mesh, &o, "would take 4.5 GB of memory");
+    free(position);
+}
+
 static void bad_input_is_refused(void **state)
 {
     (void)state;
@@ -793,6 +820,7 @@ int main(int argument_count, char **arguments)
         cmocka_unit_test(closed_body_stays_closed),
         cmocka_unit_test(size_does_not_matter),
         cmocka_unit_test(work_has_a_limit),
+        cmocka_unit_test(memory_has_a_limit),
         cmocka_unit_test(bad_input_is_refused),
         cmocka_unit_test(distances_are_known_ones),
         cmocka_unit_test(frames_bend_a_tube),
