@@ -9,8 +9,7 @@ uniform vec4 noh_surface_values; /* noh_material.surface_values */
 uniform vec3 noh_surface_more[2]; /* upper lid, lower lid */
 
 in vec3 noh_v_gaze; /* gaze direction, as long as the radius of the iris; world */
-in vec3 noh_v_up;   /* about perpendicular to it, upwards; world */
-in vec3 noh_v_out;  /* perpendicular to both, away from the nose; world */
+in vec4 noh_v_up;   /* about perpendicular to it, upwards; world. w: 1 or -1 by the side of the nose */
 
 /* Radius of the cornea / radius of the iris: 7.8 mm / 6 mm. */
 const float noh_cornea_radius = 1.3;
@@ -73,8 +72,9 @@ vec2 noh_eye_uv(vec3 position, vec3 normal, vec2 uv)
  * away from the nose, in radii of the ball. */
 vec3 noh_from_lids(noh_surface s)
 {
-    float a = dot(s.geometric, noh_v_out) * inversesqrt(max(dot(noh_v_out, noh_v_out), 1e-20)); /* zero if x = 0 */
-    float height = dot(s.geometric, normalize(noh_v_up));
+    vec3 out_of = cross(noh_v_up.xyz, noh_v_gaze); /* away from the nose, or towards it */
+    float a = noh_v_up.w * dot(s.geometric, out_of) * inversesqrt(max(dot(out_of, out_of), 1e-20));
+    float height = dot(s.geometric, normalize(noh_v_up.xyz));
     vec3 powers = vec3(1.0, a, a * a);
     return vec3(dot(noh_surface_more[0], powers) - height, height - dot(noh_surface_more[1], powers), a);
 }
@@ -89,7 +89,7 @@ float noh_lids(vec3 from)
 vec3 noh_wet_line(vec3 from, vec3 cornea)
 {
     float rise = (1.0 - smoothstep(0.0, 0.06, from.y)) * (1.0 - smoothstep(0.25, 0.5, abs(from.z)));
-    return normalize(cornea + normalize(noh_v_up) * rise);
+    return normalize(cornea + normalize(noh_v_up.xyz) * rise);
 }
 
 /* The iris is a bowl behind a lens: it is bright on the side away from the light. Returns the normal for matte

@@ -8,8 +8,7 @@ uniform vec3 noh_surface_more[2];
 
 #ifdef NOH_EYE
 out vec3 noh_v_gaze;
-out vec3 noh_v_up;
-out vec3 noh_v_out;
+out vec4 noh_v_up;
 
 /* The eye's gaze and up direction before skinning, in the mesh's own space, where y is up, or z if eyes look along y.
  * They turn with the normal by targets. before, after: the normal before and after targets */
@@ -23,13 +22,12 @@ void noh_gaze_vertex(vec3 before, vec3 after, out vec3 gaze, out vec4 up)
     up = vec4(upwards + cross(turn, upwards), 1.0);
 }
 
-/* Both and the direction away from the nose, in the world. x, y, z: rows of the world matrix */
+/* Both in the world, and on which side of the nose the eye is. x, y, z: rows of the world matrix */
 void noh_face_vertex(vec3 rest, vec3 gaze, vec3 up, vec4 x, vec4 y, vec4 z)
 {
     float radius = length(noh_surface_values.xyz) * length(vec3(x.x, y.x, z.x));
     noh_v_gaze = max(radius, 1e-6) * normalize(vec3(dot(x.xyz, gaze), dot(y.xyz, gaze), dot(z.xyz, gaze)));
-    noh_v_up = vec3(dot(x.xyz, up), dot(y.xyz, up), dot(z.xyz, up));
-    noh_v_out = cross(noh_v_up, noh_v_gaze) * (rest.x < 0.0 ? -1.0 : 1.0);
+    noh_v_up = vec4(dot(x.xyz, up), dot(y.xyz, up), dot(z.xyz, up), rest.x < 0.0 ? -1.0 : 1.0);
 }
 #endif
 

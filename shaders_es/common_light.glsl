@@ -379,7 +379,7 @@ vec3 noh_light(noh_surface s)
     vec3 lamp = noh_key;
     float square = 1.0;
 #ifdef NOH_EYE
-    lamp -= 0.35 * normalize(noh_v_up); /* low enough to be visible below the lid */
+    lamp -= 0.35 * normalize(noh_v_up.xyz); /* low enough to be visible below the lid */
     square = dot(lamp, lamp);
 #endif
     float across = dot(mirror, s.view), nv = max(noh_seen(s, across), 1e-3), lv = dot(lamp, s.view);
