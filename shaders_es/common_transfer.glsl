@@ -18,7 +18,6 @@ out vec4 noh_v_transfer; /* ambient light that a white matte surface reflects; o
 
 struct noh_lobe {
     float occlusion;
-    vec3 axis; /* unit, model space */
     float shape[NOH_TRANSFER];
 };
 
@@ -50,9 +49,8 @@ vec3 noh_lobe_turn(vec3 axis, vec3 from, vec3 to)
     return normalize(axis * cosine + cross(across, axis) + across * (dot(across, axis) / (1.0 + cosine)));
 }
 
-/* The vertex's lobe from the two halves of its record. from, to: its normal in the bind pose and now, unit, model
- * space */
-noh_lobe noh_lobe_of(ivec4 first, ivec4 more, vec3 from, vec3 to)
+/* The vertex's lobe from the two halves of its record. */
+noh_lobe noh_lobe_of(ivec4 first, ivec4 more)
 {
     noh_lobe lobe;
     vec3 low = vec3(first.yzw) / 127.0;
@@ -65,12 +63,18 @@ noh_lobe noh_lobe_of(ivec4 first, ivec4 more, vec3 from, vec3 to)
     lobe.shape[4] = float(more.x) / 127.0;
     lobe.shape[5] = float(more.y) / 127.0;
 #endif
-#ifdef NOH_TRANSFER_ON_NORMAL
-    lobe.axis = to;
-#else
-    lobe.axis = noh_lobe_turn(noh_unfold(vec2(more.zw) / 127.0), from, to);
-#endif
     return lobe;
+}
+
+/* The axis of the vertex's lobe, unit, model space. more: the second half of its record; from, to: the normal in the
+ * bind pose and now, unit, model space */
+vec3 noh_lobe_axis(ivec4 more, vec3 from, vec3 to)
+{
+#ifdef NOH_TRANSFER_ON_NORMAL
+    return to;
+#else
+    return noh_lobe_turn(noh_unfold(vec2(more.zw) / 127.0), from, to);
+#endif
 }
 
 /* Adds the terms of one m. first: the product of the odd numbers below 2 m */

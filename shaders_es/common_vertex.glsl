@@ -234,9 +234,9 @@ ivec4 noh_kept_bytes(int word)
 #endif
 
 /* In an order that needs few registers: eight joints in turn are blended first, since their loop needs as many as all
- * else, and its result few. The blend is used up before the rows of the world are fetched, these before transfer, and
- * what needs neither comes last. Otherwise a V3D or a Mali spills, and the vertices of a crowd cost up to five times as
- * much (tools/phones). */
+ * else, and its result few. The blend is used up, and the transfer's axis turned, before the rows of the world are
+ * fetched, these are used up before the rest of the transfer, and what needs neither comes last. Otherwise a V3D or a
+ * Mali spills, and the vertices of a crowd cost up to five times as much (tools/phones). */
 noh_vertex noh_fetch()
 {
     noh_vertex v = noh_vertex(vec3(0.0), vec3(0.0), vec4(0.0), vec2(0.0), vec4(1.0), vec4(1.0), noh_a_position);
@@ -284,12 +284,12 @@ noh_vertex noh_fetch()
     noh_skin_by(blend, nowhere, gaze, up);
 #endif
     noh_skin_by(blend, v.model, v.normal, v.tangent);
+#if NOH_TRANSFER > 0
+    vec3 axis = noh_lobe_axis(noh_kept_bytes(more), noh_direction_of_pair(noh_a_rest_normal), normalize(v.normal));
+#endif
     vec4 x = noh_world_row(0), y = noh_world_row(1), z = noh_world_row(2), p = vec4(v.model, 1.0);
 #if NOH_TRANSFER > 0
-    vec3 rest = noh_direction_of_pair(noh_a_rest_normal);
-    noh_lobe lobe = noh_lobe_of(noh_kept_bytes(first), noh_kept_bytes(more), rest, normalize(v.normal));
-    vec3 axis = normalize(noh_world_normal(x, y, z, lobe.axis));
-    lobe.occlusion = clamp(lobe.occlusion + noh_morph_occlusion, 0.0, 1.0);
+    axis = normalize(noh_world_normal(x, y, z, axis));
 #endif
     v.position = vec3(dot(x, p), dot(y, p), dot(z, p));
 #ifndef NOH_DEPTH_ONLY
@@ -301,6 +301,8 @@ noh_vertex noh_fetch()
 #endif
 #endif
 #if NOH_TRANSFER > 0
+    noh_lobe lobe = noh_lobe_of(noh_kept_bytes(first), noh_kept_bytes(more));
+    lobe.occlusion = clamp(lobe.occlusion + noh_morph_occlusion, 0.0, 1.0);
     noh_v_transfer = noh_lobe_shade(lobe, axis);
 #endif
 #if !defined(NOH_DEPTH_ONLY) || defined(NOH_ALPHA_CUT)
