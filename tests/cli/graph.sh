@@ -48,7 +48,7 @@ check 'but warned of' grep -q "ending.graph:5: .from walk to bow when ending. is
 printf 'graph a\nclip walk sped=2\n' >"$work/bad.graph"
 refused 2 "'clip' has no option 'sped', or has it twice; did you mean 'speed'?"
 printf 'graph a\nclip walk loop=once sync=feet\n' >"$work/bad.graph"
-noh build "$puppet" -o "$work/bad.noh" --plain --only anim --graph "$work/bad.graph" --quiet
+noh build "$puppet" -o "$work/bad.noh" --plain --only anim --effort 1 --graph "$work/bad.graph" --quiet
 expect 1 'what the runtime would refuse is refused when it is built'
 says "graph 'a', node 'walk'"
 noh build "$puppet" -o "$work/bad.noh" --plain --only anim --graph "$work/none.graph" --quiet

@@ -15,20 +15,18 @@ verify() { # NAME PACK ENVIRONMENT...
 }
 options=
 
-"$build/noh" verify "$build/mask.noh" >"$work/out" 2>"$work/err"
-if [ $? != 0 ] && grep -q 'no GL context' "$work/err"; then
+# ---- models ----
+
+verify 'the mask' "$build/mask.noh" >"$work/said"
+if [ $code != 0 ] && grep -q 'no GL context' "$work/err"; then
+    tests=0 failures=0
     skip 'verify' 'no GL context here'
     finish
 fi
-
-# ---- models ----
-
-verify 'the mask' "$build/mask.noh"
-for seed in 2 3; do
-    options="--seed $seed"
-    verify "the mask, seed $seed" "$build/mask.noh"
-done
-options=
+cat "$work/said"
+cp "$work/out" "$work/all"
+options='--seed 2'
+verify 'the mask, seed 2' "$build/mask.noh"
 
 options=--without-tangents
 verify 'the mask without tangents' "$build/mask.noh"
@@ -82,10 +80,9 @@ missing() { # the last run's JSON tells of a path that is not here, for this rea
     check "and tells that $1 is missing" sh -c 'grep -A1 "\"available\": false" "$1" | grep -F -q "$2"' - "$work/out" "$1"
 }
 full() { # all ten are here
-    check 'and all paths are here' sh -c 'test "$(grep -c "\"available\": true" "$1")" -ge 10' - "$work/out"
+    check 'and all paths are here' sh -c 'test "$(grep -c "\"available\": true" "$1")" -ge 10' - "$work/all"
 }
-noh verify "$build/mask.noh" --json
-if grep -q '"driver": "llvmpipe' "$work/out"; then
+if grep -q '"driver": "llvmpipe' "$work/all"; then
     full
     verify 'ES 3.0' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.0
     verify 'ES 3.1' "$build/mask.noh" MESA_GLES_VERSION_OVERRIDE=3.1
