@@ -240,6 +240,14 @@ void model_maps(model_material *m, uint32_t *maps[MODEL_MAPS])
     memcpy(maps, all, sizeof all);
 }
 
+int model_moves_uv(const model_mesh *mesh)
+{
+    for (uint32_t i = 0; i < mesh->target_count; i++) {
+        if (mesh->targets[i].uv) return 1;
+    }
+    return 0;
+}
+
 int model_replaces_texture(const model_texture *t, const model_texture *of)
 {
     const size_t size = of->name ? strlen(of->name) : 0;

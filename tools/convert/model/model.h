@@ -270,6 +270,8 @@ int model_has_target(const model *m, const char *name); /* 1: any mesh has it */
 /* All indices into textures that a material has. */
 #define MODEL_MAPS 10u
 void model_maps(model_material *m, uint32_t *maps[MODEL_MAPS]);
+/* Whether a target moves texture coordinates, so that triangles read more than they do at rest. */
+int model_moves_uv(const model_mesh *mesh);
 /* Whether a texture's name is the name of another with a suffix: a game may show it in the other's place
  * (noh_texture_set). */
 int model_replaces_texture(const model_texture *t, const model_texture *of);

@@ -7,6 +7,7 @@
 #include "convert/model/islands.h"
 #include "convert/model/model_build.h"
 #include "convert/model/surface_kind.h"
+#include "convert/model/teeth_lines.h"
 #include "noh/format.h"
 
 #define CROWN 0.16f  /* the height of a crown, in widths of the jaw */
@@ -153,10 +154,10 @@ static void paint(const jaws *j, const uint32_t *island, const float *middle)
     }
 }
 
-static int paint_part(model_mesh *mesh, const uint8_t *used, const float *factor, const uint32_t *island, float *room,
-                      float *middle)
+static int paint_part(model *m, model_mesh *mesh, const model_submesh *part, const uint8_t *used,
+                      const uint32_t *island, float *room, float *middle)
 {
-    jaws j = { .mesh = mesh, .factor = factor, .used = used };
+    jaws j = { .mesh = mesh, .factor = m->materials[part->material].base_color, .used = used };
     if (!is_plain(&j)) return 0;
     find_middles(&j, island, room, middle);
     if (!find_jaws(&j, island, middle)) return 0;
@@ -166,7 +167,8 @@ static int paint_part(model_mesh *mesh, const uint8_t *used, const float *factor
     }
     if (!mesh->color) return 1;
     paint(&j, island, middle);
-    return 0;
+    const teeth_rows rows = { mesh, part, used, island, middle, j.middle, j.width, { j.edge[0], j.edge[1] } };
+    return teeth_lines_paint(m, &rows);
 }
 
 /* Whether no vertex of the material has a colour of flesh. */
@@ -229,7 +231,7 @@ int teeth_paint(model *m)
                 if (!failed) islands_find(mesh, island, room);
             }
             used = failed ? NULL : islands_part(mesh, part);
-            failed = !used || paint_part(mesh, used, by->base_color, island, lowest, middle);
+            failed = !used || paint_part(m, mesh, part, used, island, lowest, middle);
             free(used);
         }
         free(lowest);

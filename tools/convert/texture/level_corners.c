@@ -14,11 +14,3 @@ level_corners level_corners_of(const model_mesh *mesh, const mesh_levels *of, ui
     return (level_corners){ mesh->indices + mesh->submeshes[submesh].first_index,
                             mesh->submeshes[submesh].index_count };
 }
-
-int level_moves_uv(const model_mesh *mesh)
-{
-    for (uint32_t i = 0; i < mesh->target_count; i++) {
-        if (mesh->targets[i].uv) return 1;
-    }
-    return 0;
-}

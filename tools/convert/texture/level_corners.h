@@ -15,7 +15,4 @@ typedef struct level_corners {
 uint32_t level_count_of(const mesh_levels *of);
 level_corners level_corners_of(const model_mesh *mesh, const mesh_levels *of, uint32_t level, uint32_t submesh);
 
-/* Whether a target moves texture coordinates, so that triangles read more than they do at rest. */
-int level_moves_uv(const model_mesh *mesh);
-
 #endif

@@ -94,7 +94,7 @@ static int is_solid(const model *m, const mesh_levels *levels, uint32_t material
             if (mesh->submeshes[k].material != material) continue;
             parts++;
             if (!all) continue;
-            if (!mesh->uv || level_moves_uv(mesh)) return 0;
+            if (!mesh->uv || model_moves_uv(mesh)) return 0;
             for (uint32_t level = 0; level < level_count_of(of); level++) {
                 if (is_cut(mesh->uv, level_corners_of(mesh, of, level, k), s)) return 0;
             }

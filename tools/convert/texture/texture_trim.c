@@ -194,7 +194,7 @@ static void use_triangle(trim_group *g, const float *uv, const uint32_t *corner)
 static void use_mesh(trim *t, uint32_t mesh)
 {
     const model_mesh *of = &t->m->meshes[mesh];
-    const int is_still = of->uv && !level_moves_uv(of);
+    const int is_still = of->uv && !model_moves_uv(of);
     for (uint32_t s = 0; s < of->submesh_count; s++) {
         const uint32_t material = of->submeshes[s].material;
         if (material == MODEL_NONE) continue;

@@ -478,7 +478,7 @@ static const option options[] = {
       .kind = OPTION_FLAG,
       .at = offsetof(build_args, plain),
       .what =
-          "choose none of the following for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins. Blank eyes, grey faces and lashes stay as they are with --plain; teeth of one colour get gums all the same" },
+          "choose none of the following for a face. Otherwise a model whose targets blink and open the mouth gets --wrinkles face, LOD levels by --lod-fast if they do not double the work, and, if IN is one file, --lips and (without a skeleton) --eyes. An option that is given wins. Blank eyes, grey faces and lashes stay as they are with --plain; teeth of one colour get gums, and bands of teeth lines, all the same" },
     { .name = "--quiet", .kind = OPTION_FLAG, .at = offsetof(build_args, quiet), .what = "no report" },
     { .name = "--warnings",
       .kind = OPTION_FLAG,
