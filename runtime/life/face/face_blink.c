@@ -14,6 +14,8 @@
 #define DOUBLE_GAP_TICKS 1920u /* 0.04 s between the two blinks of a double blink */
 #define DOUBLES 0.02f          /* share of blinks that are followed by another */
 #define STRATA 32u
+#define APART_S 0.7f  /* from a blink of another owner to one by a look or by speech, at least */
+#define HIDES 0.9f    /* lids shut so far by another owner show no blink, so one in progress ends */
 #define SEEN_S 5.0f   /* from a blink of another owner to a spontaneous one, at least */
 #define DEBT_MAX 4.0f /* mean intervals by which blinks in advance may delay the next one */
 
@@ -120,10 +122,11 @@ float noh_face_blink_at(const noh_face *face)
     return 0.0f;
 }
 
-/* Whether a blink is in progress; it is not started again. */
+/* Whether a blink is in progress, or another owner's has just been; it is not started again. */
 static int is_blinking(const noh_face *face)
 {
-    return face->blinking && noh_face_seconds((uint32_t)face->clock - face->blink_start) < INTERVAL_MIN_S;
+    const float since = noh_face_seconds((uint32_t)face->clock - face->blink_start);
+    return (face->blinking || face->blink_start) && since < (face->blinking ? INTERVAL_MIN_S : APART_S);
 }
 
 void noh_face_blink_pull(noh_face *face)
@@ -145,8 +148,11 @@ void noh_face_blink_schedule(noh_face *face)
     face->next_blink = (uint32_t)face->clock + interval(face, face->blinks++);
 }
 
-void noh_face_blink_seen(noh_face *face)
+void noh_face_blink_seen(noh_face *face, float shut)
 {
     const uint32_t now = (uint32_t)face->clock, least = noh_face_ticks(SEEN_S);
     if (face->next_blink - now < least) face->next_blink = now + least;
+    if (face->blinking && is_blinking(face) && shut < HIDES) return;
+    face->blinking = 0;
+    face->blink_start = now;
 }

@@ -101,7 +101,8 @@ float noh_face_blink_at(const noh_face *face); /* 0 open .. 1 shut */
 void noh_face_blink_begin(noh_face *face);     /* begin the blink that is due */
 void noh_face_blink_pull(noh_face *face);      /* begin the next blink now */
 void noh_face_blink_schedule(noh_face *face);
-void noh_face_blink_seen(noh_face *face);     /* another owner shuts the lids: no spontaneous blink for a while */
+/* Another owner shuts the lids, 0 to 1: no blink for a while. */
+void noh_face_blink_seen(noh_face *face, float shut);
 float noh_face_blink_mean(uint32_t activity); /* mean seconds between two blinks */
 
 /* ---- the mode of four channels ---- */

@@ -256,7 +256,7 @@ static void share_lids(const noh_stage_face_kind *k, noh_stage_face *f, const no
     }
     channels[NOH_CHANNEL_BLINK_LEFT] *= 1.0f - shut;
     channels[NOH_CHANNEL_BLINK_RIGHT] *= 1.0f - shut;
-    if (shut > LIDS_SHUT) noh_face_blink_seen(&f->face);
+    if (shut > LIDS_SHUT) noh_face_blink_seen(&f->face, shut);
 }
 
 /* Expressions that clips or the game show, over blinks, looks and speech. */

@@ -170,6 +170,41 @@ static void lids_have_one_owner(void **state)
     assert_true(own[0] >= 4 && own[1] <= own[0] / 3u);
 }
 
+/* 60 faces that look from side to side, with blinks: half a second after a blink of a clip a face does not blink. */
+static void blinks_of_two_owners_are_apart(void **state)
+{
+    noh_kind_face face = { .flags = 0 };
+    uint32_t twice = 0, by_face = 0, by_clip = 0;
+    cast c;
+    (void)state;
+    open_heads(&c, &face, 1);
+    const uint32_t clips = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "blink");
+    const uint32_t faces = noh_stage_find(c.stage, 0, NOH_NAME_FLOAT, "eyeBlinkLeft");
+    for (uint32_t head = 0; head < 60; head++) {
+        const noh_actor actor = enter(&c, 0, NULL);
+        uint32_t since = 1000, shut = 0;
+        run(&c, 7 * head);
+        assert_int_equal(noh_actor_play(c.stage, actor, 1, "blink", NULL, &said), NOH_OK);
+        for (uint32_t f = 1; f <= 240; f++) {
+            const float aside[3] = { f / 20u % 2u ? 1.0f : -1.0f, 0.0f, 1.0f };
+            if (f % 20u == 0) assert_int_equal(noh_actor_look_at(c.stage, actor, aside, &said), NOH_OK);
+            run(&c, 1);
+            const float *floats = noh_actor_floats(c.stage, actor);
+            const float lid = floats[clips] + floats[faces];
+            const uint32_t shuts = !shut && lid > 0.5f && floats[faces] > floats[clips];
+            shut = lid > (shut ? 0.3f : 0.5f);
+            by_face += shuts;
+            twice += shuts && since < 30;
+            by_clip += floats[clips] > 0.8f && since > 30;
+            since = floats[clips] > 0.8f ? 0 : since + 1;
+        }
+        assert_int_equal(noh_stage_despawn(c.stage, actor, NULL), NOH_OK);
+    }
+    print_message("%u blinks of clips, %u of faces, %u too soon\n", by_clip, by_face, twice);
+    assert_true(by_clip == 60 && by_face >= 60 && twice == 0);
+    close_heads(&c);
+}
+
 /* A clip's floats raise the brows, nod the head and shut the lids: here one that smiles stands for one that speaks. */
 static void a_clip_that_speaks_moves_the_face(void **state)
 {
@@ -433,6 +468,7 @@ int main(int argc, char **argv)
         cmocka_unit_test(a_head_moves_in_every_frame),
         cmocka_unit_test(a_blink_is_posed_in_every_frame),
         cmocka_unit_test(lids_have_one_owner),
+        cmocka_unit_test(blinks_of_two_owners_are_apart),
         cmocka_unit_test(a_clip_that_speaks_moves_the_face),
         cmocka_unit_test(live_speech_moves_the_face),
         cmocka_unit_test(a_head_turns_to_what_it_looks_at),
