@@ -160,7 +160,6 @@ static void joints_have_other_names(void **state)
         { "mHead", "head" },
         { "CATRigLLegThigh", "leftUpperLeg" },
         { "CATRigRArmPalm", "rightHand" },
-        { "UpperTorso", "chest" },
         { "DEF-f_index.01.L", "leftIndexProximal" },
         { "Oberarm_L", "leftUpperArm" },
         { "UnterschenkelRechts", "rightLowerLeg" },

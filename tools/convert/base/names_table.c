@@ -93,9 +93,8 @@ const char *const names_table[] = {
     "joint *LittleProximal *小指１ *小指1 *PinkyFinger1",
     "joint *LittleIntermediate *小指２ *小指2 *PinkyFinger2",
     "joint *LittleDistal *小指３ *小指3 *PinkyFinger3",
-    /* AdvancedSkeleton (Scapula_L), Character Animation Toolkit (CATRigLArmPalm), OptiTrack, Roblox. */
+    /* AdvancedSkeleton (Scapula_L), Character Animation Toolkit (CATRigLArmPalm), OptiTrack. */
     "joint spine Ab",
-    "joint chest UpperTorso Torso",
     "joint *Shoulder *Scapula *ArmCollarbone",
     "joint *UpperArm *ArmUpperarm",
     "joint *LowerArm *ArmForearm",
