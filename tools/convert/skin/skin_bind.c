@@ -157,7 +157,7 @@ static int warn_of_sizes(model *m, uint32_t index)
     }
     for (uint32_t j = 0; j < skin->joint_count; j++) {
         const double size = joint_size(m, skin, j);
-        if (!followed[j] || size * SMALLER > largest || size * HIDDEN < largest || small++) continue;
+        if (!followed[j] || !(size > 0.0) || size * SMALLER > largest || size * HIDDEN < largest || small++) continue;
         first = j;
         first_size = size;
     }
