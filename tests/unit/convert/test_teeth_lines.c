@@ -14,7 +14,7 @@
 #define ROWS 4u
 #define HIGH 0.012f
 
-typedef enum { BANDS, BACKWARDS, DIVIDED, PLAIN_SKIN, GIVEN, SHARED, TARGETS, ISLANDS, MAPPED, KINDS } kind;
+typedef enum { BANDS, BACKWARDS, ASIDE, DIVIDED, PLAIN_SKIN, GIVEN, SHARED, TARGETS, ISLANDS, MAPPED, KINDS } kind;
 
 static void add_column(model_mesh *mesh, uint32_t first, uint32_t columns, uint32_t x, int is_apart)
 {
@@ -40,7 +40,7 @@ static model_mesh *add_jaws(model *m, kind of)
     for (uint32_t v = 0; v < 2u * strip; v++) {
         const float turn = 3.14159265f * (float)(v % columns) / (float)(columns - 1u);
         const float away = 0.001f + HIGH * (float)(v % strip / columns) / (ROWS - 1u);
-        mesh->position[3u * v] = -0.03f * cosf(turn);
+        mesh->position[3u * v] = (of == ASIDE ? 0.5f : 0.0f) - 0.03f * cosf(turn);
         mesh->position[3u * v + 1u] = 1.5f + (v / strip ? away : -away);
         mesh->position[3u * v + 2u] = (of == BACKWARDS ? -0.045f : 0.045f) * sinf(turn);
     }
@@ -89,7 +89,7 @@ static uint8_t red_at(const model *m, uint32_t column, uint32_t row)
 static void bands_get_lines(void **state)
 {
     (void)state;
-    for (kind of = BANDS; of <= BACKWARDS; of++) {
+    for (kind of = BANDS; of <= ASIDE; of++) {
         model *m = head_of(of);
         assert_int_equal(teeth_paint(m), 0);
         assert_int_equal(m->materials[0].base_color_texture, 1);

@@ -23,6 +23,7 @@ static const float widths[2][TEETH] = { { 5.5f, 6.0f, 7.0f, 7.0f, 7.0f, 11.0f, 1
 
 /* Seen from above a jaw is half an ellipse. */
 typedef struct arch {
+    float middle;            /* x: a file's figure may stand anywhere */
     float back, depth, half; /* signed where its front is at low z */
     float along[STEPS + 1];  /* millimetres from the middle to an angle */
 } arch;
@@ -87,17 +88,20 @@ static int has_maps(model_material *of)
 /* Its front is where it is narrow. */
 static int arch_of(const teeth_rows *r, arch *a)
 {
-    float low = INFINITY, high = -INFINITY, wide[2] = { 0.0f, 0.0f };
+    float low = INFINITY, high = -INFINITY, left = INFINITY, right = -INFINITY, wide[2] = { 0.0f, 0.0f };
     for (uint32_t v = 0; v < r->mesh->vertex_count; v++) {
         if (!r->used[v]) continue;
+        left = fminf(left, r->mesh->position[3 * (size_t)v]);
+        right = fmaxf(right, r->mesh->position[3 * (size_t)v]);
         low = fminf(low, r->mesh->position[3 * (size_t)v + 2]);
         high = fmaxf(high, r->mesh->position[3 * (size_t)v + 2]);
     }
+    a->middle = 0.5f * (left + right);
     for (uint32_t v = 0; v < r->mesh->vertex_count; v++) {
         if (!r->used[v]) continue;
         const float *p = r->mesh->position + 3 * (size_t)v, at = (p[2] - low) / (high - low);
-        if (at < 0.2f) wide[0] = fmaxf(wide[0], fabsf(p[0]));
-        if (at > 0.8f) wide[1] = fmaxf(wide[1], fabsf(p[0]));
+        if (at < 0.2f) wide[0] = fmaxf(wide[0], fabsf(p[0] - a->middle));
+        if (at > 0.8f) wide[1] = fmaxf(wide[1], fabsf(p[0] - a->middle));
     }
     a->half = 0.5f * r->width;
     a->back = wide[1] < wide[0] ? low : high;
@@ -113,10 +117,11 @@ static int arch_of(const teeth_rows *r, arch *a)
 /* 0 to 1 from one end of the arch to the other. */
 static float place_on(const arch *a, const float *p)
 {
-    const float t = atan2f(fabsf(p[0]) / a->half, fmaxf((p[2] - a->back) / a->depth, 0.0f)) / QUARTER * STEPS;
+    const float x = p[0] - a->middle;
+    const float t = atan2f(fabsf(x) / a->half, fmaxf((p[2] - a->back) / a->depth, 0.0f)) / QUARTER * STEPS;
     const int step = t < STEPS ? (int)t : STEPS - 1;
     const float mm = a->along[step] + (t - (float)step) * (a->along[step + 1] - a->along[step]);
-    return 0.5f + copysignf(0.5f * mm / a->along[STEPS], p[0]);
+    return 0.5f + copysignf(0.5f * mm / a->along[STEPS], x);
 }
 
 static void place_rows(const teeth_rows *r, const arch *a)
