@@ -27,6 +27,10 @@ echo 'This is not a pack, but a line of text that is long enough to hold a heade
 noh info "$work/text.noh"
 expect 1 'a text file as a pack'
 says 'not a .noh pack'
+cp "$work/text.noh" "$work/text.txt"
+noh info "$work/text.txt"
+expect 1 'a text file of another ending'
+says 'this is neither a pack nor a model'
 cp "$work/text.noh" "$work/text.glb"
 noh info "$work/text.glb"
 expect 1 'a text file as a model'
@@ -67,7 +71,15 @@ says "noh: $work/nowhere/out.noh: "
 check 'the folder was not made' test ! -e "$work/nowhere"
 noh build "$work/missing.glb" -o "$work/folder/out.noh" --quiet
 expect 1 'build of a missing file'
-says "noh: $work/missing.glb: "
+says "noh: $work/missing.glb: the file does not exist"
+check 'with its path once' sh -c 'test "$(grep -o missing.glb "$1/err" | wc -l)" = 1' - "$work"
+none_left
+for ending in glb fbx obj bvh csv; do
+    : >"$work/empty.$ending"
+    noh build "$work/empty.$ending" -o "$work/folder/out.noh" --quiet
+    expect 1 "build of an empty .$ending"
+    says 'this is an empty file'
+done
 none_left
 head -c 5000 "$build/mask.glb" >"$work/cut.glb"
 noh build "$work/cut.glb" -o "$work/folder/out.noh" --quiet

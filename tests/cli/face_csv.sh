@@ -103,7 +103,7 @@ refuses timeless 'no column is named Timecode or Time'
 printf 'Timecode,EyeBlinkLeft\n1:2:3,0\n' >"$work/short.csv"
 refuses short 'no row has a time and a weight for each shape'
 : >"$work/empty.csv"
-refuses empty 'no column is named as a shape'
+refuses empty 'this is an empty file'
 printf 'Time,EyeBlinkLeft\n0,0\n0.01,0\n0.02,0\n100000,0\n' >"$work/long.csv"
 refuses long 'and the limit is'
 

@@ -91,6 +91,9 @@ static const file_kind kinds[] = {
 
 #define KIND_COUNT (sizeof kinds / sizeof kinds[0])
 
+/* Whatever its name is. */
+static const file_kind empty = { NULL, "", READER_NONE, "an empty file", "export it, or download it, once more" };
+
 static char small_letter(char c)
 {
     return c >= 'A' && c <= 'Z' ? (char)(c + 32) : c;
@@ -136,7 +139,7 @@ static const file_kind *by_beginning(const char *path, int *is_there)
     size_t count;
     *is_there = !input_map(path, &data, &count, NULL);
     if (!*is_there) return NULL;
-    found = file_kind_of_bytes(data, count);
+    found = count ? file_kind_of_bytes(data, count) : &empty;
     input_unmap(data, count);
     return found;
 }

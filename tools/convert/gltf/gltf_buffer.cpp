@@ -30,12 +30,18 @@ struct file_closer {
     }
 };
 
+/* Adds the path, unless it is the file that was asked for: its messages begin with its name. */
+[[noreturn]] static void fail_to_read(const std::string &path, const std::string &where, const char *why)
+{
+    fail(where, where.empty() ? why : why + (": " + path));
+}
+
 static bytes read_held(const std::string &path, const std::string &where)
 {
     const input_held *file = input_find_held(path.c_str());
     inputs_note(path.c_str(), file != nullptr);
-    if (!file) fail(where, "the file is not among the caller's: " + path);
-    if (file->count > file_bytes_max) fail(where, "the file is larger than 2 GiB, which is the limit: " + path);
+    if (!file) fail_to_read(path, where, "the file is not among the caller's");
+    if (file->count > file_bytes_max) fail_to_read(path, where, "the file is larger than 2 GiB, which is the limit");
     const char *first = static_cast<const char *>(file->bytes);
     return bytes(first, first + file->count);
 }
@@ -46,16 +52,16 @@ bytes read_whole_file(const std::string &path, const std::string &where)
     std::error_code ignored;
     const bool is_there = std::filesystem::exists(path, ignored);
     inputs_note(path.c_str(), is_there);
-    if (!is_there) fail(where, "the file does not exist: " + path);
+    if (!is_there) fail_to_read(path, where, "the file does not exist");
     if (!std::filesystem::is_regular_file(path, ignored)) /* a device may never end */
-        fail(where, "this is not a file: " + path);
+        fail_to_read(path, where, "this is not a file");
     std::unique_ptr<FILE, file_closer> stream(fopen(path.c_str(), "rb"));
     uint64_t size = std::filesystem::file_size(path, ignored);
-    if (!stream || ignored) fail(where, "the file cannot be opened: " + path);
-    if (size > file_bytes_max) fail(where, "the file is larger than 2 GiB, which is the limit: " + path);
+    if (!stream || ignored) fail_to_read(path, where, "the file cannot be opened");
+    if (size > file_bytes_max) fail_to_read(path, where, "the file is larger than 2 GiB, which is the limit");
     bytes data(static_cast<size_t>(size));
     if (fread(data.data(), 1, data.size(), stream.get()) != data.size())
-        fail(where, "the file cannot be read: " + path);
+        fail_to_read(path, where, "the file cannot be read");
     return data;
 }
 

@@ -126,9 +126,10 @@ static int open_file(pack_file *file, const char *path, const char *subject, int
         if (status) pack_file_close(file);
         return status;
     }
-    if (kind && kind->reader == READER_NONE) {
+    if (!kind || kind->reader == READER_NONE) {
         pack_file_close(file);
-        return tool_fail(subject, "this is %s, neither a pack nor a model: %s", kind->what, kind->instead);
+        return kind ? tool_fail(subject, "this is %s, neither a pack nor a model: %s", kind->what, kind->instead)
+                    : tool_fail(subject, "this is neither a pack nor a model: noh help lists what is read");
     }
     if (noh_pack_open(file->file.data, file->file.bytes, &file->pack, &error)) {
         pack_file_close(file);
