@@ -244,7 +244,7 @@ static void lose_and_restore(act *acts, gpu *g, canvas *to)
     assert_int_equal(canvas_open(to, g, WIDTH, HEIGHT), 0);
 }
 
-/* In rounds `first` to 1. */
+/* In rounds `first` to 1: in round 0 states cross, in round 1 contexts are lost. */
 static void levels_come_and_go_on(fixture_way way, uint32_t first, uint32_t *made)
 {
     static act acts[3];
@@ -306,8 +306,9 @@ static void levels_come_and_go_on(fixture_way way, uint32_t first, uint32_t *mad
 }
 
 /* By blending, by lists, on the CPU and as draws sum (NOH_LONG: on every path, in floats and half floats; under
- * sanitizers on one), the first and the last with states, too (NOH_LONG: all): the picture equals the coarse packs' before and while levels are loaded, the full packs' afterwards, the coarse
- * packs' once they are dropped; over states and lost contexts. */
+ * sanitizers on one): the picture equals the coarse packs' before and while levels are loaded, the full packs'
+ * afterwards, the coarse packs' once they are dropped; over lost contexts. By blending and as draws sum (NOH_LONG, and
+ * under sanitizers: on all of these) a round with states comes before. */
 static void levels_come_and_go(void **state)
 {
     uint32_t made = 0;
@@ -315,8 +316,8 @@ static void levels_come_and_go(void **state)
     for (uint32_t w = 0; w < FIXTURE_WAYS; w++) {
         const int in_turn = w == 0 || w == 7 || w == 8 || w == 10; /* layered f32, gather f16, cpu f32, direct */
         const int is_left_out = test_is_sanitized() ? w != 4 : !in_turn;
-        const int is_long = getenv("NOH_LONG") || test_is_sanitized() || w == 0 || w == 10;
-        if (getenv("NOH_LONG") || !is_left_out) levels_come_and_go_on(fixture_ways[w], is_long ? 0 : 1, &made);
+        const int has_states = getenv("NOH_LONG") || test_is_sanitized() || w == 0 || w == 10;
+        if (getenv("NOH_LONG") || !is_left_out) levels_come_and_go_on(fixture_ways[w], has_states ? 0 : 1, &made);
     }
     assert_true(made >= 1);
     fixture_expect_no_errors();
