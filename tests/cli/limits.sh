@@ -100,7 +100,7 @@ noh build "$work/long.bvh" -o "$work/out.noh" --quiet
 expect 1 'more frames of joints than are encoded'
 says 'all clips have 4200000 frames of a joint, this one 12000 of 350 joints: too many to encode'
 says 'lower --rate'
-says 'build their files as 2 packs or more, with --only anim, for --anim, which may repeat'
+says 'build 2 or more packs of clips (--only anim; --anim takes several)'
 noh build "$work/long.bvh" -o "$work/out.noh" --quiet --rate 2
 expect 0 'fewer frames of it'
 finish

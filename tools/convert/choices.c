@@ -233,6 +233,15 @@ static double work_of(const model *m, raw_set *const *sets, uint32_t set_count)
     return TEXEL_NS * texels_of(m) + PAIR_NS * pairs_of(m) + FRAME_NS * frames;
 }
 
+/* Levels that nobody asked for must not end a build. */
+static int fits_memory(const model *m)
+{
+    for (uint32_t i = 0; i < m->mesh_count; i++) {
+        if (lod_bytes(&m->meshes[i], (uint32_t)CLIP_POSES, 0) > LOD_BYTES_MAX) return 0;
+    }
+    return 1;
+}
+
 void choices_levels(const model *m, raw_set *const *sets, uint32_t set_count, lod_settings *levels, FILE *report)
 {
     const double work = work_of(m, sets, set_count), poses = poses_of(m);
@@ -240,7 +249,7 @@ void choices_levels(const model *m, raw_set *const *sets, uint32_t set_count, lo
     const size_t count = sizeof levels_of / sizeof levels_of[0];
     size_t i = 0;
     if (!is_face(&moves) || !(poses > 0.0)) return;
-    while (i < count && levels_of[i].ns * poses > SHARE * work) i++;
+    while (i < count && (levels_of[i].ns * poses > SHARE * work || !fits_memory(m))) i++;
     if (i < count) {
         levels->level_count = levels_of[i].count;
         levels->mode = LOD_FAST;
@@ -249,6 +258,8 @@ void choices_levels(const model *m, raw_set *const *sets, uint32_t set_count, lo
         fprintf(report, "LOD: %u levels by --lod-fast, %.0f %% more work (--lod 1: none; --lod %u: smaller errors)\n",
                 levels->level_count, 100.0 * levels_of[i].ns * poses / work, levels->level_count);
     } else if (report) {
-        fprintf(report, "LOD: no levels, which would take longer than all else (--lod 3 --lod-fast makes them)\n");
+        fprintf(
+            report,
+            "LOD: no levels, which would take longer than all else, or too much memory (--lod 3 --lod-fast makes them)\n");
     }
 }

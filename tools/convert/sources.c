@@ -483,7 +483,7 @@ static int match_joints(source *base, raw_set *from, const char *path, const joi
     return model_warn(
                base->m,
                "%s: its skeleton is another one, so its clips were retargeted, which moves the bones of a person "
-               "alone (--partial moves all joints that both have; --retarget auto agrees)",
+               "alone (--partial moves all joints that both have; --retarget auto hides this warning)",
                path)
                ? model_fail_memory(error)
                : 0;

@@ -13,6 +13,7 @@
 #define RAYS 64u  /* over the whole sphere */
 #define HELD 0.9f /* of a vertex's weights: one joint moves it alone */
 #define NOT_HELD UINT32_MAX
+#define TRACED_MAX (1u << 21) /* at most half a minute; a mesh that needs more stays as it is */
 #define SHUT 0.10f
 #define OPEN 0.40f /* shares of the light: darkest at one, unchanged at the other */
 
@@ -28,6 +29,7 @@ typedef struct skin {
     float *triangles; /* [count][9] in the pose */
     float *open;      /* [vertex_count] the largest share of light of the poses so far; 1: not of the skin */
     float least;
+    uint32_t traced; /* rays so far */
     ray_tree tree;
 } skin;
 
@@ -58,8 +60,14 @@ static void pose(skin *s, const model_target *target)
     }
 }
 
-/* The share of even light that reaches a vertex. */
-static float light_at(const skin *s, const light_rays *rays, const model_target *target, uint32_t v)
+static float cosine_of(const float n[3], const light_rays *rays, uint32_t ray)
+{
+    const float *d = rays->directions + 3u * (size_t)ray;
+    return n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
+}
+
+/* The share of even light that reaches a vertex; 1 from OPEN on. */
+static float light_at(skin *s, const light_rays *rays, const model_target *target, uint32_t v)
 {
     float at[3], n[3], all = 0.0f, seen = 0.0f;
     uint32_t last = 0;
@@ -70,22 +78,21 @@ static float light_at(const skin *s, const light_rays *rays, const model_target 
         n[c] = length > 0.0f ? n[c] / length : 0.0f;
         at[c] += s->least * n[c];
     }
-    ray_tree_front(&s->tree, at, n);
-    for (uint32_t i = 0; i < rays->count; i++) {
+    for (uint32_t i = 0; i < rays->count; i++) all += fmaxf(cosine_of(n, rays, i), 0.0f);
+    for (uint32_t i = 0; i < rays->count && seen < OPEN * all; i++) {
+        const float cosine = cosine_of(n, rays, i);
         const float *d = rays->directions + 3u * (size_t)i;
-        const float cosine = n[0] * d[0] + n[1] * d[1] + n[2] * d[2];
-        if (!(cosine > 0.0f)) continue;
-        all += cosine;
-        if (!ray_tree_hit(&s->tree, at, d, s->least, &last)) seen += cosine;
+        s->traced += cosine > 0.0f;
+        if (cosine > 0.0f && !ray_tree_hit(&s->tree, at, d, s->least, &last)) seen += cosine;
     }
-    return all > 0.0f ? seen / all : 1.0f;
+    return seen < OPEN * all ? seen / all : 1.0f;
 }
 
 /* How many vertices are dark in this pose and all before. */
 static uint32_t light(skin *s, const light_rays *rays, const model_target *target)
 {
     uint32_t dark = 0;
-    for (uint32_t v = 0; v < s->mesh->vertex_count; v++) {
+    for (uint32_t v = 0; v < s->mesh->vertex_count && s->traced < TRACED_MAX; v++) {
         if (s->open[v] >= OPEN || holder_of(s->mesh, v) != s->held_by) continue;
         s->open[v] = fmaxf(s->open[v], light_at(s, rays, target, v));
         dark += s->open[v] < OPEN;
@@ -168,6 +175,7 @@ static int paint_mesh(model *m, model_mesh *mesh, const light_rays *rays)
         ray_tree_free(&s.tree);
         dark += more;
     }
+    if (s.traced >= TRACED_MAX) dark = 0;
     failed = failed || (dark && paint(&s));
     if (dark && !failed) {
         failed = model_warn(m,

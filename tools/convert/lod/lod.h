@@ -92,9 +92,13 @@ typedef struct lod {
 /* Simplify. The same input and options give the same result on every machine.
  * ranges  positions, deltas and poses within 1e6; targets' positions not NULL; indices within vertex_count
  * memory  about vertices x poses x 12 bytes, plus 88 bytes for each pair of a vertex and a pose that moves it
- * errors  1 and *error: out of memory, NaN, larger than 1e6, bad ratios, indices out of range. If a mesh cannot be
+ * errors  1 and *error: out of memory, NaN, larger than 1e6, bad ratios, indices out of range, memory above
+ * LOD_BYTES_MAX. If a mesh cannot be
  * simplified that far (locked borders, folds) the level has more triangles; that is not an error. */
 int lod_build(const model_mesh *mesh, const lod_options *options, lod **out, model_error *error);
+#define LOD_BYTES_MAX 2e9 /* of the memory above: more is an error */
+/* This memory, bytes; mix_count: 0, the default. */
+double lod_bytes(const model_mesh *mesh, uint32_t pose_count, uint32_t mix_count);
 void lod_free(lod *l);
 
 /* Cut other levels from the list of collapses: level k is the mesh after the first collapse_counts[k] (rising). The old

@@ -23,13 +23,10 @@ static int check_floats(const float *values, size_t count, const char *what, mod
     return 0;
 }
 
-#define BYTES_MAX 2e9
-
-/* The memory that lod.h states. */
-static double bytes_of(const model_mesh *mesh, const lod_options *o)
+double lod_bytes(const model_mesh *mesh, uint32_t pose_count, uint32_t mix_count)
 {
-    const double mixes = mesh->target_count > 1u ? (o->mix_count ? o->mix_count : LOD_MIXES) : 0u;
-    const double still = 1.0 + o->pose_count, poses = still + mesh->target_count + mixes;
+    const double mixes = mesh->target_count > 1u ? (mix_count ? mix_count : LOD_MIXES) : 0u;
+    const double still = 1.0 + pose_count, poses = still + mesh->target_count + mixes;
     double pairs = mesh->vertex_count * still;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         uint32_t moves = 0;
@@ -63,11 +60,12 @@ int lod_check_mesh(const model_mesh *mesh, const lod_options *o, model_error *er
             return model_fail(error, "", "index %u is vertex %u of %u", i, mesh->indices[i], mesh->vertex_count);
         }
     }
-    if (bytes_of(mesh, o) > BYTES_MAX) {
+    const double bytes = lod_bytes(mesh, o->pose_count, o->mix_count);
+    if (bytes > LOD_BYTES_MAX) {
         return model_fail(error, mesh->name ? mesh->name : "",
                           "LOD levels of %u vertices with %u targets would take %.1f GB of memory, more than %g: lower "
                           "the number of either, or build without levels (--lod 1)",
-                          mesh->vertex_count, mesh->target_count, bytes_of(mesh, o) / 1e9, BYTES_MAX / 1e9);
+                          mesh->vertex_count, mesh->target_count, bytes / 1e9, LOD_BYTES_MAX / 1e9);
     }
     return 0;
 }

@@ -174,7 +174,8 @@ static uint32_t add_texture(model *m, const arch *a)
     t->wrap_s = t->wrap_t = 33071;
     t->use = MODEL_TEXTURE_COLOR;
     for (uint32_t i = 0; t->rgba && i < COLUMNS * ROWS; i++) {
-        const float x = ((float)(i % COLUMNS) + 0.5f) / COLUMNS, y = ((float)(i / COLUMNS) + 0.5f) / ROWS;
+        const uint32_t column = i % COLUMNS, row = i / COLUMNS;
+        const float x = ((float)column + 0.5f) / COLUMNS, y = ((float)row + 0.5f) / ROWS;
         tooth_color(y < 0.5f, fabsf(2.0f * x - 1.0f) * a->along[STEPS], fminf(fmodf(y, 0.5f) / 0.5f, 1.0f),
                     t->rgba + 4 * i);
     }

@@ -277,8 +277,8 @@ static int choose_effort(raw_set **sets, uint32_t set_count, clips_settings *s, 
     if (sum > WORK_MAX) {
         (void)model_fail(error, "",
                          "all clips have %llu frames of a joint, this one %u of %u joints: too many to encode, the "
-                         "limit is %llu: lower --rate, cut them, or build their files as %llu packs or more, with "
-                         "--only anim, for --anim, which may repeat",
+                         "limit is %llu: lower --rate, cut them, or build %llu or more packs of clips (--only anim; "
+                         "--anim takes several)",
                          (unsigned long long)sum, longest->frame_count, longest->joint_count,
                          (unsigned long long)WORK_MAX, (unsigned long long)((sum + WORK_MAX - 1u) / WORK_MAX));
         snprintf(error->where, sizeof error->where, "clip '%.100s'", longest->name);

@@ -9,18 +9,21 @@
 #include "noh/format.h"
 
 #define MARGIN 2.0 /* texels about a triangle that filters read */
-#define FAR 2.0    /* texture coordinates beyond it are outside in any case, and no number is within it */
+#define FAR 2.0f   /* texture coordinates beyond it are outside in any case, and no number is within it */
+
+#define ROWS_MAX (1u << 27) /* rows of texels of all triangles: a few seconds; beyond it a material counts as cut */
 
 /* How many texels above and left of each corner are cut. */
 typedef struct cut_sums {
     uint32_t width, height;
-    uint32_t *at; /* [height + 1][width + 1] */
+    uint32_t rows; /* looked at so far */
+    uint32_t *at;  /* [height + 1][width + 1] */
 } cut_sums;
 
 static int sums_make(const model_texture *t, float cutoff, cut_sums *s)
 {
     const size_t row = (size_t)t->width + 1u;
-    *s = (cut_sums){ t->width, t->height, model_zeros(row * ((size_t)t->height + 1u), sizeof *s->at) };
+    *s = (cut_sums){ t->width, t->height, 0, model_zeros(row * ((size_t)t->height + 1u), sizeof *s->at) };
     for (size_t y = 0; s->at && y < t->height; y++) {
         for (size_t x = 0; x < t->width; x++) {
             const uint32_t cut = (float)t->rgba[4u * (y * t->width + x) + 3u] < cutoff * 255.0f;
@@ -50,7 +53,7 @@ static void span_of(double at[3][2], double row, double range[2])
 }
 
 /* Whether it reads a texel that is cut, or what is beyond the texture. */
-static int triangle_is_cut(double at[3][2], const cut_sums *s)
+static int triangle_is_cut(double at[3][2], cut_sums *s)
 {
     const size_t row = (size_t)s->width + 1u;
     const double low = fmin(at[0][1], fmin(at[1][1], at[2][1])) - MARGIN;
@@ -58,6 +61,7 @@ static int triangle_is_cut(double at[3][2], const cut_sums *s)
     if (low < 0.0 || high >= s->height) return 1;
     for (uint32_t y = (uint32_t)low; y <= (uint32_t)high; y++) {
         double range[2];
+        if (++s->rows > ROWS_MAX) return 1;
         span_of(at, y, range);
         if (range[0] > range[1]) continue;
         if (range[0] < 0.0 || range[1] >= s->width) return 1;
@@ -68,13 +72,13 @@ static int triangle_is_cut(double at[3][2], const cut_sums *s)
     return 0;
 }
 
-static int is_cut(const float *uv, level_corners c, const cut_sums *s)
+static int is_cut(const float *uv, level_corners c, cut_sums *s)
 {
     for (uint32_t i = 0; i + 2u < c.count; i += 3u) {
         double at[3][2];
         for (uint32_t k = 0; k < 3u; k++) {
             const float *corner = uv + 2u * (size_t)c.vertices[i + k];
-            if (!(fabs(corner[0]) < FAR && fabs(corner[1]) < FAR)) return 1;
+            if (!(fabsf(corner[0]) < FAR && fabsf(corner[1]) < FAR)) return 1;
             at[k][0] = (double)corner[0] * s->width;
             at[k][1] = (double)corner[1] * s->height;
         }
@@ -83,7 +87,7 @@ static int is_cut(const float *uv, level_corners c, const cut_sums *s)
     return 0;
 }
 
-static int is_solid(const model *m, const mesh_levels *levels, uint32_t material, const cut_sums *s)
+static int is_solid(const model *m, const mesh_levels *levels, uint32_t material, cut_sums *s)
 {
     const uint32_t all = s->at[((size_t)s->width + 1u) * ((size_t)s->height + 1u) - 1u];
     uint32_t parts = 0;
