@@ -308,7 +308,7 @@ static void names_of_a_file_are_read_together(void **state)
     static const moved shapes[] = {
         { "F.M_00_Fcl_EYE_Close", { 0, 0, 1, 1, 0, 0 } },
         { "F.M_00_Fcl_MTH_A", { 0, 0, 0, 0, 1, 0 } },
-        { "F.M_00_E", { 0, 0, 0, 0, 0, 1 } },
+        { "F.M_00_viseme_E", { 0, 0, 0, 0, 0, 1 } },
         { "F.M_00_grin", { 1, 0, 0, 0, 0, 0 } },
     };
     static const moved sides[] = {
@@ -327,7 +327,7 @@ static void names_of_a_file_are_read_together(void **state)
     assert_true(weight_of(recipe, "blink-left", "F.M_00_Fcl_EYE_Close") == 1.0f);
     assert_true(weight_of(recipe, "blink-right", "F.M_00_Fcl_EYE_Close") == 1.0f);
     assert_true(weight_of(recipe, "aa", "F.M_00_Fcl_MTH_A") == 1.0f);
-    assert_true(weight_of(recipe, "E", "F.M_00_E") == 1.0f);
+    assert_true(weight_of(recipe, "E", "F.M_00_viseme_E") == 1.0f);
     assert_int_equal(count, 4);
     recipe_free(recipe);
     recipe = recipe_new();
@@ -341,6 +341,29 @@ static void names_of_a_file_are_read_together(void **state)
         assert_string_not_equal(recipe->rows[i].target, "jawOpen_smile");
     }
     recipe_free(recipe);
+}
+
+/* Letters are vowels where at least three of them are. */
+static void letters_are_vowels_together(void **state)
+{
+    static const moved vowels[] = { { "A", { 1 } }, { "I", { 0, 1 } }, { "U", { 0, 0, 1 } } };
+    static const moved variants[] = { { "Variant_A", { 1 } }, { "Variant_B", { 0, 1 } }, { "Variant_E", { 0, 0, 1 } } };
+    static const struct {
+        const moved *shapes;
+        uint32_t rows;
+    } cases[] = { { vowels, 3 }, { variants, 0 } };
+    (void)state;
+    for (size_t i = 0; i < TEST_COUNT(cases); i++) {
+        recipe_text *recipe = recipe_new();
+        model_target targets[3];
+        model_mesh mesh;
+        model m;
+        uint32_t count;
+        add_shapes(&m, &mesh, targets, cases[i].shapes, 3);
+        assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+        assert_int_equal(count, cases[i].rows);
+        recipe_free(recipe);
+    }
 }
 
 /* Of targets that move the same way the smallest is used, but no detail of another; a small one holds no chain. */
@@ -451,6 +474,7 @@ int main(void)
         cmocka_unit_test(wrong_lines_are_named),
         cmocka_unit_test(one_shape_of_two_names_counts_once),
         cmocka_unit_test(names_of_a_file_are_read_together),
+        cmocka_unit_test(letters_are_vowels_together),
         cmocka_unit_test(whole_faces_take_their_parts),
         cmocka_unit_test(details_stand_for_nothing),
         cmocka_unit_test(rows_of_artists_stay),

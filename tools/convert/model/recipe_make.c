@@ -165,31 +165,45 @@ static size_t shared_bytes(const model_mesh *mesh)
     return shared;
 }
 
-/* What a name means; where it has no meaning, what it means without words that all of the mesh's names begin with. */
-static int find_meaning(const char *name, size_t shared, char means[NOH_NAME_BYTES_MAX])
+/* A name of one letter is a vowel only beside others: A, I and U, but not Variant_A and Variant_B. */
+#define VOWELS_LEAST 3u
+
+static int is_letter(const char *name)
 {
-    if (names_find(NAME_TARGET, name, means, NULL)) return 1;
-    for (size_t at = 0; at < shared; at++) {
-        if (is_separator(name[at]) && names_find(NAME_TARGET, name + at + 1u, means, NULL)) return 1;
+    const size_t length = strlen(name);
+    return length == 1u || (length > 1u && (name[length - 2u] == '.' || name[length - 2u] == ':'));
+}
+
+/* What a name means; where it has no meaning, what it means without words that all of the mesh's names begin with. */
+static int find_meaning(const char *name, size_t shared, char means[NOH_NAME_BYTES_MAX], uint8_t *is_vowel)
+{
+    const char *own = name;
+    int found = names_find(NAME_TARGET, name, means, NULL);
+    for (size_t at = 0; at < shared && !found; at++) {
+        own = name + at + 1u;
+        found = is_separator(name[at]) && names_find(NAME_TARGET, own, means, NULL);
     }
-    return 0;
+    *is_vowel = (uint8_t)(found && is_letter(own));
+    return found;
 }
 
 static int list_known(known *k, const model *m)
 {
     uint32_t meaning[NOH_TARGETS_MAX];
-    uint8_t found[NOH_TARGETS_MAX];
+    uint8_t found[NOH_TARGETS_MAX], vowel[NOH_TARGETS_MAX];
+    uint32_t vowels = 0;
     for (uint32_t i = 0; i < m->mesh_count; i++) {
         const model_mesh *mesh = &m->meshes[i];
         const size_t shared = shared_bytes(mesh);
         for (uint32_t t = 0; t < mesh->target_count && k->count < NOH_TARGETS_MAX; t++) {
             if (is_listed(k, mesh->targets[t].name)) continue;
             k->names[k->count] = mesh->targets[t].name;
-            found[k->count] = (uint8_t)find_meaning(k->names[k->count], shared, k->text[k->count]);
-            k->count++;
+            found[k->count] = (uint8_t)find_meaning(k->names[k->count], shared, k->text[k->count], &vowel[k->count]);
+            vowels += vowel[k->count++];
         }
     }
     for (uint32_t i = 0; i < k->count; i++) {
+        found[i] &= !vowel[i] || vowels >= VOWELS_LEAST;
         k->means[i] = found[i] && !is_listed(k, k->text[i]) ? k->text[i] : k->names[i];
         for (meaning[i] = 0; strcmp(k->means[meaning[i]], k->means[i]) != 0;) meaning[i]++;
     }
