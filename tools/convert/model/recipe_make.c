@@ -165,7 +165,7 @@ static size_t shared_bytes(const model_mesh *mesh)
     return shared;
 }
 
-/* A name of one letter is a vowel only beside others: A, I and U, but not Variant_A and Variant_B. */
+/* A name of one letter is a vowel only where others are: A, I and U, but not Variant_A and Variant_B. */
 #define VOWELS_LEAST 3u
 
 static int is_letter(const char *name)
