@@ -190,7 +190,7 @@ noh build "$work/march.bvh" -o "$work/x.noh" --clean contact-keys --only mesh
 expect 2 'footsteps of a mesh alone'
 
 for ending in c3d trc; do
-    : >"$work/markers.$ending"
+    echo markers >"$work/markers.$ending"
     noh build "$work/markers.$ending" -o "$work/x.noh"
     expect 1 "markers: .$ending"
     says "this is not a .$ending file"
