@@ -13,7 +13,6 @@
 #define JAW_MM 60.0f      /* between the outer faces of the last molars */
 #define BAND_VERTICES 96u /* divided teeth have six each or more */
 #define STEPS 64          /* of an arch's side */
-#define CROWN 0.16f       /* the height of a crown, in widths of the jaw */
 #define LINE_MM 0.4f
 #define QUARTER 1.57079633f
 
@@ -130,7 +129,7 @@ static void place_rows(const teeth_rows *r, const arch *a)
         if (!r->used[v]) continue;
         const float *p = r->mesh->position + 3 * (size_t)v;
         const int upper = is_upper(r, v);
-        const float away = fminf(fabsf(p[1] - r->edge[upper]) / (CROWN * r->width), 1.0f);
+        const float away = fminf(fabsf(p[1] - r->edge[upper]) / (TEETH_CROWN * r->width), 1.0f);
         r->mesh->uv[2 * (size_t)v] = place_on(a, p);
         r->mesh->uv[2 * (size_t)v + 1] = (upper ? 0.03f : 0.53f) + 0.44f * away;
     }
@@ -138,7 +137,7 @@ static void place_rows(const teeth_rows *r, const arch *a)
 
 /* ---- the texture ---- */
 
-static float smooth_step(float from, float to, float x)
+float teeth_smooth(float from, float to, float x)
 {
     const float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
     return t * t * (3.0f - 2.0f * t);
@@ -154,8 +153,8 @@ static void tooth_color(int upper, float mm, float away, uint8_t out[4])
         at += widths[upper][i];
         nearest = fminf(nearest, fabsf(mm - at));
     }
-    const float share = 1.0f - smooth_step(0.0f, LINE_MM * (1.0f + 1.5f * smooth_step(0.25f, 0.0f, away)), nearest);
-    const float round = 0.88f + 0.12f * smooth_step(0.0f, 3.0f, nearest);
+    const float share = 1.0f - teeth_smooth(0.0f, LINE_MM * (1.0f + 1.5f * teeth_smooth(0.25f, 0.0f, away)), nearest);
+    const float round = 0.88f + 0.12f * teeth_smooth(0.0f, 3.0f, nearest);
     for (int c = 0; c < 3; c++) out[c] = (uint8_t)(255.0f * round * (1.0f + share * (line[c] - 1.0f)) + 0.5f);
     out[3] = 255;
 }

@@ -4,6 +4,11 @@
 
 #include "convert/model/model.h"
 
+#define TEETH_CROWN 0.16f /* the height of a crown, in widths of the jaw */
+
+/* 0 to 1 between two values, which may fall. */
+float teeth_smooth(float from, float to, float x);
+
 /* Two jaws of one part of a mesh, whose vertices no other part uses. */
 typedef struct teeth_rows {
     model_mesh *mesh;

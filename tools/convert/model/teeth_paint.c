@@ -10,7 +10,6 @@
 #include "convert/model/teeth_lines.h"
 #include "noh/format.h"
 
-#define CROWN 0.16f  /* the height of a crown, in widths of the jaw */
 #define SOFT 0.35f   /* the share of it over which enamel turns to gum */
 #define ENAMEL 0.60f /* the largest channel of the brightest place */
 #define HUES 0.02f   /* shares of red in one colour differ by less */
@@ -131,19 +130,13 @@ static int find_jaws(jaws *j, const uint32_t *island, const float *middle)
     return j->width > 0.0f && high - low > 0.1f * j->width && are_jaws(box, targets_part(j, island, middle));
 }
 
-static float smooth_step(float from, float to, float x)
-{
-    const float t = fminf(fmaxf((x - from) / (to - from), 0.0f), 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
-
 static void paint(const jaws *j, const uint32_t *island, const float *middle)
 {
     for (uint32_t v = 0; v < j->mesh->vertex_count; v++) {
         if (!j->used[v]) continue;
         const int upper = middle[island[v]] > j->middle;
-        const float away = fabsf(place_of(j, v)[1] - j->edge[upper]) / (CROWN * j->width);
-        const float root = smooth_step(0.3f, 1.0f, away), share = smooth_step(1.0f - SOFT, 1.0f + SOFT, away);
+        const float away = fabsf(place_of(j, v)[1] - j->edge[upper]) / (TEETH_CROWN * j->width);
+        const float root = teeth_smooth(0.3f, 1.0f, away), share = teeth_smooth(1.0f - SOFT, 1.0f + SOFT, away);
         const float r = channel(j, v, 0), g = channel(j, v, 1), b = channel(j, v, 2);
         const float bright = fmaxf(r, fmaxf(g, b)) / j->brightest, own[3] = { r, g, b };
         for (int c = 0; c < 3; c++) {
