@@ -249,7 +249,8 @@ void choices_levels(const model *m, raw_set *const *sets, uint32_t set_count, lo
     const size_t count = sizeof levels_of / sizeof levels_of[0];
     size_t i = 0;
     if (!is_face(&moves) || !(poses > 0.0)) return;
-    while (i < count && (levels_of[i].ns * poses > SHARE * work || !fits_memory(m))) i++;
+    if (!fits_memory(m)) i = count;
+    while (i < count && levels_of[i].ns * poses > SHARE * work) i++;
     if (i < count) {
         levels->level_count = levels_of[i].count;
         levels->mode = LOD_FAST;

@@ -276,17 +276,25 @@ static int fail_skeletons(const raw_skeleton *base, const char *base_path, raw_s
                       base_path, count, base->joint_count, partial_advice(set, base));
 }
 
+/* The first of the base's skeletons that has joints. NULL: none has. */
+static const raw_skeleton *first_skeleton(const source *base)
+{
+    for (uint32_t i = 0; i < base->set_count; i++) {
+        if (base->sets[i]->skeleton.joint_count) return &base->sets[i]->skeleton;
+    }
+    return NULL;
+}
+
 /* Find the base's set that has the same joints as `from`. */
 static int find_set(const source *base, const char *base_path, raw_set *from, raw_set **to, model_error *error)
 {
-    const raw_skeleton *first = NULL;
+    const raw_skeleton *first = first_skeleton(base);
     for (uint32_t i = 0; i < base->set_count; i++) {
         const raw_skeleton *s = &base->sets[i]->skeleton;
         if (s->joint_count && raw_skeleton_hash(s) == raw_skeleton_hash(&from->skeleton)) {
             *to = base->sets[i];
             return 0;
         }
-        first = !first && s->joint_count ? s : first;
     }
     return first ? fail_skeletons(first, base_path, from, error)
                  : model_fail(error, "",
@@ -431,15 +439,6 @@ static int join_clip(source *base, const char *base_path, raw_set *from, raw_cli
     *joined += 1;
     scale_translations(clip, from->skeleton.unit_cm / to->skeleton.unit_cm);
     return move_clip(clip, to, error);
-}
-
-/* The first of the base's skeletons that has joints. NULL: none has. */
-static const raw_skeleton *first_skeleton(const source *base)
-{
-    for (uint32_t i = 0; i < base->set_count; i++) {
-        if (base->sets[i]->skeleton.joint_count) return &base->sets[i]->skeleton;
-    }
-    return NULL;
 }
 
 /* Clips of one humanoid on the first of the base's skeletons. */
