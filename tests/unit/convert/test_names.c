@@ -277,6 +277,21 @@ static void add_shapes(model *m, model_mesh *mesh, model_target *targets, const 
     }
 }
 
+#define SHAPES_MAX 8u
+
+/* The rows of a face whose targets have known names. */
+static recipe_text *known_of(const moved *shapes, uint32_t count, uint32_t *rows)
+{
+    recipe_text *recipe = recipe_new();
+    model_target targets[SHAPES_MAX];
+    model_mesh mesh;
+    model m;
+    assert_true(recipe && count <= SHAPES_MAX);
+    add_shapes(&m, &mesh, targets, shapes, count);
+    assert_int_equal(recipe_add_known(recipe, &m, rows), 0);
+    return recipe;
+}
+
 /* One shape under two names counts once; sides and parts of a shape add up. */
 static void one_shape_of_two_names_counts_once(void **state)
 {
@@ -286,14 +301,9 @@ static void one_shape_of_two_names_counts_once(void **state)
         { "Mouth_Funnel_Up_L", { 0, 0, 0, 0.2f, 1.0f, 0 } },   { "Mouth_Funnel_Up_R", { 0, 0, 0, 1.0f, 0.2f, 0 } },
         { "Mouth_Funnel_Down_L", { 0, 1.0f, 0, 0, 0, 0.1f } }, { "Mouth_Funnel_Down_R", { 1.0f, 0, 0, 0, 0, 0.1f } },
     };
-    recipe_text *recipe = recipe_new();
-    model_target targets[TEST_COUNT(shapes)];
-    model_mesh mesh;
-    model m;
     uint32_t count;
+    recipe_text *recipe = known_of(shapes, TEST_COUNT(shapes), &count);
     (void)state;
-    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
-    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
     assert_true(weight_of(recipe, "aa", "Fcl_MTH_A") == 1.0f);
     assert_true(weight_of(recipe, "aa", "viseme_aa") == 0.0f);
     assert_true(weight_of(recipe, "oh", "Fcl_MTH_O") + weight_of(recipe, "oh", "viseme_O") == 1.0f);
@@ -316,23 +326,16 @@ static void names_of_a_file_are_read_together(void **state)
         { "eyeBlink_R", { 0, 0, 0, 1, 0, 0 } },    { "PP", { 0, 0, 0, 0, 1, 0 } },
         { "jawOpen_smile", { 0, 0, 0, 0, 0, 1 } }, /* a corrective */
     };
-    recipe_text *recipe = recipe_new();
-    model_target targets[TEST_COUNT(sides)];
-    model_mesh mesh;
-    model m;
     uint32_t count;
+    recipe_text *recipe = known_of(shapes, TEST_COUNT(shapes), &count);
     (void)state;
-    add_shapes(&m, &mesh, targets, shapes, TEST_COUNT(shapes));
-    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
     assert_true(weight_of(recipe, "blink-left", "F.M_00_Fcl_EYE_Close") == 1.0f);
     assert_true(weight_of(recipe, "blink-right", "F.M_00_Fcl_EYE_Close") == 1.0f);
     assert_true(weight_of(recipe, "aa", "F.M_00_Fcl_MTH_A") == 1.0f);
     assert_true(weight_of(recipe, "E", "F.M_00_viseme_E") == 1.0f);
     assert_int_equal(count, 4);
     recipe_free(recipe);
-    recipe = recipe_new();
-    add_shapes(&m, &mesh, targets, sides, TEST_COUNT(sides));
-    assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+    recipe = known_of(sides, TEST_COUNT(sides), &count);
     assert_true(weight_of(recipe, "blink-left", "eyeBlink_L") == 1.0f);
     assert_true(weight_of(recipe, "blink-right", "eyeBlink_R") == 1.0f);
     assert_true(weight_of(recipe, "PP", "PP") == 1.0f);
@@ -354,13 +357,8 @@ static void letters_are_vowels_together(void **state)
     } cases[] = { { vowels, 3 }, { variants, 0 } };
     (void)state;
     for (size_t i = 0; i < TEST_COUNT(cases); i++) {
-        recipe_text *recipe = recipe_new();
-        model_target targets[3];
-        model_mesh mesh;
-        model m;
         uint32_t count;
-        add_shapes(&m, &mesh, targets, cases[i].shapes, 3);
-        assert_int_equal(recipe_add_known(recipe, &m, &count), 0);
+        recipe_text *recipe = known_of(cases[i].shapes, 3, &count);
         assert_int_equal(count, cases[i].rows);
         recipe_free(recipe);
     }
