@@ -11,8 +11,8 @@ extern "C" {
 
 /* Where a body's front is, in quarter turns from +z towards +x, 0..3: where the soles of its feet point in the bind
  * pose, or, if the rig has no legs because they have no skin, where the joints of their toes lie. Names of left and
- * right are not needed. 0 if there are no feet, or they point along the line of the hips. Everything that needs a front calls
- * this, except faces, which may have no legs (stage_face_open.c). */
+ * right are not needed. 0 if there are no feet, or they point along the line of the hips. Everything that needs a
+ * front calls this, except faces, which may have no legs (stage_face_open.c). */
 uint32_t noh_feet_front(const noh_ragdoll_source *source, const noh_feet_rig *rig);
 
 /* The same with the rig made for it. */

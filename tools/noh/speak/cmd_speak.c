@@ -1,5 +1,5 @@
-#define _POSIX_C_SOURCE 200809L /* strdup */
 /* cmd_speak.c: text to mouth shapes, and to a clip for a face. */
+#define _POSIX_C_SOURCE 200809L /* strdup */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
